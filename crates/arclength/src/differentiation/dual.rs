@@ -1,0 +1,290 @@
+//! Dual numbers: a value and its derivatives in `N` directions.
+
+use super::Scalar;
+use std::iter::Sum;
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number of type `T` with derivatives in `N` directions, propagated exactly.
+///
+/// `T` is itself a [`Scalar`], so duals nest: `Dual<Dual<f64, 1>, 1>` carries a mixed second
+/// derivative along two independent directions.
+///
+/// ```
+/// use arclength::{Dual, Scalar};
+/// let x = Dual::<f64, 2>::variable(3.0, 0);
+/// let y = Dual::<f64, 2>::variable(2.0, 1);
+/// let z = x * y + x.sin();
+/// assert_eq!(z.derivatives, [2.0 + 3.0_f64.cos(), 3.0]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<T, const N: usize> {
+    /// The value.
+    pub value: T,
+    /// The derivatives, one for each direction.
+    pub derivatives: [T; N],
+}
+
+impl<T: Scalar, const N: usize> Dual<T, N> {
+    /// A number that does not vary.
+    #[inline]
+    pub fn constant(value: T) -> Self {
+        Self { value, derivatives: [T::zero(); N] }
+    }
+
+    /// A number that varies with unit speed in one direction; a direction of `N` or more leaves it constant.
+    #[inline]
+    pub fn variable(value: T, direction: usize) -> Self {
+        let mut dual = Self::constant(value);
+        if let Some(derivative) = dual.derivatives.get_mut(direction) {
+            *derivative = T::one();
+        }
+        dual
+    }
+
+    /// Chain rule: `value` and `slope` of a function of one variable at `self.value`.
+    #[inline(always)]
+    fn chain(self, value: T, slope: T) -> Self {
+        Self { value, derivatives: self.derivatives.map(|derivative| slope * derivative) }
+    }
+}
+
+impl<T: Scalar, const N: usize> From<f64> for Dual<T, N> {
+    #[inline]
+    fn from(value: f64) -> Self {
+        Self::constant(T::from(value))
+    }
+}
+
+impl<T: Scalar, const N: usize> Add for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl<T: Scalar, const N: usize> Sub for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(mut self, other: Self) -> Self {
+        self -= other;
+        self
+    }
+}
+
+impl<T: Scalar, const N: usize> Mul for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let mut product = Self::constant(self.value * other.value);
+        for direction in 0..N {
+            product.derivatives[direction] =
+                self.derivatives[direction] * other.value + self.value * other.derivatives[direction];
+        }
+        product
+    }
+}
+
+impl<T: Scalar, const N: usize> Div for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        let reciprocal = other.value.recip();
+        let mut quotient = Self::constant(self.value * reciprocal);
+        for direction in 0..N {
+            quotient.derivatives[direction] =
+                (self.derivatives[direction] - quotient.value * other.derivatives[direction]) * reciprocal;
+        }
+        quotient
+    }
+}
+
+impl<T: Scalar, const N: usize> Neg for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: -self.value, derivatives: self.derivatives.map(|derivative| -derivative) }
+    }
+}
+
+impl<T: Scalar, const N: usize> Add<f64> for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(mut self, constant: f64) -> Self {
+        self.value = self.value + constant;
+        self
+    }
+}
+
+impl<T: Scalar, const N: usize> Sub<f64> for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(mut self, constant: f64) -> Self {
+        self.value = self.value - constant;
+        self
+    }
+}
+
+impl<T: Scalar, const N: usize> Mul<f64> for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, constant: f64) -> Self {
+        Self {
+            value: self.value * constant,
+            derivatives: self.derivatives.map(|derivative| derivative * constant),
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> Div<f64> for Dual<T, N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, constant: f64) -> Self {
+        Self {
+            value: self.value / constant,
+            derivatives: self.derivatives.map(|derivative| derivative / constant),
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> AddAssign for Dual<T, N> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        self.value += other.value;
+        for direction in 0..N {
+            self.derivatives[direction] += other.derivatives[direction];
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> SubAssign for Dual<T, N> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        self.value -= other.value;
+        for direction in 0..N {
+            self.derivatives[direction] -= other.derivatives[direction];
+        }
+    }
+}
+
+impl<T: Scalar, const N: usize> MulAssign for Dual<T, N> {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<T: Scalar, const N: usize> DivAssign for Dual<T, N> {
+    #[inline(always)]
+    fn div_assign(&mut self, other: Self) {
+        *self = *self / other;
+    }
+}
+
+impl<T: Scalar, const N: usize> Sum for Dual<T, N> {
+    fn sum<I: Iterator<Item = Self>>(terms: I) -> Self {
+        terms.fold(Self::zero(), |sum, term| sum + term)
+    }
+}
+
+impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
+    #[inline(always)]
+    fn value(&self) -> f64 {
+        self.value.value()
+    }
+    #[inline]
+    fn recip(self) -> Self {
+        let reciprocal = self.value.recip();
+        self.chain(reciprocal, -(reciprocal * reciprocal))
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, root.recip() * 0.5)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        let exponential = self.value.exp();
+        self.chain(exponential, exponential)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), self.value.recip())
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = self.value.sin_cos();
+        (self.chain(sine, cosine), self.chain(cosine, -sine))
+    }
+    #[inline]
+    fn tan(self) -> Self {
+        let tangent = self.value.tan();
+        self.chain(tangent, tangent * tangent + 1.0)
+    }
+    #[inline]
+    fn asin(self) -> Self {
+        let slope = (-(self.value * self.value) + 1.0).sqrt().recip();
+        self.chain(self.value.asin(), slope)
+    }
+    #[inline]
+    fn acos(self) -> Self {
+        let slope = -(-(self.value * self.value) + 1.0).sqrt().recip();
+        self.chain(self.value.acos(), slope)
+    }
+    #[inline]
+    fn atan(self) -> Self {
+        let slope = (self.value * self.value + 1.0).recip();
+        self.chain(self.value.atan(), slope)
+    }
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        let inverse_square = (self.value * self.value + x.value * x.value).recip();
+        let mut angle = Self::constant(self.value.atan2(x.value));
+        for direction in 0..N {
+            angle.derivatives[direction] = (x.value * self.derivatives[direction]
+                - self.value * x.derivatives[direction])
+                * inverse_square;
+        }
+        angle
+    }
+    #[inline]
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+    #[inline]
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+    #[inline]
+    fn tanh(self) -> Self {
+        let tangent = self.value.tanh();
+        self.chain(tangent, -(tangent * tangent) + 1.0)
+    }
+    #[inline]
+    fn powi(self, exponent: i32) -> Self {
+        if exponent == 0 {
+            return Self::one();
+        }
+        let lower = self.value.powi(exponent - 1);
+        self.chain(lower * self.value, lower * f64::from(exponent))
+    }
+    #[inline]
+    fn powf(self, exponent: Self) -> Self {
+        let power = exponent.value.value();
+        let constant = exponent.is_constant();
+        if constant && power.fract() == 0.0 && power.abs() <= f64::from(i32::MAX) {
+            return self.powi(power as i32);
+        }
+        if constant {
+            let lower = self.value.powf(exponent.value - 1.0);
+            return self.chain(lower * self.value, lower * exponent.value);
+        }
+        (self.ln() * exponent).exp()
+    }
+    #[inline]
+    fn is_constant(&self) -> bool {
+        self.value.is_constant()
+            && self.derivatives.iter().all(|derivative| derivative.value() == 0.0 && derivative.is_constant())
+    }
+}

@@ -1,0 +1,65 @@
+//! Vector fields and their derivatives.
+//!
+//! Everything that the rest of the crate asks of a model goes through [`VectorField::evaluate`];
+//! the functions here evaluate it with dual numbers to get Jacobians and directional derivatives.
+
+use crate::differentiation::{Dual, Scalar};
+
+/// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`.
+///
+/// ```
+/// use arclength::{Scalar, VectorField};
+///
+/// struct VanDerPol;
+///
+/// impl VectorField for VanDerPol {
+///     fn state_names(&self) -> Vec<String> {
+///         vec!["x".into(), "y".into()]
+///     }
+///     fn parameter_names(&self) -> Vec<String> {
+///         vec!["mu".into()]
+///     }
+///     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+///         let (x, y, mu) = (state[0], state[1], parameters[0]);
+///         derivative[0] = y;
+///         derivative[1] = mu * (-(x * x) + 1.0) * y - x;
+///     }
+/// }
+///
+/// let mut derivative = [0.0; 2];
+/// VanDerPol.evaluate(&[1.0, 2.0], &[5.0], &mut derivative);
+/// assert_eq!(derivative, [2.0, -1.0]);
+/// ```
+pub trait VectorField: Sync {
+    /// Names of the state variables; their number is the dimension.
+    fn state_names(&self) -> Vec<String>;
+
+    /// Names of the parameters, in the order in which [`evaluate`](Self::evaluate) takes them.
+    fn parameter_names(&self) -> Vec<String>;
+
+    /// Writes `f(state, parameters)` into `derivative`.
+    ///
+    /// Outside its domain the field writes numbers that are not finite; it does not panic.
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]);
+
+    /// Number of state variables.
+    fn dimension(&self) -> usize {
+        self.state_names().len()
+    }
+}
+
+impl<F: VectorField> VectorField for &F {
+    fn state_names(&self) -> Vec<String> {
+        (**self).state_names()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        (**self).parameter_names()
+    }
+    #[inline(always)]
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        (**self).evaluate(state, parameters, derivative);
+    }
+    fn dimension(&self) -> usize {
+        (**self).dimension()
+    }
+}

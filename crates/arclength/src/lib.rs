@@ -1,0 +1,10 @@
+//! Numerical continuation of smooth ordinary differential equations `x' = f(x, p)`.
+//!
+//! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
+//! from forward-mode automatic differentiation ([`Dual`]).
+
+pub mod differentiation;
+pub mod field;
+
+pub use differentiation::{Dual, Scalar};
+pub use field::VectorField;
