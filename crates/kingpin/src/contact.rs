@@ -1,0 +1,72 @@
+//! The force of the ground on the wheel.
+//!
+//! The friction force is what the rolling constraint demands: the momentum equations of the wheel that may slide, with
+//! the slip velocity zero, give its components in the body frame
+//!
+//! ```text
+//! T1 = -(J_wxi/R^2) V'          T2 = (m_w + m_c) V Omega + m Omega' - F2
+//! ```
+//!
+//! where `F2` includes the dampers at the king pin. The wheel rolls while `|T| < mu_s N`.
+
+use crate::error::KingpinError;
+use crate::parameters::Key;
+use crate::rolling::right_hand_side;
+use crate::wheel::Wheel;
+
+/// The force of the ground on the rolling wheel, in N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// `T1`, along the caster, from wheel to king pin.
+    pub longitudinal: f64,
+    /// `T2`, across the caster.
+    pub lateral: f64,
+    /// `N`; negative where the load lifts the wheel.
+    pub normal: f64,
+    /// `mu_s N`, the largest friction force with which the wheel rolls.
+    pub limit: f64,
+}
+
+impl ContactForce {
+    /// The friction force `|T|`.
+    pub fn friction(&self) -> f64 {
+        self.longitudinal.hypot(self.lateral)
+    }
+
+    /// Whether the ground can supply the friction force: `|T| < mu_s N`.
+    pub fn rolls(&self) -> bool {
+        self.friction() < self.limit
+    }
+}
+
+impl Wheel {
+    /// The force of the ground on the rolling wheel at a state `(u, q, psi, V, Omega)`.
+    ///
+    /// # Errors
+    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly) where `k_u = inf`.
+    pub fn contact_force(&self, state: &[f64; 5]) -> Result<ContactForce, KingpinError> {
+        if self.get(Key::KU).is_infinite() {
+            return Err(KingpinError::LateralElasticityOnly);
+        }
+        Ok(self.rolling_contact_force(state))
+    }
+
+    /// The same, for a wheel whose `k_u` is known to be finite.
+    pub(crate) fn rolling_contact_force(&self, state: &[f64; 5]) -> ContactForce {
+        let body = self.body();
+        let mut derivative = [0.0; 5];
+        let towing = (self.get(Key::V), self.towing_yaw_rate());
+        let force_across = right_hand_side(&body, true, true, towing, state, &mut derivative);
+        let [.., forward_speed, yaw_rate] = *state;
+        let [.., forward_acceleration, yaw_acceleration] = derivative;
+        let mass = self.get(Key::MW) + self.get(Key::MC);
+        let wheel_radius = self.get(Key::WheelRadius);
+        let normal = self.normal_force();
+        ContactForce {
+            longitudinal: -(self.get(Key::JWxi) / (wheel_radius * wheel_radius)) * forward_acceleration,
+            lateral: mass * forward_speed * yaw_rate + body.static_moment * yaw_acceleration - force_across,
+            normal,
+            limit: self.get(Key::MuS) * normal,
+        }
+    }
+}

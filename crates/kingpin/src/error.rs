@@ -1,0 +1,184 @@
+//! Everything that can go wrong, said so that it can be put right.
+
+use crate::parameters::Key;
+use std::fmt;
+use std::path::PathBuf;
+
+/// A place in a text, counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Position {
+    /// Line.
+    pub line: usize,
+    /// Column, in characters.
+    pub column: usize,
+}
+
+impl Position {
+    /// The place of a byte offset in a text.
+    pub(crate) fn of(offset: usize, text: &str) -> Self {
+        let before = &text.as_bytes()[..offset.min(text.len())];
+        let start = before.iter().rposition(|&byte| byte == b'\n').map_or(0, |newline| newline + 1);
+        Self {
+            line: before.iter().filter(|&&byte| byte == b'\n').count() + 1,
+            column: String::from_utf8_lossy(&before[start..]).chars().count() + 1,
+        }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "line {}, column {}", self.line, self.column)
+    }
+}
+
+/// Why a wheel has no uniform motion.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoUniformMotion {
+    /// The towing point stands still.
+    #[error("at v = 0 every caster angle is an equilibrium; set v above 0")]
+    Standstill,
+    /// The inertial force of the caster outgrows the lateral spring.
+    #[error(
+        "m omega^2 < k l fails: {inertial} N is not below {elastic} N \
+         (m = m_c (l - l_c), omega = v/r, k = k_q); lower v or raise r, l or k_q"
+    )]
+    SpringTooSoft {
+        /// `m omega^2` in N.
+        inertial: f64,
+        /// `k l` in N.
+        elastic: f64,
+    },
+    /// The caster cannot lie along the circle of the wheel.
+    #[error(
+        "|l - a0| < r fails: {effective_length} m is not below {radius} m \
+         (a0 = m omega^2/k is the deflection of the spring along the caster); raise r or lower l"
+    )]
+    CircleTooSmall {
+        /// `|l - a0|` in m.
+        effective_length: f64,
+        /// `r` in m.
+        radius: f64,
+    },
+    /// Newton's method was led from the isotropic wheel towards the given one and stopped on the way.
+    #[error(
+        "it was followed from k_u = k_q to k_u = {longitudinal_stiffness} N/m and lost there \
+         (residual {residual:e}); bring k_u nearer to k_q or lower k_psi"
+    )]
+    LostOnTheWay {
+        /// The last `k_u` in N/m at which the motion was found.
+        longitudinal_stiffness: f64,
+        /// Largest component of the vector field where Newton's method gave up.
+        residual: f64,
+    },
+}
+
+/// The error of this crate.
+#[derive(Debug, thiserror::Error)]
+pub enum KingpinError {
+    /// A key that is in no table.
+    #[error("{}unknown key `{given}`; the nearest known key is `{nearest}` ({}, {})",
+        prefix(.position), .nearest.meaning(), .nearest.unit())]
+    UnknownKey {
+        /// What was given.
+        given: String,
+        /// The known key with the nearest name.
+        nearest: Key,
+        /// Where in a file.
+        position: Option<Position>,
+    },
+    /// Text that is no number.
+    #[error("{}{key} = {given}: not a number; allowed: {} {}", prefix(.position), .key.allowed(), .key.unit())]
+    NotANumber {
+        /// The parameter.
+        key: Key,
+        /// What was given.
+        given: String,
+        /// Where in a file.
+        position: Option<Position>,
+    },
+    /// A number that the parameter may not take.
+    #[error("{}{key} = {value}: out of range; allowed: {} {} ({})",
+        prefix(.position), .key.allowed(), .key.unit(), .key.meaning())]
+    OutOfRange {
+        /// The parameter.
+        key: Key,
+        /// What was given.
+        value: f64,
+        /// Where in a file.
+        position: Option<Position>,
+    },
+    /// A text that is no TOML.
+    #[error("not valid TOML: {0}")]
+    Toml(#[from] toml::de::Error),
+    /// A file that cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// A file with something wrong in it.
+    #[error("{}: {source}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: Box<KingpinError>,
+    },
+    /// Two keys that set the same parameter cannot both vary.
+    #[error("`{first}` and `{second}` cannot vary together: both set `{}`",
+        first.sets().iter().find(|key| second.sets().contains(key)).unwrap_or(first))]
+    DependentKeys {
+        /// One key.
+        first: Key,
+        /// The other.
+        second: Key,
+    },
+    /// `r` cannot vary from infinity.
+    #[error("`r` cannot vary from inf: vary `curvature` = 1/r from 0 instead")]
+    InfiniteRadius,
+    /// `k` cannot vary while it stands for two different stiffnesses.
+    #[error(
+        "`k` cannot vary while k_u = {longitudinal} N/m and k_q = {lateral} N/m differ: vary `k_u` or `k_q`"
+    )]
+    AmbiguousStiffness {
+        /// `k_u` in N/m.
+        longitudinal: f64,
+        /// `k_q` in N/m.
+        lateral: f64,
+    },
+    /// The five-state model needs longitudinal elasticity.
+    #[error("k_u = inf: this needs a finite k_u; with lateral elasticity only the model has three states")]
+    LateralElasticityOnly,
+    /// There is no uniform motion.
+    #[error("no uniform motion at v = {v} m/s, l = {l} m, r = {r} m: {reason}")]
+    NoUniformMotion {
+        /// Towing speed in m/s.
+        v: f64,
+        /// Caster length in m.
+        l: f64,
+        /// Turning radius in m.
+        r: f64,
+        /// The condition that fails.
+        #[source]
+        reason: NoUniformMotion,
+    },
+}
+
+impl KingpinError {
+    /// The same error, found at a place in a text.
+    pub(crate) fn at(self, place: Position) -> Self {
+        let position = Some(place);
+        match self {
+            Self::UnknownKey { given, nearest, .. } => Self::UnknownKey { given, nearest, position },
+            Self::NotANumber { key, given, .. } => Self::NotANumber { key, given, position },
+            Self::OutOfRange { key, value, .. } => Self::OutOfRange { key, value, position },
+            other => other,
+        }
+    }
+}
+
+fn prefix(position: &Option<Position>) -> String {
+    position.map_or_else(String::new, |position| format!("{position}: "))
+}

@@ -1,0 +1,307 @@
+//! The table of parameter keys: name, symbol, unit, meaning and allowed range of each.
+//!
+//! The keys are those of the paper, in ASCII, and the same everywhere: flags, TOML, columns. Help texts and error
+//! messages are made from this table, so that they cannot differ from what is checked.
+
+use crate::error::KingpinError;
+use std::fmt;
+use std::str::FromStr;
+
+/// The key of a parameter. Everything is SI.
+///
+/// The paper's `r` and `R` differ by case only; here they are [`Key::TurningRadius`] and [`Key::WheelRadius`].
+///
+/// ```
+/// use kingpin::Key;
+/// let key: Key = "J_Cz".parse()?;
+/// assert_eq!((key, key.unit()), (Key::JCz, "kg m^2"));
+/// # Ok::<(), kingpin::KingpinError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs)] // the table below says what each key means
+pub enum Key {
+    V,
+    L,
+    TurningRadius,
+    MW,
+    MC,
+    JWxi,
+    JWzeta,
+    JCz,
+    WheelRadius,
+    LC,
+    G,
+    MuS,
+    MuD,
+    FAz,
+    KU,
+    KQ,
+    CU,
+    CQ,
+    CPsi,
+    KPsi,
+    /// Both stiffnesses at once; reads as `k_q`.
+    K,
+    /// `1/r`, zero in rectilinear towing: the continuation passes through `r = inf` with it.
+    Curvature,
+}
+
+/// Number of parameters that a wheel stores; the keys after them stand for others.
+pub(crate) const STORED: usize = Key::K as usize;
+
+/// What a parameter may be: a closed interval, to which infinity may be added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Allowed {
+    /// Smallest value.
+    pub lowest: f64,
+    /// Largest finite value.
+    pub highest: f64,
+    /// Whether `inf` is allowed too.
+    pub infinite: bool,
+}
+
+impl Allowed {
+    const fn between(lowest: f64, highest: f64) -> Self {
+        Self { lowest, highest, infinite: false }
+    }
+    const fn or_infinite(lowest: f64, highest: f64) -> Self {
+        Self { lowest, highest, infinite: true }
+    }
+    /// Whether the value may be taken.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.lowest <= value && value <= self.highest) || (self.infinite && value == f64::INFINITY)
+    }
+}
+
+impl fmt::Display for Allowed {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let number = |value: f64| {
+            if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
+                value.to_string()
+            } else {
+                format!("{value:e}")
+            }
+        };
+        write!(formatter, "{} to {}", number(self.lowest), number(self.highest))?;
+        if self.infinite { write!(formatter, ", or inf") } else { Ok(()) }
+    }
+}
+
+struct Entry {
+    name: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    allowed: Allowed,
+    /// The paper's wheel at v = 4 m/s, l = 0.08 m, r = 1 m.
+    default: f64,
+}
+
+const LENGTH: Allowed = Allowed::between(1e-6, 1e3);
+const MASS: Allowed = Allowed::between(1e-9, 1e6);
+const INERTIA: Allowed = Allowed::between(1e-12, 1e6);
+const STIFFNESS: Allowed = Allowed::between(1e-3, 1e9);
+const DAMPING: Allowed = Allowed::between(0.0, 1e6);
+const FRICTION: Allowed = Allowed::between(0.0, 100.0);
+
+const fn entry(
+    name: &'static str,
+    symbol: &'static str,
+    unit: &'static str,
+    meaning: &'static str,
+    allowed: Allowed,
+    default: f64,
+) -> Entry {
+    Entry { name, symbol, unit, meaning, allowed, default }
+}
+
+/// In the order of the variants of [`Key`].
+#[rustfmt::skip]
+const TABLE: [Entry; STORED + 2] = [
+    entry("v", "v", "m/s", "towing speed", Allowed::between(0.0, 1e4), 4.0),
+    entry("l", "l", "m", "caster length, from king pin to wheel", LENGTH, 0.08),
+    entry("r", "r", "m", "turning radius of the towing point; inf is rectilinear towing, turning the other way is the mirror image",
+        Allowed::or_infinite(1e-3, 1e12), 1.0),
+    entry("m_w", "m_w", "kg", "mass of the wheel", MASS, 0.3519),
+    entry("m_c", "m_c", "kg", "mass of the caster", MASS, 0.0668),
+    entry("J_wxi", "J_wξ", "kg m^2", "moment of inertia of the wheel about its spin axis", INERTIA, 4.63e-5),
+    entry("J_wzeta", "J_wζ", "kg m^2", "moment of inertia of the wheel about the vertical", INERTIA, 2.38e-5),
+    entry("J_Cz", "J_Cz", "kg m^2", "moment of inertia of the caster about the vertical at its centre of gravity C", INERTIA, 3.48e-6),
+    entry("R", "R", "m", "radius of the wheel", LENGTH, 0.04),
+    entry("l_c", "l_c", "m", "distance from king pin to C, negative where C lies ahead of the king pin",
+        Allowed::between(-1e3, 1e3), 0.012),
+    entry("g", "g", "m/s^2", "acceleration of gravity", Allowed::between(0.0, 1e3), 9.81),
+    entry("mu_s", "μ_s", "1", "coefficient of static friction", FRICTION, 1.0),
+    entry("mu_d", "μ_d", "1", "coefficient of sliding friction, in nature at most mu_s; not in the paper", FRICTION, 0.8),
+    entry("F_Az", "F_Az", "N", "vertical force on the king pin, negative presses down", Allowed::between(-1e6, 1e6), 0.0),
+    entry("k_u", "k_u", "N/m", "longitudinal stiffness at the king pin; inf is lateral elasticity only",
+        Allowed::or_infinite(1e-3, 1e9), 100.0),
+    entry("k_q", "k_q", "N/m", "lateral stiffness at the king pin", STIFFNESS, 100.0),
+    entry("c_u", "c_u", "N s/m", "longitudinal damping at the king pin", DAMPING, 0.0),
+    entry("c_q", "c_q", "N s/m", "lateral damping at the king pin", DAMPING, 0.0),
+    entry("c_psi", "c_ψ", "N m s/rad", "rotational damping about the king pin", DAMPING, 0.0),
+    entry("k_psi", "k_ψ", "N m/rad", "rotational stiffness about the king pin", DAMPING, 0.0),
+    entry("k", "k", "N/m", "stiffness at the king pin, sets k_u and k_q", STIFFNESS, 100.0),
+    entry("curvature", "1/r", "1/m", "curvature of the towing path, sets r", Allowed::between(0.0, 1e3), 1.0),
+];
+
+impl Key {
+    /// Every key, in the order of the table.
+    pub const ALL: [Key; STORED + 2] = [
+        Key::V,
+        Key::L,
+        Key::TurningRadius,
+        Key::MW,
+        Key::MC,
+        Key::JWxi,
+        Key::JWzeta,
+        Key::JCz,
+        Key::WheelRadius,
+        Key::LC,
+        Key::G,
+        Key::MuS,
+        Key::MuD,
+        Key::FAz,
+        Key::KU,
+        Key::KQ,
+        Key::CU,
+        Key::CQ,
+        Key::CPsi,
+        Key::KPsi,
+        Key::K,
+        Key::Curvature,
+    ];
+
+    const fn entry(self) -> &'static Entry {
+        &TABLE[self as usize]
+    }
+    /// The key as it is written in files and flags.
+    pub const fn name(self) -> &'static str {
+        self.entry().name
+    }
+    /// The symbol as it is printed in axis labels.
+    pub const fn symbol(self) -> &'static str {
+        self.entry().symbol
+    }
+    /// The SI unit, `1` where there is none.
+    pub const fn unit(self) -> &'static str {
+        self.entry().unit
+    }
+    /// What the parameter is.
+    pub const fn meaning(self) -> &'static str {
+        self.entry().meaning
+    }
+    /// The values that the parameter may take.
+    pub const fn allowed(self) -> Allowed {
+        self.entry().allowed
+    }
+    /// The value in [`Wheel::default`](crate::Wheel).
+    pub const fn default_value(self) -> f64 {
+        self.entry().default
+    }
+    /// Whether the wheel stores the parameter itself; `k` and `curvature` stand for others.
+    pub const fn is_stored(self) -> bool {
+        (self as usize) < STORED
+    }
+    /// The stored keys that setting this one changes.
+    pub const fn sets(self) -> &'static [Key] {
+        const OWN: [[Key; 1]; STORED + 2] = {
+            let mut own = [[Key::V]; STORED + 2];
+            let mut index = 0;
+            while index < Key::ALL.len() {
+                own[index] = [Key::ALL[index]];
+                index += 1;
+            }
+            own
+        };
+        match self {
+            Key::K => &[Key::KU, Key::KQ],
+            Key::Curvature => &[Key::TurningRadius],
+            _ => &OWN[self as usize],
+        }
+    }
+
+    /// The key whose name is nearest to what was given: fewest edits when case and underscores are disregarded,
+    /// then fewest edits with them.
+    pub fn nearest(given: &str) -> Key {
+        let plain = |text: &str| text.to_lowercase().replace('_', "");
+        let distance =
+            |key: &Key| (edit_distance(&plain(given), &plain(key.name())), edit_distance(given, key.name()));
+        Self::ALL.into_iter().min_by_key(distance).unwrap_or(Key::V)
+    }
+
+    /// That no two of the keys set the same parameter.
+    pub(crate) fn check_independent(keys: &[Key]) -> Result<(), KingpinError> {
+        for (index, &second) in keys.iter().enumerate() {
+            for &first in &keys[..index] {
+                if first.sets().iter().any(|key| second.sets().contains(key)) {
+                    return Err(KingpinError::DependentKeys { first, second });
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
+impl FromStr for Key {
+    type Err = KingpinError;
+
+    fn from_str(given: &str) -> Result<Self, KingpinError> {
+        Self::ALL.into_iter().find(|key| key.name() == given).ok_or_else(|| KingpinError::UnknownKey {
+            given: given.to_owned(),
+            nearest: Self::nearest(given),
+            position: None,
+        })
+    }
+}
+
+/// Levenshtein's distance (1966): the fewest insertions, deletions and replacements of characters.
+fn edit_distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (line, from_character) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = line + 1;
+        for (column, &to_character) in to.iter().enumerate() {
+            let replaced = diagonal + usize::from(from_character != to_character);
+            diagonal = row[column + 1];
+            row[column + 1] = replaced.min(diagonal + 1).min(row[column] + 1);
+        }
+    }
+    row[to.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_is_in_the_order_of_the_keys() {
+        for (index, key) in Key::ALL.into_iter().enumerate() {
+            assert_eq!(key as usize, index);
+            assert_eq!(key.name().parse::<Key>().unwrap(), key);
+            assert!(key.allowed().contains(key.default_value()));
+        }
+    }
+
+    #[test]
+    fn the_nearest_key_is_found() {
+        for (given, nearest) in [
+            ("kq", Key::KQ),
+            ("J_xi", Key::JWxi),
+            ("lc", Key::LC),
+            ("Mus", Key::MuS),
+            ("vv", Key::V),
+            ("faz", Key::FAz),
+        ] {
+            assert_eq!(Key::nearest(given), nearest, "{given}");
+        }
+        assert_eq!(edit_distance("kitten", "sitting"), 3);
+    }
+}

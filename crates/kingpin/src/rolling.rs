@@ -1,0 +1,279 @@
+//! The rolling wheel as a vector field.
+//!
+//! The quasi-velocities are the forward speed `V` of the wheel and the absolute yaw rate `Omega` of the caster, in which
+//! the Appell-Gibbs equations become those of the Chaplygin sleigh on springs, without a singularity at `psi = pi/2`:
+//!
+//! ```text
+//! u'       =  V cos psi + l Omega sin psi - v + omega q
+//! q'       = -V sin psi + l Omega cos psi - omega u
+//! psi'     =  omega - Omega
+//! M V'     =  m Omega^2 + F1
+//! J Omega' = -m V Omega + l F2 - c_psi (Omega - omega) + k_psi psi
+//! ```
+//!
+//! with `omega = v/r`, `M = m_w + m_c + J_wxi/R^2`, `m = m_c (l - l_c)`, `J = J_Cz + J_wzeta + m (l - l_c)`. The force on
+//! the king pin, `F_x = -k_u u - c_u u'` and `F_y = -k_q q - c_q q'`, has the components `F1` along the caster, from
+//! wheel to king pin, and `F2` across it.
+
+use crate::error::KingpinError;
+use crate::parameters::Key;
+use crate::wheel::Wheel;
+use arclength::{Scalar, VectorField};
+use std::ops::Mul;
+
+/// Names of the states: longitudinal and lateral displacement of the king pin in m, caster angle in rad, forward
+/// speed of the wheel in m/s, absolute yaw rate of the caster in rad/s.
+pub const STATE_NAMES: [&str; 5] = ["u", "q", "psi", "V", "Omega"];
+
+/// What the equations need of the parameters that do not describe the towing. `C` is `f64`, or the scalar of the
+/// evaluation where one of these parameters is active.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Body<C> {
+    /// `l` in m.
+    pub caster_length: C,
+    /// `m = m_c (l - l_c)` in kg m.
+    pub static_moment: C,
+    /// `M = m_w + m_c + J_wxi/R^2` in kg.
+    pub rolling_mass: C,
+    /// `1/M`.
+    pub inverse_rolling_mass: C,
+    /// `J = J_Cz + J_wzeta + m_c (l - l_c)^2` in kg m^2.
+    pub yaw_inertia: C,
+    /// `1/J`.
+    pub inverse_yaw_inertia: C,
+    pub longitudinal_stiffness: C,
+    pub lateral_stiffness: C,
+    pub longitudinal_damping: C,
+    pub lateral_damping: C,
+    pub rotational_damping: C,
+    pub rotational_stiffness: C,
+}
+
+impl<C: Scalar> Body<C> {
+    #[inline(always)]
+    pub fn new(get: impl Fn(Key) -> C) -> Self {
+        let arm = get(Key::L) - get(Key::LC);
+        let static_moment = get(Key::MC) * arm;
+        let wheel_radius = get(Key::WheelRadius);
+        let rolling_mass = get(Key::MW) + get(Key::MC) + get(Key::JWxi) / (wheel_radius * wheel_radius);
+        let yaw_inertia = get(Key::JCz) + get(Key::JWzeta) + static_moment * arm;
+        Self {
+            caster_length: get(Key::L),
+            static_moment,
+            rolling_mass,
+            inverse_rolling_mass: rolling_mass.recip(),
+            yaw_inertia,
+            inverse_yaw_inertia: yaw_inertia.recip(),
+            longitudinal_stiffness: get(Key::KU),
+            lateral_stiffness: get(Key::KQ),
+            longitudinal_damping: get(Key::CU),
+            lateral_damping: get(Key::CQ),
+            rotational_damping: get(Key::CPsi),
+            rotational_stiffness: get(Key::KPsi),
+        }
+    }
+}
+
+/// The equations, once for all scalars; `about_king_pin` includes the rotational damper and spring, `damped` the dampers
+/// in both directions. Returns `F2`, the force on the king pin across the caster.
+#[inline(always)]
+pub(crate) fn right_hand_side<T, C>(
+    body: &Body<C>,
+    damped: bool,
+    about_king_pin: bool,
+    (v, omega): (T, T),
+    state: &[T],
+    derivative: &mut [T],
+) -> T
+where
+    T: Scalar + Mul<C, Output = T>,
+    C: Copy,
+{
+    let (u, q, psi, forward_speed, yaw_rate) = (state[0], state[1], state[2], state[3], state[4]);
+    let (sine, cosine) = psi.sin_cos();
+    let lateral_speed = yaw_rate * body.caster_length;
+    let u_rate = forward_speed * cosine + lateral_speed * sine - v + omega * q;
+    let q_rate = lateral_speed * cosine - forward_speed * sine - omega * u;
+
+    let mut force_x = -(u * body.longitudinal_stiffness);
+    let mut force_y = -(q * body.lateral_stiffness);
+    if damped {
+        force_x -= u_rate * body.longitudinal_damping;
+        force_y -= q_rate * body.lateral_damping;
+    }
+    let force_along = force_x * cosine - force_y * sine;
+    let force_across = force_x * sine + force_y * cosine;
+    let moving_static_moment = yaw_rate * body.static_moment;
+    let mut moment = force_across * body.caster_length - moving_static_moment * forward_speed;
+    if about_king_pin {
+        moment += psi * body.rotational_stiffness - (yaw_rate - omega) * body.rotational_damping;
+    }
+
+    derivative[0] = u_rate;
+    derivative[1] = q_rate;
+    derivative[2] = omega - yaw_rate;
+    derivative[3] = (moving_static_moment * yaw_rate + force_along) * body.inverse_rolling_mass;
+    derivative[4] = moment * body.inverse_yaw_inertia;
+    force_across
+}
+
+/// Where a quantity of the towing comes from.
+#[derive(Clone, Copy, Debug)]
+enum Towing {
+    /// Neither `r` nor `curvature` is active: the curvature is this number.
+    Fixed(f64),
+    /// `curvature` is the active parameter at this index.
+    Curvature(usize),
+    /// `r` is the active parameter at this index.
+    Radius(usize),
+}
+
+/// A rolling wheel with some of its parameters active: a vector field over the states [`STATE_NAMES`].
+///
+/// ```
+/// use arclength::VectorField;
+/// use kingpin::{Key, Wheel};
+/// let wheel = Wheel::default();
+/// let rolling = wheel.rolling(&[Key::V])?;
+/// let mut derivative = [0.0; 5];
+/// rolling.evaluate(&wheel.uniform_motion()?.state(), &[4.0], &mut derivative);
+/// assert!(derivative.iter().all(|component| component.abs() < 1e-12));
+/// # Ok::<(), kingpin::KingpinError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RollingWheel {
+    wheel: Wheel,
+    active: Vec<Key>,
+    /// Index of `v` among the active parameters.
+    speed: Option<usize>,
+    towing: Towing,
+    /// The body, where no active parameter changes it.
+    fixed_body: Option<Body<f64>>,
+    damped: bool,
+    about_king_pin: bool,
+}
+
+impl Wheel {
+    /// The wheel as a vector field in which the given keys are the parameters, in this order.
+    ///
+    /// # Errors
+    /// [`DependentKeys`](KingpinError::DependentKeys), [`InfiniteRadius`](KingpinError::InfiniteRadius),
+    /// [`AmbiguousStiffness`](KingpinError::AmbiguousStiffness) and, where `k_u = inf`,
+    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
+    pub fn rolling(&self, active: &[Key]) -> Result<RollingWheel, KingpinError> {
+        self.check_active(active)?;
+        if self.get(Key::KU).is_infinite() && !active.contains(&Key::K) {
+            return Err(KingpinError::LateralElasticityOnly);
+        }
+        let index = |key: Key| active.iter().position(|&candidate| candidate == key);
+        let towing = match (index(Key::Curvature), index(Key::TurningRadius)) {
+            (Some(curvature), _) => Towing::Curvature(curvature),
+            (None, Some(radius)) => Towing::Radius(radius),
+            (None, None) => Towing::Fixed(self.get(Key::Curvature)),
+        };
+        // These act on the towing, or on the ground only.
+        let beside_the_body =
+            [Key::V, Key::TurningRadius, Key::Curvature, Key::G, Key::MuS, Key::MuD, Key::FAz];
+        let fixed = active.iter().all(|key| beside_the_body.contains(key));
+        let acts = |key: Key| self.get(key) != 0.0 || active.contains(&key);
+        Ok(RollingWheel {
+            wheel: *self,
+            active: active.to_vec(),
+            speed: index(Key::V),
+            towing,
+            fixed_body: fixed.then(|| self.body()),
+            damped: acts(Key::CU) || acts(Key::CQ),
+            about_king_pin: acts(Key::CPsi) || acts(Key::KPsi),
+        })
+    }
+
+    /// That these keys may vary together, starting from this wheel.
+    pub(crate) fn check_active(&self, active: &[Key]) -> Result<(), KingpinError> {
+        Key::check_independent(active)?;
+        let (longitudinal, lateral) = (self.get(Key::KU), self.get(Key::KQ));
+        if active.contains(&Key::K) && longitudinal != lateral {
+            return Err(KingpinError::AmbiguousStiffness { longitudinal, lateral });
+        }
+        if active.contains(&Key::TurningRadius) && self.get(Key::TurningRadius).is_infinite() {
+            return Err(KingpinError::InfiniteRadius);
+        }
+        Ok(())
+    }
+
+    #[inline]
+    pub(crate) fn body(&self) -> Body<f64> {
+        Body::new(|key| self.get(key))
+    }
+}
+
+impl RollingWheel {
+    /// The wheel with the values that it was made with.
+    pub fn wheel(&self) -> &Wheel {
+        &self.wheel
+    }
+
+    /// The active keys, in the order of the parameters.
+    pub fn active(&self) -> &[Key] {
+        &self.active
+    }
+
+    /// The values of the active keys in [`wheel`](Self::wheel): the parameters to start from.
+    pub fn parameters(&self) -> Vec<f64> {
+        self.active.iter().map(|&key| self.wheel.get(key)).collect()
+    }
+
+    /// The wheel at other values of the active keys.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](KingpinError::OutOfRange).
+    pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+        self.active
+            .iter()
+            .zip(parameters)
+            .try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, value))
+    }
+
+    /// The value of a key where the parameters are these.
+    fn value<T: Scalar>(&self, key: Key, parameters: &[T]) -> T {
+        let sets = |active: &Key| *active == key || active.sets().contains(&key);
+        match self.active.iter().position(sets) {
+            Some(index) => parameters[index],
+            None => T::from(self.wheel.get(key)),
+        }
+    }
+}
+
+impl VectorField for RollingWheel {
+    fn state_names(&self) -> Vec<String> {
+        STATE_NAMES.map(str::to_owned).into()
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        self.active.iter().map(Key::to_string).collect()
+    }
+
+    fn dimension(&self) -> usize {
+        STATE_NAMES.len()
+    }
+
+    #[inline]
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let v = match self.speed {
+            Some(index) => parameters[index],
+            None => T::from(self.wheel.get(Key::V)),
+        };
+        let omega = match self.towing {
+            Towing::Fixed(curvature) => v * curvature,
+            Towing::Curvature(index) => v * parameters[index],
+            Towing::Radius(index) => v / parameters[index],
+        };
+        let (damped, about_king_pin) = (self.damped, self.about_king_pin);
+        match &self.fixed_body {
+            Some(body) => right_hand_side(body, damped, about_king_pin, (v, omega), state, derivative),
+            None => {
+                let body = Body::new(|key| self.value(key, parameters));
+                right_hand_side(&body, damped, about_king_pin, (v, omega), state, derivative)
+            }
+        };
+    }
+}

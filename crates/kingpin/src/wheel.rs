@@ -1,0 +1,176 @@
+//! A wheel: named, validated parameters, read from TOML and overridden one by one.
+
+use crate::error::{KingpinError, Position};
+use crate::parameters::{Key, STORED};
+use std::path::Path;
+use toml::de::{DeTable, DeValue};
+
+/// The parameters of a towed wheel, each within its allowed range ([`Key::allowed`]).
+///
+/// The default is the paper's wheel at v = 4 m/s, l = 0.08 m, r = 1 m, without vertical load (`F_Az = 0`) and
+/// without damping; its coefficient of sliding friction, which the paper does not give, is taken as 0.8.
+///
+/// ```
+/// use kingpin::{Key, Wheel};
+/// let wheel = Wheel::default().with(Key::TurningRadius, f64::INFINITY)?;
+/// assert_eq!(wheel.get(Key::Curvature), 0.0);
+/// assert!(wheel.with(Key::L, -1.0).is_err());
+/// # Ok::<(), kingpin::KingpinError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheel {
+    values: [f64; STORED],
+}
+
+impl Default for Wheel {
+    fn default() -> Self {
+        let mut values = [0.0; STORED];
+        for (value, key) in values.iter_mut().zip(Key::ALL) {
+            *value = key.default_value();
+        }
+        Self { values }
+    }
+}
+
+impl Wheel {
+    /// The value of a parameter, in SI units.
+    #[inline]
+    pub fn get(&self, key: Key) -> f64 {
+        match key {
+            Key::K => self.get(Key::KQ),
+            Key::Curvature => self.get(Key::TurningRadius).recip(),
+            stored => self.values[stored as usize],
+        }
+    }
+
+    /// Every stored parameter with its value, in the order of the table; `k` and `curvature` are not among them.
+    pub fn parameters(&self) -> impl Iterator<Item = (Key, f64)> {
+        Key::ALL.into_iter().zip(self.values)
+    }
+
+    /// Sets a parameter from text, as in `-s key=value`; `inf` is infinity.
+    ///
+    /// # Errors
+    /// [`UnknownKey`](KingpinError::UnknownKey), [`NotANumber`](KingpinError::NotANumber) and
+    /// [`OutOfRange`](KingpinError::OutOfRange); the wheel is left as it was.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), KingpinError> {
+        let key: Key = key.trim().parse()?;
+        self.set_value(key, parse_number(key, value)?)
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](KingpinError::OutOfRange); the wheel is left as it was.
+    pub fn set_value(&mut self, key: Key, value: f64) -> Result<(), KingpinError> {
+        if !key.allowed().contains(value) {
+            return Err(KingpinError::OutOfRange { key, value, position: None });
+        }
+        match key {
+            Key::Curvature => {
+                // A curvature below that of the largest radius is taken for straight.
+                let radius = value.recip();
+                let straight = radius > Key::TurningRadius.allowed().highest;
+                self.values[Key::TurningRadius as usize] = if straight { f64::INFINITY } else { radius };
+            }
+            _ => key.sets().iter().for_each(|&stored| self.values[stored as usize] = value),
+        }
+        Ok(())
+    }
+
+    /// The wheel with one parameter changed.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](KingpinError::OutOfRange).
+    pub fn with(mut self, key: Key, value: f64) -> Result<Self, KingpinError> {
+        self.set_value(key, value)?;
+        Ok(self)
+    }
+
+    /// Reads a wheel from TOML: `key = value` lines. Keys that are absent keep the value of the default wheel; `k` and
+    /// `curvature` are taken before the keys that they stand for.
+    ///
+    /// # Errors
+    /// What is wrong, with line and column.
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel};
+    /// let wheel = Wheel::from_toml("v = 3.5\nr = \"inf\"")?;
+    /// assert_eq!((wheel.get(Key::V), wheel.get(Key::TurningRadius)), (3.5, f64::INFINITY));
+    /// let error = Wheel::from_toml("v = 3.5\nk_v = 1").unwrap_err();
+    /// assert!(error.to_string().starts_with("line 2, column 1: unknown key `k_v`"));
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Self, KingpinError> {
+        let table = DeTable::parse(text)?;
+        let mut settings = Vec::new();
+        for (name, value) in table.get_ref() {
+            let place = |span: std::ops::Range<usize>| Position::of(span.start, text);
+            let key: Key =
+                name.get_ref().parse().map_err(|error: KingpinError| error.at(place(name.span())))?;
+            let number = match value.get_ref() {
+                DeValue::Float(number) => parse_number(key, &number.as_str().replace('_', "")),
+                DeValue::Integer(number) if number.radix() == 10 => {
+                    parse_number(key, &number.as_str().replace('_', ""))
+                }
+                DeValue::String(number) => parse_number(key, number),
+                _ => Err(KingpinError::NotANumber {
+                    key,
+                    given: text[value.span()].to_owned(),
+                    position: None,
+                }),
+            };
+            let position = place(value.span());
+            settings.push((key, number.map_err(|error| error.at(position))?, position));
+        }
+        settings.sort_by_key(|(key, ..)| key.is_stored());
+        let mut wheel = Self::default();
+        for (key, number, position) in settings {
+            wheel.set_value(key, number).map_err(|error| error.at(position))?;
+        }
+        Ok(wheel)
+    }
+
+    /// Reads a wheel from a TOML file; see [`from_toml`](Self::from_toml).
+    ///
+    /// # Errors
+    /// [`Unreadable`](KingpinError::Unreadable) or [`InFile`](KingpinError::InFile).
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, KingpinError> {
+        let path = path.as_ref();
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| KingpinError::Unreadable { path: path.to_owned(), source })?;
+        Self::from_toml(&text)
+            .map_err(|source| KingpinError::InFile { path: path.to_owned(), source: Box::new(source) })
+    }
+
+    /// Yaw rate `omega = v/r` of the towing frame in rad/s.
+    #[inline]
+    pub fn towing_yaw_rate(&self) -> f64 {
+        self.get(Key::V) / self.get(Key::TurningRadius)
+    }
+
+    /// Normal force on the wheel, `N = -F_Az + (m_w + m_c) g`, in N; negative where the load lifts the wheel.
+    #[inline]
+    pub fn normal_force(&self) -> f64 {
+        (self.get(Key::MW) + self.get(Key::MC)) * self.get(Key::G) - self.get(Key::FAz)
+    }
+
+    /// Whether any of the three dampers acts.
+    #[inline]
+    pub fn is_damped(&self) -> bool {
+        [Key::CU, Key::CQ, Key::CPsi].into_iter().any(|key| self.get(key) != 0.0)
+    }
+
+    /// Whether the wheel is of the paper's kind: equal stiffnesses, no dampers, no spring about the king pin.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        !self.is_damped() && self.get(Key::KPsi) == 0.0 && self.get(Key::KU) == self.get(Key::KQ)
+    }
+}
+
+fn parse_number(key: Key, given: &str) -> Result<f64, KingpinError> {
+    match given.trim().parse::<f64>() {
+        Ok(number) if !number.is_nan() => Ok(number),
+        _ => Err(KingpinError::NotANumber { key, given: given.trim().to_owned(), position: None }),
+    }
+}
