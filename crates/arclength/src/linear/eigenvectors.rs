@@ -1,0 +1,151 @@
+//! Right and left eigenvectors of a real matrix for a known eigenvalue, by inverse iteration.
+//!
+//! The matrix is balanced first, then `A - lambda I` is factorised with tiny pivots replaced (Wilkinson 1965, chapter 9;
+//! Ipsen 1997). Of a few iterates the one with the smallest residual counts: a second step spoils the vector of a
+//! defective eigenvalue, and improves all others.
+
+use num_complex::Complex64;
+
+use super::balancing::{largest_exponent, power_of_two, scale};
+use super::complex_lu::ComplexLu;
+use super::eigenvalues::{EigenvalueError, check};
+
+/// Steps of inverse iteration; two suffice for a simple eigenvalue accurate to rounding.
+pub(super) const MAXIMUM_STEPS: usize = 5;
+/// A residual below this, relative to the norm of the matrix, is rounding error.
+pub(super) const SMALL_RESIDUAL: f64 = f64::EPSILON;
+/// Components whose modulus is within this part of the largest count as largest; the first of them becomes real.
+const TIE: f64 = 1e-6;
+
+/// An eigenvector `q` with `<q, q> = 1` whose largest component is real and positive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Eigenvector {
+    /// The components.
+    pub vector: Vec<Complex64>,
+    /// Residual relative to the matrix, `|A q - lambda q| / |A|` (Frobenius norm), after balancing.
+    pub residual: f64,
+}
+
+/// The vector `q` with `A q = lambda q` for the column-major n-by-n `matrix`.
+///
+/// `eigenvalue` should be accurate to rounding, as from [`eigenvalues`](super::eigenvalues::eigenvalues). Of a multiple
+/// eigenvalue one vector is found. A real eigenvalue gives an exactly real vector. That `eigenvalue` is no eigenvalue
+/// shows in the residual.
+///
+/// # Errors
+/// [`EigenvalueError`] when the shape is wrong or a number is not finite.
+///
+/// # Examples
+/// ```
+/// use arclength::linear::eigenvectors::right_eigenvector;
+/// let q = right_eigenvector(&[2.0, 0.0, 1.0, 3.0], 2, 3.0.into())?;
+/// assert!((q.vector[0].re - 0.5_f64.sqrt()).abs() < 1e-15 && q.residual < 1e-15);
+/// # Ok::<(), arclength::linear::eigenvalues::EigenvalueError>(())
+/// ```
+pub fn right_eigenvector(
+    matrix: &[f64],
+    n: usize,
+    eigenvalue: Complex64,
+) -> Result<Eigenvector, EigenvalueError> {
+    check(matrix, n, 1)?;
+    check_eigenvalue(eigenvalue)?;
+    let mut balanced = matrix.to_vec();
+    let exponent = largest_exponent(matrix).unwrap_or(0);
+    let (a, b) = power_of_two(-exponent);
+    balanced.iter_mut().for_each(|x| *x = *x * a * b);
+    let eigenvalue = eigenvalue * a * b;
+    let mut scales = vec![1.0; n];
+    scale(&mut balanced, n, 0, n, &mut scales);
+    let norm = balanced.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut shifted: Vec<Complex64> = balanced.iter().map(|x| Complex64::from(*x)).collect();
+    (0..n).for_each(|i| shifted[i + n * i] -= eigenvalue);
+    let size = norm.max(eigenvalue.norm()).max(f64::MIN_POSITIVE);
+    let lu = ComplexLu::of(n, shifted.clone(), f64::EPSILON * size);
+
+    let mut iterate = starting_vector(n);
+    let mut best = (f64::INFINITY, iterate.clone());
+    for _ in 0..MAXIMUM_STEPS {
+        lu.solve(&mut iterate);
+        normalize(&mut iterate);
+        let mut square = 0.0;
+        for row in 0..n {
+            let entry: Complex64 = (0..n).map(|column| shifted[row + n * column] * iterate[column]).sum();
+            square += entry.norm_sqr();
+        }
+        let residual = square.sqrt() / size;
+        if residual < best.0 {
+            best = (residual, iterate.clone());
+        } else {
+            break;
+        }
+        if residual <= SMALL_RESIDUAL {
+            break;
+        }
+    }
+    let (residual, mut vector) = best;
+    vector.iter_mut().zip(&scales).for_each(|(x, scale)| *x *= scale);
+    normalize(&mut vector);
+    fix_phase(&mut vector);
+    Ok(Eigenvector { vector, residual })
+}
+
+/// The vector `p` with `p^H A = lambda p^H`, that is `A^T p = conj(lambda) p`, normalised as the right one.
+///
+/// Kuznetsov's adjoint eigenvector (`<p, q> = sum of conj(p_i) q_i = 1`) is this one divided by `conj(<p, q>)`.
+///
+/// # Errors
+/// As [`right_eigenvector`].
+pub fn left_eigenvector(
+    matrix: &[f64],
+    n: usize,
+    eigenvalue: Complex64,
+) -> Result<Eigenvector, EigenvalueError> {
+    check(matrix, n, 1)?;
+    let transposed: Vec<f64> = (0..n * n).map(|k| matrix[k / n + n * (k % n)]).collect();
+    right_eigenvector(&transposed, n, eigenvalue.conj())
+}
+
+pub(super) fn check_eigenvalue(eigenvalue: Complex64) -> Result<(), EigenvalueError> {
+    if eigenvalue.is_finite() {
+        Ok(())
+    } else {
+        Err(EigenvalueError::EigenvalueNotFinite { re: eigenvalue.re, im: eigenvalue.im })
+    }
+}
+
+/// A real vector without symmetry, so that it is orthogonal to an eigenvector by bad luck only.
+pub(super) fn starting_vector(length: usize) -> Vec<Complex64> {
+    // Multiples of the golden ratio modulo one are spread evenly.
+    let golden = 0.5 * (5f64.sqrt() - 1.0);
+    (1..=length).map(|k| Complex64::from(0.5 + (k as f64 * golden).fract())).collect()
+}
+
+/// Scales to Euclidean norm one, whatever the size of the components.
+pub(super) fn normalize(vector: &mut [Complex64]) {
+    let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.re.abs()).max(x.im.abs()));
+    if largest == 0.0 {
+        return;
+    }
+    vector.iter_mut().for_each(|x| *x = Complex64::new(x.re / largest, x.im / largest));
+    let norm = vector.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt();
+    vector.iter_mut().for_each(|x| *x /= norm);
+}
+
+/// The number of modulus one that makes the largest component real and positive.
+pub(super) fn phase(vector: &[Complex64]) -> Complex64 {
+    let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
+    vector
+        .iter()
+        .find(|x| x.norm() >= (1.0 - TIE) * largest && largest > 0.0)
+        .map_or(Complex64::ONE, |x| if x.im == 0.0 { x.re.signum().into() } else { x.conj() / x.norm() })
+}
+
+fn fix_phase(vector: &mut [Complex64]) {
+    let phase = phase(vector);
+    vector.iter_mut().for_each(|x| *x *= phase);
+    // The rotated component is real up to rounding; make it exactly so.
+    let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
+    if let Some(x) = vector.iter_mut().find(|x| x.norm() >= (1.0 - TIE) * largest) {
+        x.im = 0.0;
+    }
+}
