@@ -1,0 +1,7 @@
+//! From expressions to a graph of operations without names.
+
+mod graph;
+mod lower;
+
+pub(crate) use graph::{Graph, NodeId, Operation};
+pub(crate) use lower::{FunctionDefinition, Lowering, QuantityDefinition, Scope, Symbol, Symbols};

@@ -1,0 +1,183 @@
+//! Collects the statements of a model into one table of names.
+
+use crate::assignments::{Assignment, assignments};
+use crate::compile::{FunctionDefinition, Lowering, QuantityDefinition, Symbol, Symbols};
+use crate::error::{OdeError, Span, Warning, nearest};
+use crate::expression::{Expression, parse_expression, parse_number, reserved};
+use crate::options::Options;
+use crate::source::Text;
+use crate::statement::{Name, Statement, classify};
+use std::collections::HashMap;
+
+/// A name with the number it is given.
+#[derive(Debug)]
+pub(crate) struct Value {
+    pub name: Name,
+    pub value: f64,
+}
+
+/// `set name {...}` with its values not yet looked up.
+#[derive(Debug)]
+pub(crate) struct SetDefinition {
+    pub name: Name,
+    pub entries: Vec<(Name, String, Span)>,
+}
+
+/// Everything that a model declares.
+#[derive(Debug, Default)]
+pub(crate) struct Declarations {
+    pub symbols: Symbols,
+    pub equations: Vec<Expression>,
+    pub parameters: Vec<Value>,
+    pub auxiliaries: Vec<QuantityDefinition>,
+    pub initial_values: Vec<Value>,
+    pub initial_formulas: Vec<QuantityDefinition>,
+    pub sets: Vec<SetDefinition>,
+    pub options: Options,
+    pub warnings: Vec<Warning>,
+    declared: HashMap<String, Span>,
+}
+
+impl Declarations {
+    /// Reads all lines, which are already expanded.
+    pub fn read(lines: &[Text]) -> Result<Self, OdeError> {
+        let mut declarations = Self::default();
+        for line in lines {
+            if line.skip_blanks(0) < line.len() {
+                declarations.statement(line, classify(line)?)?;
+            }
+        }
+        Ok(declarations)
+    }
+
+    fn statement(&mut self, line: &Text, statement: Statement) -> Result<(), OdeError> {
+        match statement {
+            Statement::Equation(name, right) => {
+                self.declare(&name, Symbol::State(self.symbols.states.len()))?;
+                self.symbols.states.push(name);
+                let expression = self.expression(line, right)?;
+                self.equations.push(expression);
+            }
+            Statement::Fixed(name, right) => {
+                self.declare(&name, Symbol::Fixed(self.symbols.fixed.len()))?;
+                let expression = self.expression(line, right)?;
+                self.symbols.fixed.push(QuantityDefinition { name, expression });
+            }
+            Statement::Derived(name, right) => {
+                self.declare(&name, Symbol::Derived(self.symbols.derived.len()))?;
+                let expression = self.expression(line, right)?;
+                self.symbols.derived.push(QuantityDefinition { name, expression });
+            }
+            Statement::Function(name, arguments, right) => {
+                self.declare(&name, Symbol::Function(self.symbols.functions.len()))?;
+                let expression = self.expression(line, right)?;
+                self.symbols.functions.push(FunctionDefinition { name, arguments, expression });
+            }
+            Statement::Auxiliary(name, right) => {
+                let expression = self.expression(line, right)?;
+                self.auxiliaries.push(QuantityDefinition { name, expression });
+            }
+            Statement::InitialFormula(name, right) => {
+                let expression = self.expression(line, right)?;
+                self.initial_formulas.push(QuantityDefinition { name, expression });
+            }
+            Statement::Parameters(rest) => {
+                for assignment in assignments(line, rest, line.len())? {
+                    let value = self.value(line, &assignment)?;
+                    let symbol = Symbol::Parameter(self.parameters.len());
+                    self.declare(&assignment.name, symbol)?;
+                    self.symbols.constants.push((assignment.name.key(), symbol));
+                    self.parameters.push(Value { name: assignment.name, value });
+                }
+            }
+            Statement::Numbers(rest) => {
+                for assignment in assignments(line, rest, line.len())? {
+                    let symbol = Symbol::Number(self.value(line, &assignment)?);
+                    self.declare(&assignment.name, symbol)?;
+                    self.symbols.constants.push((assignment.name.key(), symbol));
+                }
+            }
+            Statement::Initial(rest) => {
+                for assignment in assignments(line, rest, line.len())? {
+                    let value = self.value(line, &assignment)?;
+                    self.initial_values.push(Value { name: assignment.name, value });
+                }
+            }
+            Statement::Set(name, start, end) => {
+                let entries = assignments(line, start, end)?
+                    .into_iter()
+                    .map(|assignment| {
+                        let value = assignment.value(line).into_owned();
+                        let span = line.span(assignment.value_start, assignment.value_end);
+                        (assignment.name, value, span)
+                    })
+                    .collect();
+                self.sets.push(SetDefinition { name, entries });
+            }
+            Statement::Options(rest) => self.options.read(line, rest, &mut self.warnings)?,
+            Statement::Ignored(span, message) => self.warnings.push(Warning::new(span, message)),
+        }
+        Ok(())
+    }
+
+    fn expression(&mut self, line: &Text, start: usize) -> Result<Expression, OdeError> {
+        parse_expression(line, start, line.len(), &mut self.warnings)
+    }
+
+    /// The number that an assignment gives. XPPAUT reads it up to the first character that does not
+    /// belong to a number; here `1/3` is a third, with a warning.
+    fn value(&mut self, line: &Text, assignment: &Assignment) -> Result<f64, OdeError> {
+        if !assignment.has_value() {
+            let message = format!("`{}` is given no value: it is 0", assignment.name.text);
+            self.warnings.push(Warning::new(assignment.name.span, message));
+            return Ok(0.0);
+        }
+        let text = assignment.value(line);
+        if let Some(number) = parse_number(&text) {
+            return Ok(number);
+        }
+        let (start, end) = (assignment.value_start, assignment.value_end);
+        let expression = parse_expression(line, start, end, &mut self.warnings)?;
+        let value = Lowering::new(&self.symbols).lower_constant(&expression, "the value")?;
+        self.warnings.push(Warning::new(
+            line.span(start, end),
+            format!("`{text}` is a formula where XPPAUT reads only the leading number; it is taken as {value}"),
+        ));
+        Ok(value)
+    }
+
+    fn declare(&mut self, name: &Name, symbol: Symbol) -> Result<(), OdeError> {
+        let key = name.key();
+        let taken =
+            |as_what: String| OdeError::NameTaken { place: name.span.into(), name: name.text.clone(), as_what };
+        if !name.text.chars().all(crate::source::is_identifier_part)
+            || !name.text.starts_with(crate::source::is_identifier_start)
+        {
+            let message = format!("`{}` is not a name; names hold letters, digits and _", name.text);
+            return Err(OdeError::syntax(name.span, message));
+        }
+        if reserved(&key) {
+            return Err(taken("a word of the language".into()));
+        }
+        if let Some(earlier) = self.symbols.names.get(&key) {
+            let line = self.declared.get(&key).map_or(0, |span| span.line);
+            return Err(taken(format!("{} (line {line})", earlier.kind())));
+        }
+        self.declared.insert(key.clone(), name.span);
+        self.symbols.names.insert(key, symbol);
+        Ok(())
+    }
+
+    /// Index of the state of that name.
+    pub fn state(&self, name: &Name) -> Result<usize, OdeError> {
+        match self.symbols.names.get(&name.key()) {
+            Some(&Symbol::State(index)) => Ok(index),
+            _ => Err(OdeError::UnknownName {
+                place: name.span.into(),
+                kind: "state",
+                name: name.text.clone(),
+                nearest: nearest(&name.text, self.symbols.states.iter().map(|state| state.text.as_str())),
+            }),
+        }
+    }
+}

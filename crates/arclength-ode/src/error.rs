@@ -1,0 +1,266 @@
+//! What can be wrong with a model, and where.
+
+use std::fmt;
+
+/// Where in the source something is: line and column count from 1, in characters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column of the first character, from 1.
+    pub column: usize,
+    /// Number of characters meant, at least 1.
+    pub length: usize,
+    /// The whole line of the source.
+    pub source_line: String,
+}
+
+impl Place {
+    /// The line of the source with carets under the place, as compilers print it.
+    pub fn snippet(&self) -> String {
+        let number = self.line.to_string();
+        let margin = " ".repeat(number.len());
+        let shown: String = self.source_line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let room = shown.chars().count().saturating_sub(self.column - 1).max(1);
+        let indent = " ".repeat(self.column - 1);
+        let carets = "^".repeat(self.length.clamp(1, room));
+        format!("{margin} |\n{number} | {shown}\n{margin} | {indent}{carets}")
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "line {}, column {}", self.line, self.column)
+    }
+}
+
+/// Why a model could not be read.
+///
+/// The message names line, column and the offending text; [`OdeError::snippet`] shows the line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum OdeError {
+    /// Valid XPPAUT that is not a smooth system of ordinary differential equations.
+    #[error("{place}: {feature} not supported; {remedy}")]
+    Unsupported {
+        /// Where it is.
+        place: Place,
+        /// What it is, with its verb: "delays are", "the table `w` is".
+        feature: String,
+        /// What to do about it.
+        remedy: String,
+    },
+    /// Text that does not follow the grammar.
+    #[error("{place}: {message}")]
+    Syntax {
+        /// Where it is.
+        place: Place,
+        /// What was found and what was expected.
+        message: String,
+    },
+    /// A name that is declared nowhere.
+    #[error("{place}: unknown {kind} `{name}`{}", suggest(nearest))]
+    UnknownName {
+        /// Where it is.
+        place: Place,
+        /// What it should name: "name", "function", "state", "directive".
+        kind: &'static str,
+        /// The name as written.
+        name: String,
+        /// The known name that is spelled most like it.
+        nearest: Option<String>,
+    },
+    /// A name declared twice, or one that XPPAUT reserves.
+    #[error("{place}: the name `{name}` is already {as_what}")]
+    NameTaken {
+        /// Where the second declaration is.
+        place: Place,
+        /// The name as written.
+        name: String,
+        /// What it already is.
+        as_what: String,
+    },
+    /// A quantity or function that is defined through itself.
+    #[error("{place}: `{name}` is defined through itself")]
+    Circular {
+        /// Where the circle closes.
+        place: Place,
+        /// The quantity or function.
+        name: String,
+    },
+    /// A value that must be known when the model is read but depends on states, parameters or time.
+    #[error("{place}: {what} must be a constant{}", because(variable))]
+    NotConstant {
+        /// Where it is.
+        place: Place,
+        /// What must be constant.
+        what: String,
+        /// What makes it vary, where known.
+        variable: Option<String>,
+    },
+    /// A function called with the wrong number of arguments.
+    #[error("{place}: `{function}` takes {expected} argument{}, not {found}", plural(*expected))]
+    WrongNumberOfArguments {
+        /// Where the call is.
+        place: Place,
+        /// The function.
+        function: String,
+        /// Number of arguments it takes.
+        expected: usize,
+        /// Number of arguments it was given.
+        found: usize,
+    },
+    /// A model that exceeds a documented limit.
+    #[error("{place}: {what}; the limit is {limit}")]
+    TooLarge {
+        /// Where the limit was passed.
+        place: Place,
+        /// What is too large.
+        what: String,
+        /// The limit.
+        limit: usize,
+    },
+    /// A text without a single differential equation.
+    #[error("the model has no differential equation; write one as x'=..., or dx/dt=...")]
+    NoEquations,
+}
+
+impl OdeError {
+    /// Where the error is; `None` when it concerns the whole text.
+    pub fn place(&self) -> Option<&Place> {
+        match self {
+            Self::Unsupported { place, .. }
+            | Self::Syntax { place, .. }
+            | Self::UnknownName { place, .. }
+            | Self::NameTaken { place, .. }
+            | Self::Circular { place, .. }
+            | Self::NotConstant { place, .. }
+            | Self::WrongNumberOfArguments { place, .. }
+            | Self::TooLarge { place, .. } => Some(place),
+            Self::NoEquations => None,
+        }
+    }
+
+    /// The message, and below it the line of the source with carets under the offending text.
+    ///
+    /// ```
+    /// let error = arclength_ode::Model::parse("x' = -gama*x\npar gamma=1\n").unwrap_err();
+    /// assert_eq!(
+    ///     error.snippet(),
+    ///     "line 1, column 7: unknown name `gama`; did you mean `gamma`?\n  \
+    ///      |\n1 | x' = -gama*x\n  |       ^^^^"
+    /// );
+    /// ```
+    pub fn snippet(&self) -> String {
+        match self.place() {
+            Some(place) => format!("{self}\n{}", place.snippet()),
+            None => self.to_string(),
+        }
+    }
+
+    fn place_mut(&mut self) -> Option<&mut Place> {
+        match self {
+            Self::Unsupported { place, .. }
+            | Self::Syntax { place, .. }
+            | Self::UnknownName { place, .. }
+            | Self::NameTaken { place, .. }
+            | Self::Circular { place, .. }
+            | Self::NotConstant { place, .. }
+            | Self::WrongNumberOfArguments { place, .. }
+            | Self::TooLarge { place, .. } => Some(place),
+            Self::NoEquations => None,
+        }
+    }
+
+    /// Fills in the text of the source line, which the parser does not carry along.
+    pub(crate) fn with_source(mut self, source: &str) -> Self {
+        if let Some(place) = self.place_mut() {
+            place.fill(source);
+        }
+        self
+    }
+
+    pub(crate) fn unsupported(span: Span, feature: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Unsupported { place: span.into(), feature: feature.into(), remedy: remedy.into() }
+    }
+
+    pub(crate) fn syntax(span: Span, message: impl Into<String>) -> Self {
+        Self::Syntax { place: span.into(), message: message.into() }
+    }
+}
+
+/// Something that was read, but perhaps not as its author meant, or that has no meaning here.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// Where it is.
+    pub place: Place,
+    /// What is noticed and what was done.
+    pub message: String,
+}
+
+impl Warning {
+    pub(crate) fn new(span: Span, message: impl Into<String>) -> Self {
+        Self { place: span.into(), message: message.into() }
+    }
+
+    pub(crate) fn with_source(mut self, source: &str) -> Self {
+        self.place.fill(source);
+        self
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {}", self.place, self.message)
+    }
+}
+
+impl Place {
+    pub(crate) fn fill(&mut self, source: &str) {
+        self.source_line = crate::source::physical_lines(source).nth(self.line - 1).unwrap_or("").to_owned();
+    }
+}
+
+/// A place without the text of its line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Span {
+    pub line: u32,
+    pub column: u32,
+    pub length: u32,
+}
+
+impl From<Span> for Place {
+    fn from(span: Span) -> Self {
+        Self {
+            line: span.line as usize,
+            column: span.column as usize,
+            length: span.length as usize,
+            source_line: String::new(),
+        }
+    }
+}
+
+/// The candidate spelled most like `name`, if any is close enough to be a slip of the finger.
+pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    /// Jaro-Winkler similarity below which a suggestion would confuse more than help.
+    const CLOSE: f64 = 0.75;
+    let name = name.to_lowercase();
+    candidates
+        .into_iter()
+        .map(|candidate| (strsim::jaro_winkler(&name, &candidate.to_lowercase()), candidate))
+        .filter(|(similarity, _)| *similarity >= CLOSE)
+        .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)))
+        .map(|(_, candidate)| candidate.to_owned())
+}
+
+fn suggest(nearest: &Option<String>) -> String {
+    nearest.as_ref().map(|name| format!("; did you mean `{name}`?")).unwrap_or_default()
+}
+
+fn because(variable: &Option<String>) -> String {
+    variable.as_ref().map(|name| format!(", but it depends on `{name}`")).unwrap_or_default()
+}
+
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}

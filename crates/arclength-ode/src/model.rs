@@ -1,0 +1,325 @@
+//! A model: what the text declares, ready to evaluate.
+
+use crate::compile::{Lowering, Scope, Symbol};
+use crate::declarations::{Declarations, SetDefinition};
+use crate::error::{OdeError, Place, Warning};
+use crate::expand::expanded_lines;
+use crate::expression::parse_number;
+use crate::options::{OptionEntry, Options};
+use crate::source::decode;
+use crate::tape::{Tape, schedule};
+use arclength::{Scalar, VectorField};
+
+/// A model read from a `.ode` text.
+///
+/// Names keep their first spelling and are looked up without regard to case, as in XPPAUT.
+#[derive(Clone, Debug)]
+pub struct Model {
+    source: String,
+    states: Vec<String>,
+    parameters: Vec<String>,
+    defaults: Vec<f64>,
+    auxiliaries: Vec<String>,
+    derived: Vec<String>,
+    functions: Vec<String>,
+    numbers: Vec<(String, f64)>,
+    sets: Vec<NamedSet>,
+    options: Options,
+    warnings: Vec<Warning>,
+    time: Option<Place>,
+    field: Tape,
+    auxiliary: Tape,
+    derivation: Tape,
+    initial: Tape,
+}
+
+/// A named set of values, `set name {x=1,a=2,total=100}`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedSet {
+    /// Name as written.
+    pub name: String,
+    /// Initial values: index of the state, value.
+    pub states: Vec<(usize, f64)>,
+    /// Parameter values: index of the parameter, value.
+    pub parameters: Vec<(usize, f64)>,
+    /// What is neither a state nor a parameter.
+    pub options: Vec<OptionEntry>,
+}
+
+impl Model {
+    /// Reads a model from text.
+    ///
+    /// # Errors
+    ///
+    /// [`OdeError`] where the text is not a model, or not one that is a smooth system of ordinary
+    /// differential equations.
+    pub fn parse(source: &str) -> Result<Self, OdeError> {
+        let source = source.strip_prefix('\u{feff}').unwrap_or(source);
+        read(source).map_err(|error| error.with_source(source))
+    }
+
+    /// Reads a model from the bytes of a file, in UTF-8 or else in Latin-1.
+    ///
+    /// # Errors
+    ///
+    /// As [`Model::parse`].
+    pub fn parse_bytes(bytes: &[u8]) -> Result<Self, OdeError> {
+        Self::parse(&decode(bytes))
+    }
+
+    /// The text from which the model was read; [`Model::parse`] of it gives the same model.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// What was read but deserves a look, in the order of the text.
+    pub fn warnings(&self) -> &[Warning] {
+        &self.warnings
+    }
+
+    /// Names of the states, borrowed; see also [`VectorField::state_names`].
+    pub fn states(&self) -> &[String] {
+        &self.states
+    }
+
+    /// Names of the parameters, borrowed; see also [`VectorField::parameter_names`].
+    pub fn parameters(&self) -> &[String] {
+        &self.parameters
+    }
+
+    /// Default values of the parameters, in their order.
+    pub fn default_parameters(&self) -> &[f64] {
+        &self.defaults
+    }
+
+    /// Index of the state of that name, whatever its case.
+    pub fn state_index(&self, name: &str) -> Option<usize> {
+        position(&self.states, name)
+    }
+
+    /// Index of the parameter of that name, whatever its case.
+    pub fn parameter_index(&self, name: &str) -> Option<usize> {
+        position(&self.parameters, name)
+    }
+
+    /// Names and values of the constants declared with `number`.
+    pub fn numbers(&self) -> &[(String, f64)] {
+        &self.numbers
+    }
+
+    /// The functions, as they are called: `f(x,y)`.
+    pub fn functions(&self) -> &[String] {
+        &self.functions
+    }
+
+    /// The named sets.
+    pub fn sets(&self) -> &[NamedSet] {
+        &self.sets
+    }
+
+    /// The named set of that name, whatever its case.
+    pub fn set(&self, name: &str) -> Option<&NamedSet> {
+        self.sets.iter().find(|set| set.name.eq_ignore_ascii_case(name))
+    }
+
+    /// The options of the lines `@`.
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The initial state at given parameters; states without an initial value start at 0.
+    pub fn initial_state(&self, parameters: &[f64]) -> Vec<f64> {
+        let mut state = vec![0.0; self.states.len()];
+        self.initial.evaluate(0.0, &[], parameters, &mut state);
+        state
+    }
+
+    /// Whether the field does not depend on the time.
+    pub fn is_autonomous(&self) -> bool {
+        self.time.is_none()
+    }
+
+    /// The first place where the field uses the time `t`.
+    pub fn time_dependence(&self) -> Option<&Place> {
+        self.time.as_ref()
+    }
+
+    /// Writes the right-hand side at a time into `derivative`.
+    ///
+    /// [`VectorField::evaluate`] is this at time 0.
+    pub fn evaluate_at<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        self.field.evaluate(time, state, parameters, derivative);
+    }
+
+    /// Names of the auxiliary quantities (`aux`).
+    pub fn auxiliary_names(&self) -> &[String] {
+        &self.auxiliaries
+    }
+
+    /// Writes the auxiliary quantities into `values`, in the order of [`Model::auxiliary_names`].
+    pub fn evaluate_auxiliary<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], values: &mut [T]) {
+        self.auxiliary.evaluate(time, state, parameters, values);
+    }
+
+    /// Names of the derived parameters (`!name=...`).
+    pub fn derived_names(&self) -> &[String] {
+        &self.derived
+    }
+
+    /// Writes the derived parameters into `values`, in the order of [`Model::derived_names`].
+    pub fn evaluate_derived<T: Scalar>(&self, parameters: &[T], values: &mut [T]) {
+        self.derivation.evaluate(T::zero(), &[], parameters, values);
+    }
+
+    /// Number of instructions that one evaluation of the field takes.
+    pub fn instruction_count(&self) -> usize {
+        self.field.instructions()
+    }
+
+    /// Number of registers that one evaluation of the field uses.
+    pub fn register_count(&self) -> usize {
+        self.field.registers()
+    }
+}
+
+impl VectorField for Model {
+    fn state_names(&self) -> Vec<String> {
+        self.states.clone()
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        self.parameters.clone()
+    }
+
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        self.field.evaluate(T::zero(), state, parameters, derivative);
+    }
+
+    fn dimension(&self) -> usize {
+        self.states.len()
+    }
+}
+
+fn position(names: &[String], name: &str) -> Option<usize> {
+    names.iter().position(|candidate| candidate.eq_ignore_ascii_case(name))
+}
+
+fn read(source: &str) -> Result<Model, OdeError> {
+    let lines = expanded_lines(source)?;
+    let mut declarations = Declarations::read(&lines)?;
+    if declarations.equations.is_empty() {
+        return Err(OdeError::NoEquations);
+    }
+    let states = declarations.equations.len();
+    let parameters = declarations.parameters.len();
+
+    let mut lowering = Lowering::new(&declarations.symbols);
+    // In the order of the text, so that a chain of quantities is no deep recursion.
+    for index in 0..declarations.symbols.derived.len() {
+        lowering.derived_parameter(index)?;
+    }
+    for index in 0..declarations.symbols.fixed.len() {
+        lowering.fixed_quantity(index)?;
+    }
+    let field = declarations
+        .equations
+        .iter()
+        .map(|equation| lowering.lower(equation, Scope::Field))
+        .collect::<Result<Vec<_>, _>>()?;
+    let auxiliary = declarations
+        .auxiliaries
+        .iter()
+        .map(|definition| lowering.lower(&definition.expression, Scope::Field))
+        .collect::<Result<Vec<_>, _>>()?;
+    let derivation = (0..declarations.symbols.derived.len())
+        .map(|index| lowering.derived_parameter(index))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut initial = vec![lowering.graph.constant(0.0); states];
+    for value in &declarations.initial_values {
+        initial[declarations.state(&value.name)?] = lowering.graph.constant(value.value);
+    }
+    for formula in &declarations.initial_formulas {
+        initial[declarations.state(&formula.name)?] = lowering.lower(&formula.expression, Scope::Initial)?;
+    }
+
+    let graph = &lowering.graph;
+    let field = schedule(graph, &field, states, parameters);
+    let time = if field.uses_time() { lowering.time.map(|span| filled(span.into(), source)) } else { None };
+    let auxiliary = schedule(graph, &auxiliary, states, parameters);
+    let derivation = schedule(graph, &derivation, 0, parameters);
+    let initial = schedule(graph, &initial, 0, parameters);
+
+    let mut warnings = std::mem::take(&mut declarations.warnings);
+    warnings.append(&mut lowering.warnings);
+    drop(lowering);
+    let sets = std::mem::take(&mut declarations.sets)
+        .iter()
+        .map(|set| named_set(set, &declarations))
+        .collect::<Result<_, _>>()?;
+    let mut options = declarations.options;
+    for entry in &mut options.entries {
+        entry.place = filled(entry.place.clone(), source);
+    }
+    let mut warnings: Vec<Warning> =
+        warnings.into_iter().map(|warning| warning.with_source(source)).collect();
+    warnings.sort_by_key(|warning| (warning.place.line, warning.place.column));
+    warnings.dedup();
+
+    let symbols = declarations.symbols;
+    let numbers = symbols
+        .constants
+        .iter()
+        .filter_map(|(name, symbol)| match symbol {
+            Symbol::Number(value) => Some((name.clone(), *value)),
+            _ => None,
+        })
+        .collect();
+    Ok(Model {
+        source: source.to_owned(),
+        states: symbols.states.into_iter().map(|name| name.text).collect(),
+        defaults: declarations.parameters.iter().map(|parameter| parameter.value).collect(),
+        parameters: declarations.parameters.into_iter().map(|parameter| parameter.name.text).collect(),
+        auxiliaries: declarations.auxiliaries.into_iter().map(|definition| definition.name.text).collect(),
+        derived: symbols.derived.into_iter().map(|definition| definition.name.text).collect(),
+        functions: symbols.functions.iter().map(|function| function.signature()).collect(),
+        numbers,
+        sets,
+        options,
+        warnings,
+        time,
+        field,
+        auxiliary,
+        derivation,
+        initial,
+    })
+}
+
+fn filled(mut place: Place, source: &str) -> Place {
+    place.fill(source);
+    place
+}
+
+fn named_set(definition: &SetDefinition, declarations: &Declarations) -> Result<NamedSet, OdeError> {
+    let mut set = NamedSet {
+        name: definition.name.text.clone(),
+        states: Vec::new(),
+        parameters: Vec::new(),
+        options: Vec::new(),
+    };
+    for (name, value, span) in &definition.entries {
+        let number = || {
+            parse_number(value)
+                .ok_or_else(|| OdeError::syntax(*span, format!("expected a number, found `{value}`")))
+        };
+        match declarations.symbols.names.get(&name.key()) {
+            Some(&Symbol::State(index)) => set.states.push((index, number()?)),
+            Some(&Symbol::Parameter(index)) => set.parameters.push((index, number()?)),
+            _ => set.options.push(OptionEntry {
+                name: name.key(),
+                value: value.clone(),
+                place: name.span.into(),
+            }),
+        }
+    }
+    Ok(set)
+}
