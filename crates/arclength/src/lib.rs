@@ -5,6 +5,7 @@
 
 pub mod differentiation;
 pub mod field;
+pub mod integration;
 
 pub use differentiation::{Dual, Scalar};
 pub use field::VectorField;

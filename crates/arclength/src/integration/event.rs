@@ -1,0 +1,209 @@
+//! Event functions and their zeros along a solution.
+
+use super::chebyshev::ChebyshevPartition;
+use super::{Stepper, System};
+
+/// Relative resolution of the time of an event: four units in the last place.
+const TIME_RESOLUTION: f64 = 4.0 * f64::EPSILON;
+/// Iterations of root finding; each one at least halves the bracket every second time.
+const MAXIMUM_ITERATIONS: usize = 200;
+
+/// Which crossings of zero count, in the direction of integration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Both.
+    #[default]
+    Either,
+}
+
+/// A function of time and state.
+type EventFunction<'a> = dyn FnMut(f64, &[f64]) -> f64 + 'a;
+
+/// A function of time and state whose zeros along the solution are located.
+///
+/// The function is resolved inside every step by Chebyshev interpolation, so that
+/// crossings faster than the steps are found, pairs included. A zero at which the function does not change
+/// its sign is no crossing. A zero at the very start does not count.
+pub struct Event<'a> {
+    pub(super) function: Box<EventFunction<'a>>,
+    direction: Direction,
+    pub(super) is_terminal: bool,
+}
+
+impl<'a> Event<'a> {
+    /// An event at the zeros of `function(time, state)`, in either direction, that does not end the integration.
+    pub fn new(function: impl FnMut(f64, &[f64]) -> f64 + 'a) -> Self {
+        Self { function: Box::new(function), direction: Direction::Either, is_terminal: false }
+    }
+
+    /// Counts crossings from negative to positive only.
+    pub fn rising(mut self) -> Self {
+        self.direction = Direction::Rising;
+        self
+    }
+
+    /// Counts crossings from positive to negative only.
+    pub fn falling(mut self) -> Self {
+        self.direction = Direction::Falling;
+        self
+    }
+
+    /// Ends the integration at the first crossing that counts.
+    pub fn terminal(mut self) -> Self {
+        self.is_terminal = true;
+        self
+    }
+}
+
+impl std::fmt::Debug for Event<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { direction, is_terminal, .. } = self;
+        formatter
+            .debug_struct("Event")
+            .field("direction", direction)
+            .field("is_terminal", is_terminal)
+            .finish()
+    }
+}
+
+/// A zero of an event function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// Index of the event function.
+    pub event: usize,
+    /// Time of the crossing: on the far side of the zero, within rounding.
+    pub time: f64,
+    /// State at that time.
+    pub state: Vec<f64>,
+    /// [`Direction::Rising`] or [`Direction::Falling`], in the direction of integration.
+    pub direction: Direction,
+}
+
+/// Follows the signs of event functions along an integration.
+#[derive(Debug)]
+pub(super) struct EventLocator {
+    partition: ChebyshevPartition,
+    /// Last sign that was not zero of each function.
+    signs: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+impl EventLocator {
+    pub(super) fn new(events: &mut [Event], time: f64, state: &[f64]) -> Self {
+        let signs = events.iter_mut().map(|event| sign((event.function)(time, state))).collect();
+        Self { partition: ChebyshevPartition::new(), signs, scratch: vec![0.0; state.len()] }
+    }
+
+    /// Appends the crossings of the last step to `crossings`, in the order in which they are passed, up to
+    /// the first terminal one; returns whether there was a terminal one.
+    pub(super) fn locate<S: System>(
+        &mut self,
+        stepper: &mut Stepper<S>,
+        events: &mut [Event],
+        crossings: &mut Vec<Crossing>,
+    ) -> bool {
+        stepper.prepare_dense_output();
+        let first = crossings.len();
+        let (start, end) = (stepper.previous_time(), stepper.time());
+        let scratch = &mut self.scratch;
+        for (index, event) in events.iter_mut().enumerate() {
+            let Event { function, direction, is_terminal } = event;
+            let function = std::cell::RefCell::new((function, &mut *scratch));
+            let evaluate = |time: f64| {
+                let (function, scratch) = &mut *function.borrow_mut();
+                stepper.interpolate(time, scratch);
+                function(time, scratch)
+            };
+            let at = |fraction: f64| if fraction == 1.0 { end } else { start + fraction * (end - start) };
+            let last_sign = &mut self.signs[index];
+            let mut last_time = start;
+            self.partition.visit_pieces(
+                |fraction| evaluate(at(fraction)),
+                |fraction, value| {
+                    let (time, new_sign) = (at(fraction), sign(value));
+                    let mut keep_on = true;
+                    if new_sign * *last_sign < 0.0 {
+                        let passed = if new_sign > 0.0 { Direction::Rising } else { Direction::Falling };
+                        if *direction == Direction::Either || *direction == passed {
+                            let crossing_time = far_side_of_zero(&evaluate, last_time, time, value);
+                            crossings.push(Crossing {
+                                event: index,
+                                time: crossing_time,
+                                state: Vec::new(),
+                                direction: passed,
+                            });
+                            keep_on = !*is_terminal;
+                        }
+                    }
+                    if new_sign != 0.0 {
+                        *last_sign = new_sign;
+                        last_time = time;
+                    }
+                    keep_on
+                },
+            );
+        }
+        let ordering = (end - start).signum();
+        crossings[first..].sort_by(|a, b| (ordering * a.time).total_cmp(&(ordering * b.time)));
+        let terminal = crossings[first..].iter().position(|crossing| events[crossing.event].is_terminal);
+        if let Some(position) = terminal {
+            crossings.truncate(first + position + 1);
+        }
+        for crossing in &mut crossings[first..] {
+            crossing.state.resize(scratch.len(), 0.0);
+            stepper.interpolate(crossing.time, &mut crossing.state);
+        }
+        terminal.is_some()
+    }
+}
+
+fn sign(value: f64) -> f64 {
+    if value > 0.0 {
+        1.0
+    } else if value < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// Narrows a change of sign between `near` and `far` (Illinois variant of regula falsi, with a bisection
+/// whenever that is slow) and returns the end of the bracket with the sign of the far end.
+pub(crate) fn far_side_of_zero(
+    function: &impl Fn(f64) -> f64,
+    near: f64,
+    far: f64,
+    value_at_far: f64,
+) -> f64 {
+    let far_sign = sign(value_at_far);
+    let (mut a, mut b, mut value_a, mut value_b) = (near, far, function(near), value_at_far);
+    if sign(value_a) == far_sign {
+        return near;
+    }
+    for iteration in 0..MAXIMUM_ITERATIONS {
+        let width = (b - a).abs();
+        if width <= TIME_RESOLUTION * a.abs().max(b.abs()) {
+            break;
+        }
+        let middle = 0.5 * (a + b);
+        let secant = b - value_b * (b - a) / (value_b - value_a);
+        let inside = (secant - a) * (b - secant) > 0.0;
+        let candidate = if inside && iteration % 3 != 2 { secant } else { middle };
+        if candidate == a || candidate == b {
+            break;
+        }
+        let value = function(candidate);
+        if sign(value) == far_sign {
+            (b, value_b) = (candidate, value);
+            value_a *= 0.5;
+        } else {
+            (a, value_a) = (candidate, value);
+            value_b *= 0.5;
+        }
+    }
+    b
+}

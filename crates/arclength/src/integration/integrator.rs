@@ -1,0 +1,280 @@
+//! Settings of an integration and the common tasks: the final state, samples, events.
+
+use super::event::EventLocator;
+use super::{Crossing, Event, IntegrationError, Statistics, Stepper, System};
+
+/// Smallest relative tolerance: below it the error estimate is rounding.
+const SMALLEST_RELATIVE_TOLERANCE: f64 = 10.0 * f64::EPSILON;
+
+/// Tolerances and limits of an integration.
+///
+/// A step is accepted when the root mean square over the components of error / (absolute + relative |x|)
+/// is at most one.
+///
+/// ```
+/// use arclength::integration::{Integrator, from_fn};
+///
+/// let oscillator = from_fn(2, |_time, x, derivative| {
+///     derivative[0] = x[1];
+///     derivative[1] = -x[0];
+/// });
+/// let times = [0.0, 0.5, 1.0];
+/// let solution = Integrator::default().sample(oscillator, &[0.0, 1.0], &times)?;
+/// for (time, state) in solution.samples() {
+///     assert!((state[0] - time.sin()).abs() < 1e-9);
+/// }
+/// # Ok::<(), arclength::integration::IntegrationError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Integrator {
+    relative_tolerance: f64,
+    absolute_tolerances: Vec<f64>,
+    pub(super) initial_step: Option<f64>,
+    pub(super) maximum_step: f64,
+    pub(super) maximum_steps: usize,
+}
+
+impl Default for Integrator {
+    /// Relative tolerance 1e-10, absolute tolerance 1e-12, at most a million steps of any size.
+    fn default() -> Self {
+        Self {
+            relative_tolerance: 1e-10,
+            absolute_tolerances: vec![1e-12],
+            initial_step: None,
+            maximum_step: f64::INFINITY,
+            maximum_steps: 1_000_000,
+        }
+    }
+}
+
+/// A solution: samples, crossings and where it ended.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Solution {
+    /// Time at which the integration ended: the end that was asked for, or that of a terminal event.
+    pub time: f64,
+    /// State at that time.
+    pub state: Vec<f64>,
+    /// Sampling times that were reached.
+    pub times: Vec<f64>,
+    /// States at the sampling times, one after the other.
+    pub states: Vec<f64>,
+    /// Crossings in the order in which they were passed.
+    pub crossings: Vec<Crossing>,
+    /// Index of the terminal event that ended the integration.
+    pub ended_by: Option<usize>,
+    /// Work done.
+    pub statistics: Statistics,
+}
+
+impl Solution {
+    /// Sampling times with the states there.
+    pub fn samples(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        self.times.iter().copied().zip(self.states.chunks_exact(self.state.len().max(1)))
+    }
+}
+
+impl Integrator {
+    /// The default with both tolerances set: relative, and a hundredth of it absolute.
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self::default().relative_tolerance(tolerance).absolute_tolerance(0.01 * tolerance)
+    }
+
+    /// Sets the relative tolerance.
+    pub fn relative_tolerance(mut self, tolerance: f64) -> Self {
+        self.relative_tolerance = tolerance;
+        self
+    }
+
+    /// Sets the absolute tolerance of every component.
+    pub fn absolute_tolerance(mut self, tolerance: f64) -> Self {
+        self.absolute_tolerances = vec![tolerance];
+        self
+    }
+
+    /// Sets the absolute tolerance of each component in the units of the component.
+    pub fn absolute_tolerances(mut self, tolerances: &[f64]) -> Self {
+        self.absolute_tolerances = tolerances.to_vec();
+        self
+    }
+
+    /// Sets the size of the first step, which is otherwise found from the right-hand side.
+    pub fn initial_step(mut self, step: f64) -> Self {
+        self.initial_step = Some(step);
+        self
+    }
+
+    /// Sets the largest step.
+    pub fn maximum_step(mut self, step: f64) -> Self {
+        self.maximum_step = step;
+        self
+    }
+
+    /// Sets the largest number of steps.
+    pub fn maximum_steps(mut self, steps: usize) -> Self {
+        self.maximum_steps = steps;
+        self
+    }
+
+    /// Refuses settings that are out of range for a system of `dimension` equations.
+    pub(super) fn check(&self, dimension: usize) -> Result<(), IntegrationError> {
+        let refuse = |name, value, allowed| Err(IntegrationError::BadSetting { name, value, allowed });
+        let relative = self.relative_tolerance;
+        if !(relative == 0.0 || (SMALLEST_RELATIVE_TOLERANCE..1.0).contains(&relative)) {
+            return refuse("relative tolerance", relative, "0, or from 2.3e-15 to less than 1");
+        }
+        if self.absolute_tolerances.len() != 1 && self.absolute_tolerances.len() != dimension {
+            return Err(IntegrationError::WrongLength {
+                name: "the list of absolute tolerances",
+                found: self.absolute_tolerances.len(),
+                expected: dimension,
+            });
+        }
+        for &absolute in &self.absolute_tolerances {
+            let positive_sum = absolute > 0.0 || absolute == 0.0 && relative > 0.0;
+            if !(positive_sum && absolute.is_finite()) {
+                return refuse(
+                    "absolute tolerance",
+                    absolute,
+                    "positive, or 0 if the relative tolerance is not",
+                );
+            }
+        }
+        match self.initial_step {
+            Some(step) if !(step > 0.0 && step.is_finite()) => {
+                refuse("initial step", step, "positive and finite")
+            }
+            _ if self.maximum_step.is_nan() || self.maximum_step <= 0.0 => {
+                refuse("maximum step", self.maximum_step, "positive")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Tolerance of a component of size `size`.
+    #[inline]
+    pub(super) fn scale(&self, component: usize, size: f64) -> f64 {
+        let absolute = match self.absolute_tolerances.as_slice() {
+            [uniform] => *uniform,
+            each => each[component],
+        };
+        // A component that is exactly zero under a purely relative tolerance must not divide by zero.
+        (absolute + self.relative_tolerance * size).max(f64::MIN_POSITIVE)
+    }
+
+    /// Integrates from `initial` at `start` to `end`.
+    ///
+    /// # Errors
+    /// [`IntegrationError`]: bad settings or lengths, a singular or non-finite right-hand side, too many steps.
+    pub fn integrate<S: System>(
+        &self,
+        system: S,
+        start: f64,
+        initial: &[f64],
+        end: f64,
+    ) -> Result<Solution, IntegrationError> {
+        self.with_events(system, start, initial, end, &[], &mut [])
+    }
+
+    /// Integrates from the first to the last of `times` and gives the states at all of them.
+    ///
+    /// # Errors
+    /// As [`Integrator::integrate`]; the times must be monotone.
+    pub fn sample<S: System>(
+        &self,
+        system: S,
+        initial: &[f64],
+        times: &[f64],
+    ) -> Result<Solution, IntegrationError> {
+        match (times.first(), times.last()) {
+            (Some(&start), Some(&end)) => self.with_events(system, start, initial, end, times, &mut []),
+            _ => Err(IntegrationError::WrongLength {
+                name: "the list of sampling times",
+                found: 0,
+                expected: 1,
+            }),
+        }
+    }
+
+    /// Integrates from `start` to `end` or to the first crossing of a terminal event, with samples at
+    /// `times` (in the order of the integration) and all crossings of `events`.
+    ///
+    /// # Errors
+    /// As [`Integrator::integrate`]; the times must lie between start and end and be monotone.
+    pub fn with_events<S: System>(
+        &self,
+        system: S,
+        start: f64,
+        initial: &[f64],
+        end: f64,
+        times: &[f64],
+        events: &mut [Event],
+    ) -> Result<Solution, IntegrationError> {
+        check_times(start, end, times)?;
+        let dimension = system.dimension();
+        let mut stepper = Stepper::new(system, self, start, initial, end)?;
+        let mut solution = Solution {
+            times: Vec::with_capacity(times.len()),
+            states: Vec::with_capacity(times.len() * dimension),
+            ..Solution::default()
+        };
+        let mut locator = EventLocator::new(events, start, initial);
+        loop {
+            let is_terminated =
+                !events.is_empty() && locator.locate(&mut stepper, events, &mut solution.crossings);
+            let reached = match solution.crossings.last() {
+                Some(crossing) if is_terminated => crossing.time,
+                _ => stepper.time(),
+            };
+            record_samples(&mut stepper, times, reached, end - start, &mut solution);
+            if is_terminated || stepper.is_finished() {
+                solution.time = reached;
+                solution.statistics = stepper.statistics();
+                match solution.crossings.last() {
+                    Some(crossing) if is_terminated => {
+                        solution.state.clone_from(&crossing.state);
+                        solution.ended_by = Some(crossing.event);
+                    }
+                    _ => solution.state.extend_from_slice(stepper.state()),
+                }
+                return Ok(solution);
+            }
+            stepper.advance()?;
+        }
+    }
+}
+
+/// Samples at the times that were not yet recorded and are not past `reached`.
+fn record_samples<S: System>(
+    stepper: &mut Stepper<S>,
+    times: &[f64],
+    reached: f64,
+    direction: f64,
+    solution: &mut Solution,
+) {
+    for &time in &times[solution.times.len()..] {
+        if (time - reached) * direction.signum() > 0.0 {
+            return;
+        }
+        let from = solution.states.len();
+        if time == stepper.time() {
+            solution.states.extend_from_slice(stepper.state());
+        } else {
+            stepper.prepare_dense_output();
+            solution.states.resize(from + stepper.state().len(), 0.0);
+            stepper.interpolate(time, &mut solution.states[from..]);
+        }
+        solution.times.push(time);
+    }
+}
+
+fn check_times(start: f64, end: f64, times: &[f64]) -> Result<(), IntegrationError> {
+    let direction = if end < start { -1.0 } else { 1.0 };
+    let mut last = start;
+    for &time in times {
+        if !((time - last) * direction >= 0.0 && (end - time) * direction >= 0.0) {
+            return Err(IntegrationError::BadSamplingTime { time });
+        }
+        last = time;
+    }
+    Ok(())
+}
