@@ -1,0 +1,249 @@
+//! Puts labels where they cover least: beside points, along curves, and legends in the emptiest place.
+//!
+//! Every candidate position has a cost, counted in points of curve covered; the cheapest wins and the first of equals,
+//! so the result is the same every time.
+
+use crate::geometry::{Point, Rect, length_inside};
+use crate::text::TextLayout;
+
+/// Cost of covering another label, per square point, and of standing out of the panel.
+const LABEL_COST: f64 = 3.0;
+const OUTSIDE_COST: f64 = 1e6;
+/// Gap between a label and what it belongs to, in points.
+const GAP: f64 = 2.0;
+
+/// What labels should not cover.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Obstacles {
+    segments: Vec<(Point, Point, usize)>,
+    boxes: Vec<Rect>,
+    curves: usize,
+}
+
+impl Obstacles {
+    /// Adds the visible pieces of one curve and returns its number.
+    pub fn add_curve(&mut self, pieces: &[Vec<Point>]) -> usize {
+        let curve = self.curves;
+        self.curves += 1;
+        for piece in pieces {
+            self.segments.extend(piece.windows(2).map(|pair| (pair[0], pair[1], curve)));
+        }
+        curve
+    }
+
+    pub fn add_box(&mut self, rect: Rect) {
+        self.boxes.push(rect);
+    }
+
+    /// The cost of covering the rectangle, not counting the given curve.
+    fn cost(&self, rect: &Rect, own_curve: Option<usize>) -> f64 {
+        let curves: f64 = self
+            .segments
+            .iter()
+            .filter(|(_, _, curve)| Some(*curve) != own_curve)
+            .map(|(a, b, _)| length_inside(*a, *b, rect))
+            .sum();
+        let labels: f64 = self.boxes.iter().map(|other| LABEL_COST * other.overlap_area(rect)).sum();
+        curves + labels
+    }
+
+    /// Where the baseline of a label for `point` starts; the label is kept inside `frame` where it fits.
+    pub fn beside_point(&mut self, point: Point, radius: f64, layout: &TextLayout, frame: &Rect) -> Point {
+        let (width, height) = (layout.width, layout.height());
+        let mut best = (f64::INFINITY, point);
+        for ring in 0..4 {
+            let distance = radius + GAP + 4.0 * f64::from(ring);
+            for direction in 0..16 {
+                let angle = std::f64::consts::FRAC_PI_8 * f64::from(direction) - std::f64::consts::FRAC_PI_4;
+                let (sine, cosine) = angle.sin_cos();
+                // The label touches a circle about the point with the side that faces the point.
+                let center = point.offset(
+                    cosine * distance + 0.5 * width * saturated(cosine),
+                    sine * distance + 0.5 * height * saturated(sine),
+                );
+                let rect = Rect::new(
+                    center.x - 0.5 * width,
+                    center.y - 0.5 * height,
+                    center.x + 0.5 * width,
+                    center.y + 0.5 * height,
+                );
+                let outside = if frame.expanded(-1.5).encloses(&rect) {
+                    0.0
+                } else {
+                    OUTSIDE_COST + beyond(&rect, frame)
+                };
+                let cost = outside + self.cost(&rect.expanded(1.0), None) + 3.0 * f64::from(ring);
+                if cost < best.0 - 1e-9 {
+                    best = (cost, Point::new(rect.left, rect.bottom - layout.descent));
+                }
+            }
+        }
+        self.add_box(layout.bounds(best.1));
+        best.1
+    }
+
+    /// Where a name on a curve is centred, and its slope in degrees; `None` when the curve is too short for it.
+    pub fn along_curve(
+        &mut self,
+        curve: usize,
+        pieces: &[Vec<Point>],
+        at: Option<f64>,
+        layout: &TextLayout,
+        frame: &Rect,
+    ) -> Option<(Point, f64)> {
+        let (width, height) = (layout.width, layout.height());
+        let half = 0.5 * width + GAP;
+        let total: f64 = pieces.iter().map(|piece| length(piece)).sum();
+        let mut best: Option<(f64, Point, f64)> = None;
+        let mut before = 0.0;
+        for piece in pieces {
+            let long = length(piece);
+            let steps = (long / 4.0).ceil().clamp(1.0, 200.0) as usize;
+            for step in 0..=steps {
+                let s = long * step as f64 / steps as f64;
+                if s < half || s > long - half {
+                    continue;
+                }
+                let (from, middle, to) = (along(piece, s - half), along(piece, s), along(piece, s + half));
+                let chord = from.distance(to);
+                let bend = middle.distance(from.lerp(to, 0.5));
+                let mut angle = (to.y - from.y).atan2(to.x - from.x);
+                if angle.cos() < 0.0 {
+                    angle += std::f64::consts::PI;
+                }
+                let squares = (width / height).ceil().max(1.0) as usize;
+                let mut cost = 20.0 * bend + 10.0 * (2.0 * half - chord) + 6.0 * angle.sin().abs();
+                for i in 0..squares {
+                    let shift = (i as f64 + 0.5) / squares as f64 * width - 0.5 * width;
+                    let center = middle.offset(shift * angle.cos(), shift * angle.sin());
+                    let square = Rect::new(center.x, center.y, center.x, center.y).expanded(0.5 * height);
+                    if !frame.encloses(&square) {
+                        cost += 100.0;
+                    }
+                    cost += self.cost(&square, Some(curve));
+                }
+                let fraction = (before + s) / total;
+                match at {
+                    Some(wanted) => cost = (fraction - wanted).abs(),
+                    // Between equals the middle of the curve is best.
+                    None => cost += 4.0 * (fraction - 0.5).abs(),
+                }
+                if best.is_none_or(|(lowest, _, _)| cost < lowest - 1e-9) {
+                    best = Some((cost, middle, angle));
+                }
+            }
+            before += long;
+        }
+        let (_, center, angle) = best?;
+        let (reach_x, reach_y) = (
+            0.5 * (width * angle.cos().abs() + height * angle.sin().abs()),
+            0.5 * (width * angle.sin().abs() + height * angle.cos().abs()),
+        );
+        self.add_box(Rect::new(
+            center.x - reach_x,
+            center.y - reach_y,
+            center.x + reach_x,
+            center.y + reach_y,
+        ));
+        Some((center, angle.to_degrees()))
+    }
+
+    /// The upper left corner of a box of the given size where it covers least, corners preferred.
+    pub fn emptiest(&mut self, width: f64, height: f64, frame: &Rect) -> Point {
+        let inner = frame.expanded(-4.0);
+        let (room_x, room_y) = ((inner.width() - width).max(0.0), (inner.height() - height).max(0.0));
+        // Right before left and top before bottom, then what lies between.
+        let positions = [1.0, 0.0, 0.5, 0.75, 0.25];
+        let mut best = (f64::INFINITY, Point::new(inner.left, inner.top));
+        for (row, y) in [0.0, 1.0, 0.5, 0.25, 0.75].into_iter().enumerate() {
+            for (column, x) in positions.into_iter().enumerate() {
+                let corner = Point::new(inner.left + x * room_x, inner.top + y * room_y);
+                let rect = Rect::new(corner.x, corner.y, corner.x + width, corner.y + height);
+                let inland = 6.0 * (f64::from(row > 1) + f64::from(column > 1));
+                let cost = self.cost(&rect.expanded(2.0), None) + inland;
+                if cost < best.0 - 1e-9 {
+                    best = (cost, corner);
+                }
+            }
+        }
+        self.add_box(Rect::new(best.1.x, best.1.y, best.1.x + width, best.1.y + height));
+        best.1
+    }
+}
+
+/// -1, 0 or 1 with a linear passage, so that labels straight above a point are centred.
+fn saturated(value: f64) -> f64 {
+    (1.45 * value).clamp(-1.0, 1.0)
+}
+
+fn beyond(rect: &Rect, frame: &Rect) -> f64 {
+    (frame.left - rect.left).max(0.0)
+        + (rect.right - frame.right).max(0.0)
+        + (frame.top - rect.top).max(0.0)
+        + (rect.bottom - frame.bottom).max(0.0)
+}
+
+fn length(line: &[Point]) -> f64 {
+    line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+}
+
+/// The point at a length along the line, its end when the line is shorter.
+fn along(line: &[Point], mut s: f64) -> Point {
+    for pair in line.windows(2) {
+        let step = pair[0].distance(pair[1]);
+        if s <= step && step > 0.0 {
+            return pair[0].lerp(pair[1], s / step);
+        }
+        s -= step;
+    }
+    line[line.len() - 1]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const FRAME: Rect = Rect { left: 0.0, top: 0.0, right: 200.0, bottom: 120.0 };
+
+    #[test]
+    fn a_label_avoids_the_curve_through_its_point() {
+        let mut obstacles = Obstacles::default();
+        let line = vec![Point::new(0.0, 120.0), Point::new(200.0, 0.0)];
+        obstacles.add_curve(std::slice::from_ref(&line));
+        let layout = TextLayout::new("HB1", 8.0);
+        let origin = obstacles.beside_point(Point::new(100.0, 60.0), 2.0, &layout, &FRAME);
+        assert_eq!(length_inside(line[0], line[1], &layout.bounds(origin)), 0.0);
+    }
+
+    #[test]
+    fn a_legend_goes_to_the_empty_corner() {
+        let mut obstacles = Obstacles::default();
+        // Curves in every corner but the lower left one.
+        for (x, y) in [(180.0, 10.0), (180.0, 110.0), (20.0, 10.0)] {
+            let scribble: Vec<Point> = (0..20)
+                .map(|i| Point::new(x + f64::from(i % 2) * 30.0 - 15.0, y + f64::from(i) - 10.0))
+                .collect();
+            obstacles.add_curve(&[scribble]);
+        }
+        let corner = obstacles.emptiest(40.0, 20.0, &FRAME);
+        assert!(corner.x < 10.0 && corner.y > 90.0, "{corner:?}");
+    }
+
+    proptest! {
+        #[test]
+        fn labels_of_crowded_points_neither_overlap_nor_leave_the_panel(
+            points in proptest::collection::vec((5.0..195.0_f64, 5.0..115.0_f64), 1..8),
+        ) {
+            let mut obstacles = Obstacles::default();
+            let layout = TextLayout::new("LPC1", 8.0);
+            let mut placed: Vec<Rect> = Vec::new();
+            for point in points {
+                let bounds = layout.bounds(obstacles.beside_point(point.into(), 2.0, &layout, &FRAME));
+                prop_assert!(FRAME.encloses(&bounds));
+                prop_assert!(placed.iter().all(|other| other.overlap_area(&bounds) < 20.0));
+                placed.push(bounds);
+            }
+        }
+    }
+}
