@@ -1,9 +1,9 @@
-//! Vector fields and their derivatives.
+//! Vector fields.
 //!
-//! Everything that the rest of the crate asks of a model goes through [`VectorField::evaluate`];
-//! the functions here evaluate it with dual numbers to get Jacobians and directional derivatives.
+//! Everything that the rest of the crate asks of a model goes through [`VectorField::evaluate`],
+//! with dual numbers where derivatives are needed.
 
-use crate::differentiation::{Dual, Scalar};
+use crate::differentiation::Scalar;
 
 /// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`.
 ///

@@ -3,9 +3,14 @@
 //! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
 //! from forward-mode automatic differentiation ([`Dual`]).
 
+pub mod continuation;
+pub mod cycle;
 pub mod differentiation;
+pub mod error;
 pub mod field;
 pub mod integration;
+pub mod linear;
 
 pub use differentiation::{Dual, Scalar};
+pub use error::Error;
 pub use field::VectorField;

@@ -1,0 +1,494 @@
+//! The run itself: predict, correct, adapt, inspect, locate, repeat.
+
+use super::corrector::{inner, norm};
+use super::{Adaptation, CorrectionFailure, Curve, Settings, Solution, Stop, correct};
+use crate::error::Error;
+use std::ops::ControlFlow;
+
+/// A range in which one of the unknowns has to stay.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bound {
+    /// Index from the end among the unknowns: 1 is the last. (The unknowns before a parameter can
+    /// change in number when a mesh adapts.)
+    pub from_end: usize,
+    /// Smallest value.
+    pub lower: f64,
+    /// Largest value.
+    pub upper: f64,
+}
+
+/// What is asked of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// Ranges of the parameters; the run ends where the curve leaves one of them.
+    pub bounds: Vec<Bound>,
+    /// Values of the first bounded parameter at which a solution is wanted exactly.
+    pub values: Vec<f64>,
+    /// Settings.
+    pub settings: Settings,
+}
+
+/// What a run found.
+#[derive(Debug)]
+pub struct Followed<P> {
+    /// The solutions in the order of the curve, special and requested ones among them.
+    pub solutions: Vec<(Solution<P>, Origin)>,
+    /// Why the run ended.
+    pub stop: Stop,
+}
+
+/// How a solution came to be part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// A step of the continuation.
+    Step,
+    /// Located by [`Curve::special_points`].
+    Special,
+    /// A parameter value that was asked for.
+    Requested,
+    /// The end of a range.
+    End,
+}
+
+/// Largest growth and strongest reduction of the step from one point to the next.
+const STEP_GROWTH: f64 = 2.0;
+const STEP_REDUCTION: f64 = 0.4;
+/// Smallest cosine allowed between consecutive tangents.
+const TANGENT_COSINE: f64 = 0.9;
+/// Corrections after a change of mesh that may follow each other at one point.
+const MOST_ADAPTATIONS: usize = 12;
+/// Relative agreement of signatures that makes a curve closed.
+const CLOSURE_TOLERANCE: f64 = 1e-6;
+
+/// Follows the curve from `start` (not necessarily converged) in the direction of `tangent`.
+///
+/// `observer` is told every accepted solution and may end the run.
+///
+/// # Errors
+/// When no solution is found from the start. Failures later end the run with a [`Stop`].
+pub fn follow<C: Curve>(
+    curve: &mut C,
+    start: Vec<f64>,
+    tangent: Vec<f64>,
+    request: &Request,
+    observer: &mut dyn FnMut(&Solution<C::Point>) -> ControlFlow<()>,
+) -> Result<Followed<C::Point>, Error> {
+    let settings = &request.settings;
+    let mut current = converge(curve, start, tangent, settings, &mut [])?;
+    let first_signature = curve.signature(&current.unknown);
+    let first_parameter =
+        request.bounds.first().map(|bound| current.unknown[current.unknown.len() - bound.from_end]);
+    let first_direction =
+        request.bounds.first().map(|bound| current.tangent[current.tangent.len() - bound.from_end]);
+    let mut solutions = vec![(current.clone(), Origin::Step)];
+    let mut previous: Option<(Vec<f64>, f64)> = None;
+    let mut step = settings.initial_step;
+    if observer(&current).is_break() {
+        return Ok(Followed { solutions, stop: Stop::Interrupted });
+    }
+    for _ in 0..settings.most_steps {
+        let advanced = match advance(curve, &mut current, &mut previous, &mut step, settings) {
+            Ok(next) => next,
+            Err(stop) => return Ok(Followed { solutions, stop }),
+        };
+        let mut between = match curve.special_points(&current, &advanced) {
+            Ok(special) => special.into_iter().map(|solution| (solution, Origin::Special)).collect(),
+            Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
+        };
+        let leaves = first_exit(&advanced.unknown, &request.bounds);
+        match requested_values(curve, &current, &mut between, &advanced, request) {
+            Ok(()) => {}
+            Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
+        }
+        if let Some((bound, value)) = leaves {
+            let from_end = request.bounds[bound].from_end;
+            between.retain(|(solution, _)| first_exit(&solution.unknown, &request.bounds).is_none());
+            let near = between.last().map_or(&current, |(solution, _)| solution).clone();
+            match fix(curve, &near, &advanced, from_end, value, settings) {
+                Ok(end) => between.push((end, Origin::End)),
+                Err(Error::NotFound { cause, .. }) => {
+                    solutions.extend(between);
+                    return Ok(Followed { solutions, stop: Stop::StepTooSmall { cause } });
+                }
+                Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
+            }
+            for (solution, _) in &between {
+                if observer(solution).is_break() {
+                    break;
+                }
+            }
+            solutions.extend(between);
+            return Ok(Followed { solutions, stop: Stop::RangeEnd { bound, value } });
+        }
+        let closed = match (first_parameter, first_direction) {
+            (Some(parameter), Some(direction)) if solutions.len() > 2 => {
+                let from_end = request.bounds[0].from_end;
+                let position = |solution: &Solution<C::Point>| {
+                    solution.unknown[solution.unknown.len() - from_end] - parameter
+                };
+                let crosses = position(&current) * position(&advanced) <= 0.0
+                    && position(&advanced) * direction >= 0.0
+                    && position(&current) != 0.0;
+                if crosses {
+                    match fix(curve, &current, &advanced, from_end, parameter, settings) {
+                        Ok(candidate) => {
+                            same(&curve.signature(&candidate.unknown), &first_signature).then_some(candidate)
+                        }
+                        Err(_) => None,
+                    }
+                } else {
+                    None
+                }
+            }
+            _ => None,
+        };
+        if let Some(candidate) = closed {
+            let reached = along(curve, &current, &candidate.unknown);
+            between.retain(|(solution, _)| along(curve, &current, &solution.unknown) < reached);
+            between.push((candidate, Origin::End));
+            solutions.extend(between);
+            return Ok(Followed { solutions, stop: Stop::Closed });
+        }
+        between.push((advanced, Origin::Step));
+        for (solution, _) in &between {
+            if observer(solution).is_break() {
+                solutions.extend(between);
+                return Ok(Followed { solutions, stop: Stop::Interrupted });
+            }
+        }
+        let Some((next, _)) = between.last() else { continue };
+        let next = next.clone();
+        solutions.extend(between);
+        let ending = curve.ending(&next);
+        if let Some(stop) = ending {
+            return Ok(Followed { solutions, stop });
+        }
+        current = next;
+    }
+    Ok(Followed { solutions, stop: Stop::MostSteps })
+}
+
+/// Corrects a start, adapts the discretisation to it and computes tangent and point.
+fn converge<C: Curve>(
+    curve: &mut C,
+    mut unknown: Vec<f64>,
+    mut tangent: Vec<f64>,
+    settings: &Settings,
+    carried: &mut [&mut Vec<f64>],
+) -> Result<Solution<C::Point>, Error> {
+    for _ in 0..MOST_ADAPTATIONS {
+        let border = metric_image(curve, &tangent);
+        correct(curve, &mut unknown, &border, settings)
+            .map_err(|cause| Error::NotFound { sought: "solution", cause })?;
+        let mut vectors: Vec<&mut Vec<f64>> = vec![&mut tangent];
+        vectors.extend(carried.iter_mut().map(|vector| &mut **vector));
+        if curve.adapt(&mut unknown, &mut vectors)? == Adaptation::Unchanged {
+            break;
+        }
+    }
+    finish(curve, unknown, &tangent)
+}
+
+/// Tangent, orientation and point of a converged solution; the new tangent keeps the direction of the old.
+fn finish<C: Curve>(
+    curve: &mut C,
+    unknown: Vec<f64>,
+    old_tangent: &[f64],
+) -> Result<Solution<C::Point>, Error> {
+    let border = metric_image(curve, old_tangent);
+    let mut tangent = vec![0.0; unknown.len()];
+    let singular = Error::NotFound { sought: "tangent", cause: CorrectionFailure::Singular };
+    let sign = curve.factorize(&unknown, &border, &mut tangent);
+    if sign == 0.0 {
+        return Err(singular);
+    }
+    tangent.fill(0.0);
+    if let Some(last) = tangent.last_mut() {
+        *last = 1.0;
+    }
+    curve.solve(&mut tangent);
+    let mut image = vec![0.0; tangent.len()];
+    let length = norm(curve, &tangent, &mut image);
+    if !(length.is_finite() && length > 0.0) {
+        return Err(singular);
+    }
+    tangent.iter_mut().for_each(|entry| *entry /= length);
+    let point = curve.inspect(&unknown, &tangent, sign)?;
+    Ok(Solution { unknown, tangent, orientation: sign, point })
+}
+
+/// One accepted step; shortens the step until the corrector succeeds.
+fn advance<C: Curve>(
+    curve: &mut C,
+    current: &mut Solution<C::Point>,
+    previous: &mut Option<(Vec<f64>, f64)>,
+    step: &mut f64,
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Stop> {
+    loop {
+        let length = *step;
+        let mut unknown = predict(current, previous.as_ref(), length);
+        let border = metric_image(curve, &current.tangent);
+        let corrected = correct(curve, &mut unknown, &border, settings);
+        let (failure, slower) = match corrected {
+            Err(cause) => (Some(cause), STEP_REDUCTION),
+            Ok(correction) => {
+                let ratio = settings.predictor_error / correction.distance.max(1e-300);
+                // The predictor's error grows with the square of the step at least.
+                let factor = ratio.sqrt().clamp(STEP_REDUCTION, STEP_GROWTH);
+                let too_far = correction.distance > 10.0 * settings.predictor_error.max(0.1 * length);
+                (too_far.then_some(CorrectionFailure::Diverged), factor)
+            }
+        };
+        if let Some(cause) = failure {
+            *step = length * slower.min(0.5);
+            if *step < settings.smallest_step {
+                return Err(Stop::StepTooSmall { cause });
+            }
+            continue;
+        }
+        let mut old_previous = previous.take();
+        let mut unknown_now = std::mem::take(&mut current.unknown);
+        let mut tangent_now = std::mem::take(&mut current.tangent);
+        let mut carried: Vec<&mut Vec<f64>> = vec![&mut unknown_now, &mut tangent_now];
+        if let Some((tangent, _)) = old_previous.as_mut() {
+            carried.push(tangent);
+        }
+        let solution = settle(curve, unknown, &mut carried, settings);
+        current.unknown = unknown_now;
+        current.tangent = tangent_now;
+        let solution = match solution {
+            Ok(solution) => solution,
+            Err(Error::NotFound { cause, .. }) => {
+                *previous = old_previous;
+                *step = length * STEP_REDUCTION;
+                if *step < settings.smallest_step {
+                    return Err(Stop::StepTooSmall { cause });
+                }
+                continue;
+            }
+            Err(error) => return Err(Stop::Failed(error)),
+        };
+        let image = metric_image(curve, &solution.tangent);
+        let mut scratch = vec![0.0; image.len()];
+        // The metric may have changed with the discretisation: lengths behind are measured anew.
+        let stretch = norm(curve, &current.tangent, &mut scratch);
+        let cosine = inner(&current.tangent, &image) / stretch;
+        if cosine < TANGENT_COSINE && length > 1e3 * settings.smallest_step {
+            *previous = old_previous;
+            *step = length * 0.5;
+            continue;
+        }
+        *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
+        *step = (length * slower).min(settings.largest_step);
+        return Ok(solution);
+    }
+}
+
+/// Adapts the discretisation to a corrected solution until it holds, then finishes it.
+///
+/// `carried[1]` is the tangent of the solution before.
+fn settle<C: Curve>(
+    curve: &mut C,
+    mut unknown: Vec<f64>,
+    carried: &mut [&mut Vec<f64>],
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    for _ in 0..MOST_ADAPTATIONS {
+        if curve.adapt(&mut unknown, carried)? == Adaptation::Unchanged {
+            break;
+        }
+        let border = metric_image(curve, carried[1]);
+        correct(curve, &mut unknown, &border, settings)
+            .map_err(|cause| Error::NotFound { sought: "solution on the adapted mesh", cause })?;
+    }
+    let tangent = carried[1].clone();
+    finish(curve, unknown, &tangent)
+}
+
+/// Point predicted at the distance `length`: along the tangent, bent by the change of the tangent over
+/// the step before where there was one.
+fn predict<P>(current: &Solution<P>, previous: Option<&(Vec<f64>, f64)>, length: f64) -> Vec<f64> {
+    let mut unknown = current.unknown.clone();
+    for (entry, slope) in unknown.iter_mut().zip(&current.tangent) {
+        *entry += length * slope;
+    }
+    if let Some((tangent, travelled)) = previous.filter(|(tangent, _)| tangent.len() == unknown.len()) {
+        let bend = 0.5 * length * length / travelled;
+        for (entry, (now, then)) in unknown.iter_mut().zip(current.tangent.iter().zip(tangent)) {
+            *entry += bend * (now - then);
+        }
+    }
+    unknown
+}
+
+/// First bound that `unknown` violates and the end that was passed.
+fn first_exit(unknown: &[f64], bounds: &[Bound]) -> Option<(usize, f64)> {
+    bounds.iter().enumerate().find_map(|(index, bound)| {
+        let value = unknown[unknown.len() - bound.from_end];
+        if value > bound.upper {
+            Some((index, bound.upper))
+        } else if value < bound.lower {
+            Some((index, bound.lower))
+        } else {
+            None
+        }
+    })
+}
+
+/// Inserts a converged solution wherever the first bounded parameter passes a requested value.
+fn requested_values<C: Curve>(
+    curve: &mut C,
+    current: &Solution<C::Point>,
+    between: &mut Vec<(Solution<C::Point>, Origin)>,
+    advanced: &Solution<C::Point>,
+    request: &Request,
+) -> Result<(), Error> {
+    let Some(bound) = request.bounds.first() else { return Ok(()) };
+    let value_of = |unknown: &[f64]| unknown[unknown.len() - bound.from_end];
+    for &value in &request.values {
+        let mut nodes = vec![current.clone()];
+        nodes.extend(between.iter().map(|(solution, _)| solution.clone()));
+        nodes.push(advanced.clone());
+        let mut inserted = 0;
+        for index in 0..nodes.len() - 1 {
+            let (left, right) =
+                (value_of(&nodes[index].unknown) - value, value_of(&nodes[index + 1].unknown) - value);
+            if (left < 0.0) != (right < 0.0) || right == 0.0 {
+                if left == 0.0 {
+                    continue;
+                }
+                let found =
+                    fix(curve, &nodes[index], &nodes[index + 1], bound.from_end, value, &request.settings)?;
+                between.insert(index + inserted, (found, Origin::Requested));
+                inserted += 1;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The solution between two neighbours at which the unknown `from_end` has the given value.
+fn fix<C: Curve>(
+    curve: &mut C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    from_end: usize,
+    value: f64,
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    let index = before.unknown.len() - from_end;
+    let span = after.unknown[index] - before.unknown[index];
+    let fraction = if span == 0.0 { 0.0 } else { ((value - before.unknown[index]) / span).clamp(0.0, 1.0) };
+    let mut unknown = interpolate(curve, before, after, fraction);
+    unknown[index] = value;
+    let mut border = vec![0.0; unknown.len()];
+    border[index] = 1.0;
+    correct(curve, &mut unknown, &border, settings)
+        .map_err(|cause| Error::NotFound { sought: "solution at the value asked for", cause })?;
+    unknown[index] = value;
+    finish(curve, unknown, &before.tangent)
+}
+
+/// Cubic interpolation between two neighbours.
+fn interpolate<C: Curve>(
+    curve: &C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    fraction: f64,
+) -> Vec<f64> {
+    let length = along(curve, before, &after.unknown);
+    let s = fraction;
+    let (h01, h10, h11) =
+        (s * s * (3.0 - 2.0 * s), s * (1.0 - s) * (1.0 - s) * length, s * s * (s - 1.0) * length);
+    (0..before.unknown.len())
+        .map(|index| {
+            before.unknown[index]
+                + h01 * (after.unknown[index] - before.unknown[index])
+                + h10 * before.tangent[index]
+                + h11 * after.tangent[index]
+        })
+        .collect()
+}
+
+/// Position along the tangent at `origin`.
+fn along<C: Curve>(curve: &C, origin: &Solution<C::Point>, unknown: &[f64]) -> f64 {
+    let image = metric_image(curve, &origin.tangent);
+    unknown
+        .iter()
+        .zip(&origin.unknown)
+        .zip(&image)
+        .map(|((here, there), weight)| (here - there) * weight)
+        .sum()
+}
+
+/// `W vector`.
+fn metric_image<C: Curve>(curve: &C, vector: &[f64]) -> Vec<f64> {
+    let mut image = vec![0.0; vector.len()];
+    curve.apply_metric(vector, &mut image);
+    image
+}
+
+/// Whether two signatures agree.
+fn same(one: &[f64], other: &[f64]) -> bool {
+    one.len() == other.len()
+        && one
+            .iter()
+            .zip(other)
+            .all(|(a, b)| (a - b).abs() <= CLOSURE_TOLERANCE * (1.0 + a.abs().max(b.abs())))
+}
+
+/// Locates a zero of `test` between two neighbouring solutions, by the Illinois variant of regula falsi
+/// with a correction at every trial point.
+///
+/// `test` is given the curve and a finished solution. Returns the solution where its modulus is smallest
+/// once the bracket is shorter than `tolerance` (a fraction of the bracket), a start for Newton's method
+/// on a defining system.
+///
+/// # Errors
+/// When a trial point cannot be corrected.
+pub fn locate<C: Curve>(
+    curve: &mut C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    settings: &Settings,
+    tolerance: f64,
+    mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
+) -> Result<Option<Solution<C::Point>>, Error> {
+    const MOST_TRIALS: usize = 60;
+    let (Some(mut left_value), Some(mut right_value)) = (test(curve, before), test(curve, after)) else {
+        return Ok(None);
+    };
+    if left_value * right_value > 0.0 {
+        return Ok(None);
+    }
+    let border = metric_image(curve, &before.tangent);
+    let (mut left, mut right) = (0.0, 1.0);
+    let mut best = if left_value.abs() < right_value.abs() { before.clone() } else { after.clone() };
+    let mut smallest = left_value.abs().min(right_value.abs());
+    for _ in 0..MOST_TRIALS {
+        if right - left < tolerance || smallest == 0.0 {
+            break;
+        }
+        let width = right - left;
+        let secant = (left * right_value - right * left_value) / (right_value - left_value);
+        let fraction = secant.clamp(left + 0.01 * width, right - 0.01 * width);
+        let mut unknown = interpolate(curve, before, after, fraction);
+        correct(curve, &mut unknown, &border, settings)
+            .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
+        let trial = finish(curve, unknown, &before.tangent)?;
+        let Some(value) = test(curve, &trial) else { return Ok(None) };
+        if value.abs() < smallest {
+            smallest = value.abs();
+            best = trial;
+        }
+        if value * left_value <= 0.0 {
+            (right, right_value) = (fraction, value);
+            left_value *= 0.5;
+        } else {
+            (left, left_value) = (fraction, value);
+            right_value *= 0.5;
+        }
+    }
+    Ok(Some(best))
+}

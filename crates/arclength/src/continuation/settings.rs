@@ -1,0 +1,36 @@
+//! Tolerances and limits of a continuation run, all in the curve's own dimensionless metric.
+
+/// Settings of [`follow`](super::follow). The defaults suit every problem of this crate; lengths are
+/// measured in the metric of the curve, where states are scaled by their own size and parameters by
+/// the length of their range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// First step.
+    pub initial_step: f64,
+    /// Largest step.
+    pub largest_step: f64,
+    /// Step below which the run gives up.
+    pub smallest_step: f64,
+    /// Distance between predicted and corrected point that the step control aims at.
+    pub predictor_error: f64,
+    /// The corrector has converged when its last update is shorter than this.
+    pub corrector_tolerance: f64,
+    /// Updates that the corrector may use.
+    pub corrector_iterations: usize,
+    /// Most steps in one direction.
+    pub most_steps: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            initial_step: 0.01,
+            largest_step: 0.1,
+            smallest_step: 1e-9,
+            predictor_error: 0.01,
+            corrector_tolerance: 1e-10,
+            corrector_iterations: 12,
+            most_steps: 10_000,
+        }
+    }
+}

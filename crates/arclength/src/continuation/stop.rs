@@ -1,0 +1,71 @@
+//! Why a continuation run ended, what to try, in words.
+
+use super::CorrectionFailure;
+use crate::error::Error;
+
+/// The reason for which a run ended in one direction.
+#[derive(Debug)]
+pub enum Stop {
+    /// A parameter reached an end of its range.
+    RangeEnd {
+        /// Index of the parameter among the unknowns' bounds.
+        bound: usize,
+        /// The end that was reached.
+        value: f64,
+    },
+    /// The curve came back to where it started.
+    Closed,
+    /// The corrector failed at the smallest step.
+    StepTooSmall {
+        /// Why the last correction failed.
+        cause: CorrectionFailure,
+    },
+    /// The most steps allowed were taken.
+    MostSteps,
+    /// The amplitude went to zero: the branch of cycles ends at a Hopf point.
+    HopfPoint {
+        /// Parameter value there.
+        parameter: f64,
+        /// Angular frequency there.
+        frequency: f64,
+    },
+    /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit.
+    PeriodUnbounded {
+        /// Period of the last cycle.
+        period: f64,
+        /// Parameter value of the last cycle.
+        parameter: f64,
+    },
+    /// The observer asked for the end.
+    Interrupted,
+    /// The problem could not be resolved any further.
+    Failed(Error),
+}
+
+impl std::fmt::Display for Stop {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::RangeEnd { value, .. } => write!(formatter, "reached the end of the range at {value}"),
+            Self::Closed => write!(formatter, "the branch is closed: it came back to where it started"),
+            Self::StepTooSmall { cause } => write!(
+                formatter,
+                "the step became too small: {cause}; the field may not be smooth here, or a scale may be \
+                 extreme: try another parameter, or start from the last labelled point"
+            ),
+            Self::MostSteps => {
+                write!(formatter, "the most steps allowed were taken; allow more, or narrow the range")
+            }
+            Self::HopfPoint { parameter, frequency } => write!(
+                formatter,
+                "the cycles shrink to a Hopf point at {parameter} with angular frequency {frequency}"
+            ),
+            Self::PeriodUnbounded { period, parameter } => write!(
+                formatter,
+                "the period grows without bound ({period} at {parameter}): a homoclinic or heteroclinic \
+                 orbit is near"
+            ),
+            Self::Interrupted => write!(formatter, "interrupted"),
+            Self::Failed(error) => write!(formatter, "{error}"),
+        }
+    }
+}

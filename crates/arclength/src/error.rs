@@ -1,0 +1,46 @@
+//! The one error type of the crate.
+
+use crate::continuation::CorrectionFailure;
+
+/// What can go wrong in a computation of this crate.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum Error {
+    /// Newton's method did not find the solution asked for.
+    #[error("no {sought} found from the start given: {cause}; try a start closer to it")]
+    NotFound {
+        /// What was sought: "equilibrium", "limit cycle", "Hopf point" and so on.
+        sought: &'static str,
+        /// Why the corrector gave up.
+        #[source]
+        cause: CorrectionFailure,
+    },
+    /// Eigenvalues or multipliers did not converge.
+    #[error(
+        "the {quantity} could not be computed: the matrix has entries that are not finite, or the iteration did not converge"
+    )]
+    Eigenvalues {
+        /// "eigenvalues" or "Floquet multipliers".
+        quantity: &'static str,
+    },
+    /// The mesh would need more intervals than allowed.
+    #[error(
+        "the cycle needs more than {limit} mesh intervals (error estimate {error_estimate:e}); \
+         raise the limit or the tolerance"
+    )]
+    MeshLimit {
+        /// Most intervals allowed.
+        limit: usize,
+        /// Error estimate on the finest mesh tried.
+        error_estimate: f64,
+    },
+    /// A setting or start value is outside what is allowed.
+    #[error("{name} = {value} is not allowed: {allowed}")]
+    Invalid {
+        /// What was given.
+        name: String,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+}
