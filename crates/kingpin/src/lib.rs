@@ -19,6 +19,7 @@ pub mod contact;
 pub mod error;
 pub mod parameters;
 pub mod rolling;
+pub mod simulation;
 pub mod uniform_motion;
 pub mod wheel;
 
