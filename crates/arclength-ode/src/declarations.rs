@@ -141,15 +141,20 @@ impl Declarations {
         let value = Lowering::new(&self.symbols).lower_constant(&expression, "the value")?;
         self.warnings.push(Warning::new(
             line.span(start, end),
-            format!("`{text}` is a formula where XPPAUT reads only the leading number; it is taken as {value}"),
+            format!(
+                "`{text}` is a formula where XPPAUT reads only the leading number; it is taken as {value}"
+            ),
         ));
         Ok(value)
     }
 
     fn declare(&mut self, name: &Name, symbol: Symbol) -> Result<(), OdeError> {
         let key = name.key();
-        let taken =
-            |as_what: String| OdeError::NameTaken { place: name.span.into(), name: name.text.clone(), as_what };
+        let taken = |as_what: String| OdeError::NameTaken {
+            place: name.span.into(),
+            name: name.text.clone(),
+            as_what,
+        };
         if !name.text.chars().all(crate::source::is_identifier_part)
             || !name.text.starts_with(crate::source::is_identifier_start)
         {

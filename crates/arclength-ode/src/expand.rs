@@ -84,13 +84,13 @@ fn is_include(line: &Text, start: usize) -> bool {
     word.eq_ignore_ascii_case("#include")
 }
 
-/// The line `done`, which may be abbreviated to `d`.
+/// The line `done`, which XPPAUT knows by its first letter.
 fn is_done(line: &Text) -> bool {
     let start = line.skip_blanks(0);
     let end = line.identifier_end(start);
     let word = line.string(start, end).to_ascii_lowercase();
     let next = line.at(line.skip_blanks(end));
-    word == "done" && !matches!(next, '=' | '\'' | '(' | '/') || word == "d" && next == '\0'
+    word == "done" && !matches!(next, '=' | '\'' | '(' | '/') || word.starts_with('d') && next == '\0'
 }
 
 /// `first..last` in brackets; runs downwards when `last < first`.

@@ -254,7 +254,7 @@ fn read(source: &str) -> Result<Model, OdeError> {
     drop(lowering);
     let sets = std::mem::take(&mut declarations.sets)
         .iter()
-        .map(|set| named_set(set, &declarations))
+        .map(|set| named_set(set, &declarations, source))
         .collect::<Result<_, _>>()?;
     let mut options = declarations.options;
     for entry in &mut options.entries {
@@ -299,7 +299,11 @@ fn filled(mut place: Place, source: &str) -> Place {
     place
 }
 
-fn named_set(definition: &SetDefinition, declarations: &Declarations) -> Result<NamedSet, OdeError> {
+fn named_set(
+    definition: &SetDefinition,
+    declarations: &Declarations,
+    source: &str,
+) -> Result<NamedSet, OdeError> {
     let mut set = NamedSet {
         name: definition.name.text.clone(),
         states: Vec::new(),
@@ -317,7 +321,7 @@ fn named_set(definition: &SetDefinition, declarations: &Declarations) -> Result<
             _ => set.options.push(OptionEntry {
                 name: name.key(),
                 value: value.clone(),
-                place: name.span.into(),
+                place: filled(name.span.into(), source),
             }),
         }
     }

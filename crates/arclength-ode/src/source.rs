@@ -63,7 +63,10 @@ impl Text {
     }
 
     pub fn string(&self, start: usize, end: usize) -> String {
-        self.characters.get(start..end.min(self.len())).map(|slice| slice.iter().collect()).unwrap_or_default()
+        self.characters
+            .get(start..end.min(self.len()))
+            .map(|slice| slice.iter().collect())
+            .unwrap_or_default()
     }
 
     /// First index from `start` that holds no white space; the length if there is none.

@@ -53,6 +53,9 @@ pub(crate) enum Statement {
 /// Directives as XPPAUT knows them, for suggestions.
 const DIRECTIVES: [&str; 9] = ["par", "number", "init", "aux", "set", "options", "bdry", "only", "done"];
 
+/// Spellings of the directive that gives a boundary condition.
+const BOUNDARY: [&str; 4] = ["b", "bdry", "bndry", "boundary"];
+
 /// Says what a non-empty line is.
 pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
     let start = line.skip_blanks(0);
@@ -96,6 +99,8 @@ pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
         )),
         '\'' => Ok(Statement::Equation(name, after_equals(line, next + 1)?)),
         '/' if line.lower_at(start) == 'd' && end > start + 1 => leibniz(line, start, end, next),
+        // `b (x-1)` is a boundary condition, `f (x)=...` a function.
+        '(' if next > end && BOUNDARY.contains(&name.key().as_str()) => directive(line, name, next),
         '(' => with_parentheses(line, name, next),
         _ => directive(line, name, next),
     }
@@ -177,11 +182,13 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
         "n" | "num" | "nums" | "number" | "numbers" => Ok(Statement::Numbers(rest)),
         "i" | "ic" | "init" | "initial" => Ok(Statement::Initial(rest)),
         "a" | "au" | "aux" | "auxiliary" => {
-            let (name, end) = name_at(line, rest)?;
+            // Nothing refers to an auxiliary quantity, so its name may hold any character.
+            let end = line.find(rest, |character| character == '=' || character.is_whitespace());
+            let name = Name { text: line.string(rest, end), span: line.span(rest, end) };
             Ok(Statement::Auxiliary(name, after_equals(line, end)?))
         }
         "set" => set(line, rest),
-        "b" | "bdry" | "bndry" | "boundary" => Ok(Statement::Ignored(
+        key if BOUNDARY.contains(&key) => Ok(Statement::Ignored(
             word.span,
             "boundary conditions are ignored: equilibria and cycles have none",
         )),
@@ -189,7 +196,6 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
         "o" | "opt" | "option" | "options" => {
             Ok(Statement::Ignored(word.span, "a file of options is not read: give the options on a line @"))
         }
-        "d" => Ok(Statement::Ignored(word.span, "text after the letter d is ignored")),
         "g" | "global" => refuse(
             "events that reset the state (global) are",
             "only smooth systems can be continued; remove the line to follow the flow between events",
@@ -200,7 +206,7 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
         "m" | "markov" => {
             refuse("a Markov variable is", "replace it by the differential equation of its mean")
         }
-        "t" | "tab" | "table" => {
+        "t" | "tab" | "table" | "tabular" => {
             refuse("a table is", "write the tabulated function as a formula, f(x)=...")
         }
         "v" | "volt" | "volterra" => refuse(
@@ -220,7 +226,9 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
         "group" => refuse("a group is", "write its parts as plain equations"),
         _ => {
             let next = line.at(rest);
-            if nearest(&key, DIRECTIVES).is_none() && next != '\0' && !crate::source::is_identifier_start(next)
+            if nearest(&key, DIRECTIVES).is_none()
+                && next != '\0'
+                && !crate::source::is_identifier_start(next)
             {
                 let message = format!("expected = after `{}`, found `{next}`", word.text);
                 return Err(OdeError::syntax(line.span(rest, rest + 1), message));

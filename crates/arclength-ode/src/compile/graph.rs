@@ -111,7 +111,8 @@ impl Graph {
             (Power, (_, Some(exponent))) => return self.constant_power(a, b, exponent),
             _ => {}
         }
-        if let (Add | Subtract | Multiply | Divide, Some(node)) = (operation, self.without_signs(operation, a, b))
+        if let (Add | Subtract | Multiply | Divide, Some(node)) =
+            (operation, self.without_signs(operation, a, b))
         {
             return node;
         }

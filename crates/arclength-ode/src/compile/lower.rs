@@ -272,7 +272,9 @@ impl<'a> Lowering<'a> {
             (Symbol::Parameter(index), Scope::Field | Scope::Parameters | Scope::Initial) => {
                 Ok(self.graph.insert(Operation::Parameter(index as u32)))
             }
-            (Symbol::Derived(index), Scope::Field | Scope::Parameters | Scope::Initial) => self.derived(index, span),
+            (Symbol::Derived(index), Scope::Field | Scope::Parameters | Scope::Initial) => {
+                self.derived(index, span)
+            }
             (Symbol::Function(_), _) => {
                 Err(OdeError::syntax(span, format!("`{name}` is a function: expected ( and its arguments")))
             }
@@ -308,12 +310,8 @@ impl<'a> Lowering<'a> {
             }
             Progress::NotStarted => {
                 self.fixed[index] = Progress::Started;
-                let within = Environment {
-                    scope: Scope::Field,
-                    arguments: &[],
-                    sum_index: None,
-                    fixed: Some(index),
-                };
+                let within =
+                    Environment { scope: Scope::Field, arguments: &[], sum_index: None, fixed: Some(index) };
                 let node = self.expression(&definition.expression, within)?;
                 self.fixed[index] = Progress::Done(node);
                 Ok(node)

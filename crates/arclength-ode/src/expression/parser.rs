@@ -28,7 +28,8 @@ pub(crate) fn parse_expression(
         Token::Symbol(")") => Err(parser.error("this parenthesis ) was never opened")),
         Token::Symbol("=") => Err(parser.error("expected the end of the expression; equality is written ==")),
         Token::Symbol("'") => {
-            Err(parser.error("derivatives can be used by name only: define the right-hand side as a quantity"))
+            Err(parser
+                .error("derivatives can be used by name only: define the right-hand side as a quantity"))
         }
         Token::Name(_) | Token::Number(_) | Token::Symbol("(") => {
             Err(parser.error("expected an operator here; products are written with *"))

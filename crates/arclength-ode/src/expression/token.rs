@@ -15,8 +15,8 @@ pub(crate) enum Token {
 
 /// Punctuation, longest first.
 const SYMBOLS: [&str; 26] = [
-    "**", "==", ">=", "<=", "!=", "<>", "&&", "||", "+", "-", "*", "/", "^", "(", ")", ",", ">", "<", "&", "|",
-    "{", "}", "[", "]", "'", "=",
+    "**", "==", ">=", "<=", "!=", "<>", "&&", "||", "+", "-", "*", "/", "^", "(", ")", ",", ">", "<", "&",
+    "|", "{", "}", "[", "]", "'", "=",
 ];
 
 /// Splits `line[start..end]` into tokens with their places; the last is [`Token::End`].
@@ -78,6 +78,7 @@ fn number_end(line: &Text, start: usize) -> usize {
 
 /// A decimal number with an optional sign, such as `-1e-3`, `.5` or `2.`; neither `inf` nor `nan`.
 pub(crate) fn parse_number(text: &str) -> Option<f64> {
-    let starts_well = text.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
+    let starts_well =
+        text.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
     if starts_well { text.parse().ok() } else { None }
 }

@@ -58,8 +58,7 @@ impl Tape {
     fn run<T: Scalar, const N: usize>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         let mut registers = [T::zero(); N];
         registers[..self.states].copy_from_slice(&state[..self.states]);
-        registers[self.states..self.states + self.parameters]
-            .copy_from_slice(&parameters[..self.parameters]);
+        registers[self.states..self.states + self.parameters].copy_from_slice(&parameters[..self.parameters]);
         for instruction in &self.instructions {
             execute(instruction, time, &mut registers);
         }
@@ -73,8 +72,7 @@ impl Tape {
     fn run_on_heap<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         let mut registers = vec![T::zero(); self.registers];
         registers[..self.states].copy_from_slice(&state[..self.states]);
-        registers[self.states..self.states + self.parameters]
-            .copy_from_slice(&parameters[..self.parameters]);
+        registers[self.states..self.states + self.parameters].copy_from_slice(&parameters[..self.parameters]);
         for instruction in &self.instructions {
             execute(instruction, time, registers.as_mut_slice());
         }

@@ -88,7 +88,9 @@ impl<'a> Selection<'a> {
         for &node in &order {
             operations[node as usize].operands().for_each(|operand| uses[operand as usize] += 1);
             match operations[node as usize] {
-                Operation::Unary(UnaryOperation::Sine, angle) => angles.entry(angle).or_default()[0] = Some(node),
+                Operation::Unary(UnaryOperation::Sine, angle) => {
+                    angles.entry(angle).or_default()[0] = Some(node)
+                }
                 Operation::Unary(UnaryOperation::Cosine, angle) => {
                     angles.entry(angle).or_default()[1] = Some(node);
                 }
@@ -125,7 +127,8 @@ impl<'a> Selection<'a> {
             }
             _ => None,
         };
-        let Operation::Binary(operation @ (Add | Subtract), left, right) = self.graph.operations()[node as usize]
+        let Operation::Binary(operation @ (Add | Subtract), left, right) =
+            self.graph.operations()[node as usize]
         else {
             return None;
         };
@@ -204,25 +207,26 @@ fn allot_registers(
     parameters: usize,
 ) -> Tape {
     let inputs = states + parameters;
-    let mut last_use = vec![0_usize; operations.len()];
+    let mut last_use: Vec<Option<usize>> = vec![None; operations.len()];
     for (index, step) in steps.iter().enumerate() {
-        step.reads.iter().for_each(|&node| last_use[node as usize] = index);
+        step.reads.iter().for_each(|&node| last_use[node as usize] = Some(index));
     }
-    results.iter().for_each(|&node| last_use[node as usize] = usize::MAX);
+    results.iter().for_each(|&node| last_use[node as usize] = Some(usize::MAX));
 
     let mut register_of: Vec<Register> = vec![0; operations.len()];
     let mut occupied = vec![false; inputs];
     for (node, operation) in operations.iter().enumerate() {
         let register = match *operation {
+            _ if last_use[node].is_none() => continue,
             Operation::State(index) => index as usize,
             Operation::Parameter(index) => states + index as usize,
             _ => continue,
         };
         register_of[node] = register as Register;
-        occupied[register] = steps.iter().any(|step| step.reads.contains(&(node as NodeId)))
-            || results.contains(&(node as NodeId));
+        occupied[register] = true;
     }
-    let mut free: Vec<Register> = (0..inputs as Register).filter(|&register| !occupied[register as usize]).collect();
+    let mut free: Vec<Register> =
+        (0..inputs as Register).filter(|&register| !occupied[register as usize]).collect();
     let mut registers = inputs as Register;
     let mut instructions = Vec::with_capacity(steps.len());
     for (index, step) in steps.iter().enumerate() {
@@ -231,7 +235,7 @@ fn allot_registers(
         released.sort_unstable();
         released.dedup();
         for node in released {
-            if last_use[node as usize] == index {
+            if last_use[node as usize] == Some(index) {
                 free.push(register_of[node as usize]);
             }
         }
