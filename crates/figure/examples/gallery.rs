@@ -6,7 +6,8 @@ use std::time::Instant;
 
 use kingpin_figure::{
     Axis, Branch, CategoryMap, ColorMap, Dash, Figure, FigureError, Grid, HeatMap, Legend, LegendEntry, Line,
-    Marker, MarkerShape, Markers, Note, Panel, Point, PointLabel, Region, Stability, palette,
+    Marker, MarkerShape, Markers, Note, Panel, Panel3d, Point, PointLabel, Projection, Region, Stability,
+    Wall, palette,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -18,6 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("growth", growth_rate()?),
         ("bifurcation", bifurcation()),
         ("basins", basins()?),
+        ("space", space()),
     ];
     for (name, figure) in figures {
         for ending in ["svg", "png", "pdf"] {
@@ -198,4 +200,44 @@ fn basins() -> Result<Figure, FigureError> {
             .hatched(palette::GREY, 45.0),
     );
     Ok(Figure::double_column().columns(2).panel(basins).panel(convergence))
+}
+
+/// A stability chart on the ground with bifurcation diagrams standing on it.
+fn space() -> Figure {
+    let mut shaded = boundary(1.0);
+    shaded.extend([Point::new(0.0, 0.3), Point::new(0.0, 0.0461)]);
+    let mut panel = Panel3d::new(
+        Axis::new("$v$ (m/s)").limits(0.0, 10.0),
+        Axis::new("$l$ (m)").limits(0.0, 0.3),
+        Axis::new("$\\psi$ (rad)").limits(-1.0, 1.0),
+    )
+    .projection(Projection::axonometric(-32.0, 28.0).perspective(5.0).proportions(1.0, 1.3, 0.42))
+    .ground_region(Region::new(shaded).fill(palette::SKY_BLUE.lightened(0.6)))
+    .ground_curve(Line::new(boundary(1.0)).color(palette::BLUE))
+    .legend_entry(LegendEntry::line("stable", palette::GREEN, Dash::Solid))
+    .legend_entry(LegendEntry::line("unstable", palette::VERMILION, Dash::Dashed))
+    .legend_entry(LegendEntry::patch("linearly stable at $r=1$ m", palette::SKY_BLUE.lightened(0.6)));
+    for l in [0.06, 0.1, 0.15, 0.2, 0.25] {
+        let line = boundary(1.0);
+        let hopf = line.iter().find(|p| p.y >= l).map_or(8.0, |p| p.x);
+        let steady = |v: f64| 0.3 * l + 0.001 * v * v;
+        let uniform = Branch::new(curve(0.0, 10.0, steady).into_iter().map(|p| (p, p.x <= hopf)))
+            .color(palette::GREEN)
+            .unstable_color(palette::VERMILION);
+        let cycle = |sign: f64| {
+            Line::new(curve(0.3, hopf, |v| steady(v) + sign * 0.8 * (1.0 - v / hopf).sqrt()))
+                .dashed()
+                .color(palette::VERMILION)
+        };
+        let hopf_point = (hopf, steady(hopf));
+        panel = panel.wall(
+            Wall::at(l)
+                .curve(uniform)
+                .curve(cycle(1.0))
+                .curve(cycle(-1.0))
+                .point(PointLabel::new(hopf_point, "").marker(Marker::default().size(3.0)))
+                .plumb_line(hopf_point.0, hopf_point.1),
+        );
+    }
+    Figure::double_column().height_mm(105.0).panel(panel)
 }

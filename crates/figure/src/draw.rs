@@ -1,14 +1,14 @@
 //! Draws what a panel shows, inside its frame.
 
 use crate::axis::Scale;
-use crate::color::palette;
+use crate::color::{Color, palette};
 use crate::frame::{Frame, Margins};
-use crate::geometry::{Point, Rect, clip_polygon, clip_polyline, thin};
+use crate::geometry::{Point, Rect, clip_polygon, clip_polyline, cut_out, thin};
 use crate::markers::{draw_hatching, draw_marker};
 use crate::panel::{Map, Panel};
 use crate::placement::Obstacles;
 use crate::scene::{Halo, Item, Path, Scene, Stroke};
-use crate::series::CurvePiece;
+use crate::series::{CurvePiece, Marker, PointLabel};
 use crate::style::{HALO_WIDTH, SMALL_SIZE, THINNING};
 use crate::text::TextLayout;
 
@@ -43,90 +43,101 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
         }
     }
 
+    // Everything is placed before anything is drawn, since a name interrupts its curve.
     let mut obstacles = Obstacles::default();
-    let mut visible = Vec::with_capacity(panel.curves.len());
-    for (index, curve) in panel.curves.iter().enumerate() {
-        let color = panel.curve_color(index);
-        let mut all = Vec::new();
-        for piece in &curve.pieces {
-            let pieces = place.pieces(piece);
-            let mut path = Path::default();
-            pieces.iter().for_each(|points| path.add_polyline(points));
-            let stroke =
-                Stroke { color: piece.color.unwrap_or(color), width: curve.style.width, dash: piece.dash };
-            scene.stroke(path, stroke);
-            all.extend(pieces);
-        }
+    let mut curves = Vec::with_capacity(panel.curves.len());
+    for curve in &panel.curves {
+        let pieces: Vec<_> = curve.pieces.iter().map(|piece| (place.pieces(piece), piece)).collect();
+        let all: Vec<Vec<Point>> = pieces.iter().flat_map(|(points, _)| points).cloned().collect();
         let number = obstacles.add_curve(&all);
-        visible.push((number, all));
+        curves.push((curve, pieces, all, number));
     }
-    // The frame is drawn over curves that end at it, and under markers that lie on it.
-    frame.draw(scene, plot, margins);
-
-    let shown = |p: Point| p.is_finite() && plot.expanded(0.01).contains(p);
-    for markers in &panel.markers {
-        for at in markers.points.iter().map(|p| place.point(*p)).filter(|p| shown(*p)) {
-            draw_marker(scene, markers.marker, at);
-            obstacles.add_box(around(at, 0.5 * markers.marker.size));
-        }
+    let shown = |p: &Point| p.is_finite() && plot.expanded(0.01).contains(*p);
+    let mut markers: Vec<(Point, Marker)> = Vec::new();
+    for series in &panel.markers {
+        markers.extend(series.points.iter().map(|p| (place.point(*p), series.marker)));
     }
-    let points: Vec<_> = panel
-        .points
-        .iter()
-        .map(|label| (place.point(label.at), label))
-        .filter(|(at, _)| shown(*at))
-        .collect();
-    for (at, label) in &points {
-        if let Some(marker) = label.marker {
-            draw_marker(scene, marker, *at);
-            obstacles.add_box(around(*at, 0.5 * marker.size));
-        }
+    let points: Vec<(Point, &PointLabel)> =
+        panel.points.iter().map(|label| (place.point(label.at), label)).filter(|(at, _)| shown(at)).collect();
+    markers.extend(points.iter().filter_map(|(at, label)| Some((*at, label.marker?))));
+    markers.retain(|(at, _)| shown(at));
+    for (at, marker) in &markers {
+        obstacles.add_box(around(*at, 0.5 * marker.size));
     }
-
-    let halo = Some(Halo { color: palette::WHITE, width: HALO_WIDTH });
+    let mut texts = Texts { on_map: panel.map.is_some(), texts: Vec::new() };
     for note in &panel.notes {
         let at = place.point(note.at);
         if at.is_finite() {
             let layout = TextLayout::new(&note.text, SMALL_SIZE);
             let origin = layout.origin(at, note.anchor, SMALL_SIZE);
+            let covers = obstacles.covers_curve(&layout.bounds(origin));
             obstacles.add_box(layout.bounds(origin));
-            scene.text(layout, origin, 0.0, note.color, halo);
+            texts.add(layout, origin, 0.0, note.color, covers);
         }
     }
-    for (index, (curve, (number, pieces))) in panel.curves.iter().zip(&visible).enumerate() {
-        let style = &curve.style;
-        if style.name.is_empty() || pieces.is_empty() {
-            continue;
-        }
-        let layout = TextLayout::new(&style.name, SMALL_SIZE);
-        if let Some((center, degrees)) = obstacles.along_curve(*number, pieces, style.name_at, &layout, plot)
-        {
-            let (sine, cosine) = degrees.to_radians().sin_cos();
-            // From the centre of the text to the start of its baseline, turned with the text.
-            let (dx, dy) = (-0.5 * layout.width, 0.5 * (layout.ascent - layout.descent) - 0.08 * SMALL_SIZE);
-            let origin = center.offset(cosine * dx - sine * dy, sine * dx + cosine * dy);
-            scene.text(layout, origin, degrees, panel.curve_color(index), halo);
-        }
-    }
-    let legend = frame.take_legend(plot);
-    let mut inside = None;
-    if let Some((legend, corner)) = legend {
-        match corner {
-            Some(corner) => legend.draw(scene, corner, false),
-            None => {
-                let corner = obstacles.emptiest(legend.width, legend.height, plot);
-                inside = Some((legend, corner));
+
+    for (index, (curve, pieces, all, number)) in curves.iter().enumerate() {
+        let color = panel.curve_color(index);
+        let mut hole = None;
+        if !curve.style.name.is_empty() {
+            let layout = TextLayout::new(&curve.style.name, SMALL_SIZE);
+            if let Some((center, angle)) =
+                obstacles.along_curve(*number, all, curve.style.name_at, &layout, plot)
+            {
+                let (sine, cosine) = angle.sin_cos();
+                // From the centre of the text to the start of its baseline, turned with the text.
+                let (dx, dy) =
+                    (-0.5 * layout.width, 0.5 * (layout.ascent - layout.descent) - 0.06 * SMALL_SIZE);
+                let origin = center.offset(cosine * dx - sine * dy, sine * dx + cosine * dy);
+                hole = Some((center, angle, layout.width + 4.0, layout.height()));
+                texts.add(layout, origin, angle.to_degrees(), color, false);
             }
         }
+        for (visible, piece) in pieces {
+            let mut path = Path::default();
+            for points in visible {
+                match hole {
+                    Some((center, angle, width, height)) => cut_out(points, center, angle, width, height)
+                        .iter()
+                        .for_each(|part| path.add_polyline(part)),
+                    None => path.add_polyline(points),
+                }
+            }
+            let (color, width) = (piece.color.unwrap_or(color), curve.style.width);
+            scene.stroke(path, Stroke { color, width, dash: piece.dash });
+        }
     }
-    if let Some((legend, corner)) = inside {
-        legend.draw(scene, corner, true);
+    // The frame is drawn over curves that end at it, and under markers that lie on it.
+    frame.draw(scene, plot, margins);
+    for (at, marker) in markers {
+        draw_marker(scene, marker, at);
+    }
+    if let Some((legend, corner)) = frame.take_legend(plot) {
+        let inside = corner.is_none();
+        let corner = corner.unwrap_or_else(|| obstacles.emptiest(legend.width, legend.height, plot));
+        legend.draw(scene, corner, inside);
     }
     for (at, label) in points {
         let radius = label.marker.map_or(0.0, |marker| 0.5 * marker.size);
         let layout = TextLayout::new(&label.text, SMALL_SIZE);
         let origin = obstacles.beside_point(at, radius, &layout, plot);
-        scene.text(layout, origin, 0.0, palette::BLACK, halo);
+        let covers = obstacles.covers_curve(&layout.bounds(origin));
+        texts.add(layout, origin, 0.0, palette::BLACK, covers);
+    }
+    scene.items.extend(texts.texts);
+}
+
+/// Texts to be drawn last, with a rim where they lie on something.
+struct Texts {
+    on_map: bool,
+    texts: Vec<Item>,
+}
+
+impl Texts {
+    fn add(&mut self, layout: TextLayout, at: Point, degrees: f64, color: Color, covers: bool) {
+        let rim = Halo { color: palette::WHITE, width: HALO_WIDTH };
+        let halo = (covers || self.on_map).then_some(rim);
+        self.texts.push(Item::Text { layout, at, degrees, color, halo });
     }
 }
 

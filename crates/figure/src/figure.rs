@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use crate::draw::draw_panel;
+use crate::draw3d::draw_panel3d;
 use crate::error::FigureError;
 use crate::frame::{Frame, Margins};
 use crate::geometry::Rect;
 use crate::panel::Panel;
+use crate::panel3d::Panel3d;
 use crate::save::{Format, write_atomically};
 use crate::scene::Scene;
 use crate::svg::POINTS_PER_MM;
@@ -46,7 +48,38 @@ pub struct Figure {
     column_weights: Vec<f64>,
     row_weights: Vec<f64>,
     description: String,
-    panels: Vec<Panel>,
+    panels: Vec<Content>,
+}
+
+/// What fills one place of the grid of a figure: a [`Panel`] or a [`Panel3d`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// A panel with two axes.
+    Plane(Box<Panel>),
+    /// A panel in space.
+    Space(Box<Panel3d>),
+}
+
+impl From<Panel> for Content {
+    fn from(panel: Panel) -> Self {
+        Content::Plane(Box::new(panel))
+    }
+}
+
+impl From<Panel3d> for Content {
+    fn from(panel: Panel3d) -> Self {
+        Content::Space(Box::new(panel))
+    }
+}
+
+impl Content {
+    fn margins(&self, (width, height): (f64, f64)) -> Margins {
+        match self {
+            Content::Plane(panel) => Frame::new(panel, width, height).margins,
+            // Its labels stand inside its place.
+            Content::Space(_) => Margins::default(),
+        }
+    }
 }
 
 impl Figure {
@@ -98,9 +131,9 @@ impl Figure {
         Self { description: text.into(), ..self }
     }
 
-    /// Adds a panel.
-    pub fn panel(mut self, panel: Panel) -> Self {
-        self.panels.push(panel);
+    /// Adds a [`Panel`] or a [`Panel3d`].
+    pub fn panel(mut self, panel: impl Into<Content>) -> Self {
+        self.panels.push(panel.into());
         self
     }
 
@@ -164,8 +197,13 @@ impl Figure {
         let mut scene =
             Scene { width, height: page.height, description: self.description.clone(), items: Vec::new() };
         for ((panel, plot), margins) in self.panels.iter().zip(&page.plots).zip(&page.margins) {
-            let frame = Frame::new(panel, plot.width(), plot.height());
-            draw_panel(&mut scene, panel, frame, plot, margins);
+            match panel {
+                Content::Plane(panel) => {
+                    let frame = Frame::new(panel, plot.width(), plot.height());
+                    draw_panel(&mut scene, panel, frame, plot, margins);
+                }
+                Content::Space(panel) => draw_panel3d(&mut scene, panel, plot),
+            }
         }
         scene
     }
@@ -176,8 +214,8 @@ impl Figure {
         let mut right = left.clone();
         let mut top = vec![0.0_f64; down.len()];
         let mut bottom = top.clone();
-        for (i, (panel, (w, h))) in self.panels.iter().zip(sizes).enumerate() {
-            let margins = Frame::new(panel, *w, *h).margins;
+        for (i, (panel, size)) in self.panels.iter().zip(sizes).enumerate() {
+            let margins = panel.margins(*size);
             let (row, column) = (i / across.len(), i % across.len());
             left[column] = left[column].max(margins.left);
             right[column] = right[column].max(margins.right);

@@ -17,6 +17,8 @@ const BAR_GAP: f64 = 6.0;
 const ROW_ROOM: f64 = 22.0;
 /// Room between tick labels along a horizontal axis.
 const COLUMN_ROOM: f64 = 14.0;
+/// How much wider than its panel a legend below it may be.
+const BELOW_OVERHANG: f64 = 16.0;
 /// Gap between panel and tag, title or a common power of ten.
 const ABOVE_GAP: f64 = 3.5;
 
@@ -128,8 +130,9 @@ impl Frame {
             _ => None,
         };
         let entries = panel.entries();
-        let legend = (panel.legend != Legend::None && !entries.is_empty())
-            .then(|| LegendLayout::new(&entries, (panel.legend == Legend::Below).then_some(width)));
+        let legend = (panel.legend != Legend::None && !entries.is_empty()).then(|| {
+            LegendLayout::new(&entries, (panel.legend == Legend::Below).then_some(width + BELOW_OVERHANG))
+        });
         let mut frame = Self {
             x,
             y,

@@ -61,7 +61,7 @@ impl From<&(f64, f64)> for Point {
 }
 
 /// An axis-parallel rectangle on the page, y downwards.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Rect {
     pub left: f64,
     pub top: f64,
@@ -175,6 +175,41 @@ pub(crate) fn clip_polyline(points: &[Point], rect: &Rect) -> Vec<Vec<Point>> {
     pieces
 }
 
+/// The parts of a polyline outside a rectangle that is turned by an angle in radians about its centre.
+pub(crate) fn cut_out(
+    points: &[Point],
+    center: Point,
+    angle: f64,
+    width: f64,
+    height: f64,
+) -> Vec<Vec<Point>> {
+    let (sine, cosine) = angle.sin_cos();
+    let turned = |p: Point| {
+        let (dx, dy) = (p.x - center.x, p.y - center.y);
+        Point::new(cosine * dx + sine * dy, cosine * dy - sine * dx)
+    };
+    let hole = Rect::new(-0.5 * width, -0.5 * height, 0.5 * width, 0.5 * height);
+    let mut pieces = Vec::new();
+    let mut piece: Vec<Point> = points.first().copied().into_iter().collect();
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if let Some((enter, leave)) = clip_segment(turned(a), turned(b), &hole) {
+            if enter > 0.0 {
+                piece.push(a.lerp(b, enter));
+                flush(&mut piece, &mut pieces);
+            }
+            piece = if leave < 1.0 { vec![a.lerp(b, leave), b] } else { Vec::new() };
+        } else {
+            if piece.is_empty() {
+                piece.push(a);
+            }
+            piece.push(b);
+        }
+    }
+    flush(&mut piece, &mut pieces);
+    pieces
+}
+
 fn flush(piece: &mut Vec<Point>, pieces: &mut Vec<Vec<Point>>) {
     if piece.len() > 1 {
         pieces.push(std::mem::take(piece));
@@ -271,6 +306,17 @@ mod tests {
         let clipped = clip_polygon(&around, &WINDOW);
         assert_eq!(clipped.len(), 4);
         assert!(WINDOW.corners().iter().all(|corner| clipped.contains(corner)));
+    }
+
+    #[test]
+    fn a_hole_is_cut_out_of_a_line() {
+        let line = [(0.0, 0.0), (3.0, 3.0), (4.0, 4.0), (10.0, 10.0)].map(Point::from);
+        let pieces = cut_out(&line, Point::new(4.0, 4.0), std::f64::consts::FRAC_PI_4, 2.0, 1.0);
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        assert_eq!(pieces.len(), 2);
+        assert!(pieces[0][pieces[0].len() - 1].distance(Point::new(4.0 - half, 4.0 - half)) < 1e-12);
+        assert!(pieces[1][0].distance(Point::new(4.0 + half, 4.0 + half)) < 1e-12);
+        assert_eq!(cut_out(&line, Point::new(50.0, 0.0), 0.0, 1.0, 1.0), vec![line.to_vec()]);
     }
 
     #[test]

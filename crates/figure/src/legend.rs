@@ -62,27 +62,31 @@ const INSET: f64 = 3.0;
 
 /// A legend with its entries set and arranged.
 pub(crate) struct LegendLayout {
-    entries: Vec<(TextLayout, Swatch)>,
-    columns: usize,
-    column_width: f64,
+    /// Each entry with the place of its swatch: left end, half height, relative to the upper left corner.
+    entries: Vec<(TextLayout, Swatch, Point)>,
     pub width: f64,
     pub height: f64,
 }
 
 impl LegendLayout {
-    /// Arranges the entries in as many columns as fit a width; one column when no width is given.
+    /// Arranges the entries in rows that fit a width, or below each other when no width is given.
     pub fn new(entries: &[LegendEntry], available: Option<f64>) -> Self {
-        let entries: Vec<_> =
-            entries.iter().map(|entry| (TextLayout::new(&entry.text, SMALL_SIZE), entry.swatch)).collect();
-        let widest = entries.iter().map(|(layout, _)| layout.width).fold(0.0, f64::max);
-        let column_width = SWATCH_WIDTH + SWATCH_GAP + widest;
-        let fitting =
-            available.map_or(1, |width| ((width + COLUMN_GAP) / (column_width + COLUMN_GAP)) as usize);
-        let columns = fitting.clamp(1, entries.len().max(1));
-        let rows = entries.len().div_ceil(columns);
-        let width = columns as f64 * (column_width + COLUMN_GAP) - COLUMN_GAP + 2.0 * INSET;
-        let height = rows as f64 * ROW_HEIGHT + 2.0 * INSET - 1.0;
-        Self { entries, columns, column_width, width, height }
+        let mut placed = Vec::with_capacity(entries.len());
+        let (mut left, mut row, mut widest) = (0.0, 0, 0.0_f64);
+        for (i, entry) in entries.iter().enumerate() {
+            let layout = TextLayout::new(&entry.text, SMALL_SIZE);
+            let width = SWATCH_WIDTH + SWATCH_GAP + layout.width;
+            if i > 0 && available.is_none_or(|available| left + width > available) {
+                row += 1;
+                left = 0.0;
+            }
+            let at = Point::new(INSET + left, INSET + (f64::from(row) + 0.5) * ROW_HEIGHT - 0.5);
+            placed.push((layout, entry.swatch, at));
+            left += width + COLUMN_GAP;
+            widest = widest.max(left - COLUMN_GAP);
+        }
+        let height = f64::from(row + 1) * ROW_HEIGHT + 2.0 * INSET - 1.0;
+        Self { entries: placed, width: widest + 2.0 * INSET, height }
     }
 
     /// Draws the legend with its upper left corner at a point, on a white ground where it lies on the panel.
@@ -91,13 +95,10 @@ impl LegendLayout {
             let rect = Rect::new(corner.x, corner.y, corner.x + self.width, corner.y + self.height);
             scene.fill(Path::rectangle(&rect), palette::WHITE.with_opacity(0.85));
         }
-        for (i, (layout, swatch)) in self.entries.into_iter().enumerate() {
-            let (row, column) = (i / self.columns, i % self.columns);
-            let left = corner.x + INSET + column as f64 * (self.column_width + COLUMN_GAP);
-            let middle = corner.y + INSET + (row as f64 + 0.5) * ROW_HEIGHT - 0.5;
-            draw_swatch(scene, swatch, Point::new(left, middle));
-            let start = Point::new(left + SWATCH_WIDTH + SWATCH_GAP, middle);
-            let origin = layout.origin(start, Anchor::Left, SMALL_SIZE);
+        for (layout, swatch, at) in self.entries {
+            let left = corner.offset(at.x, at.y);
+            draw_swatch(scene, swatch, left);
+            let origin = layout.origin(left.offset(SWATCH_WIDTH + SWATCH_GAP, 0.0), Anchor::Left, SMALL_SIZE);
             scene.text(layout, origin, 0.0, palette::BLACK, None);
         }
     }

@@ -1,8 +1,8 @@
 //! Draws scientific figures at journal standard and writes them as SVG, PNG and PDF.
 //!
 //! A [`Figure`] holds [`Panel`]s; a panel has two [`Axis`] and shows curves ([`Line`], [`Branch`]), [`Markers`],
-//! labelled points ([`PointLabel`]), [`Region`]s, [`Note`]s and maps ([`HeatMap`], [`CategoryMap`]). Text is drawn as
-//! outlines of embedded fonts, so files look the same everywhere. The same figure gives the same bytes.
+//! labelled points ([`PointLabel`]), [`Region`]s, [`Note`]s and maps ([`HeatMap`], [`CategoryMap`]). A [`Panel3d`] shows a
+//! chart on the ground with diagrams on upright [`Wall`]s. Text is drawn as outlines of embedded fonts, so files look the same everywhere. The same figure gives the same bytes.
 //!
 //! ```
 //! use kingpin_figure::{Axis, Branch, Figure, Panel, PointLabel, Stability};
@@ -35,6 +35,7 @@ mod axis;
 mod color;
 mod contour;
 mod draw;
+mod draw3d;
 mod error;
 mod figure;
 mod font;
@@ -45,9 +46,11 @@ mod legend;
 mod markers;
 mod markup;
 mod panel;
+mod panel3d;
 mod pdf;
 mod placement;
 mod png;
+mod projection;
 mod save;
 mod scene;
 mod series;
@@ -59,11 +62,13 @@ mod ticks;
 pub use axis::Axis;
 pub use color::{Color, ColorMap, palette};
 pub use error::FigureError;
-pub use figure::Figure;
+pub use figure::{Content, Figure};
 pub use geometry::Point;
 pub use grid::{CategoryMap, Grid, HeatMap};
 pub use legend::{Legend, LegendEntry};
 pub use panel::{Map, Panel};
+pub use panel3d::{Panel3d, Wall};
+pub use projection::Projection;
 pub use save::Format;
 pub use scene::Dash;
 pub use series::{Branch, Curve, Line, Marker, MarkerShape, Markers, Note, PointLabel, Region, Stability};

@@ -9,6 +9,11 @@ use crate::text::TextLayout;
 /// Cost of covering another label, per square point, and of standing out of the panel.
 const LABEL_COST: f64 = 3.0;
 const OUTSIDE_COST: f64 = 1e6;
+/// A legend is tried at this many steps across the panel. Its cost for covering curves, and for standing away from the
+/// edges, each per point.
+const LEGEND_STEPS: u32 = 12;
+const COVERING_COST: f64 = 10.0;
+const INLAND_COST: f64 = 0.3;
 /// Gap between a label and what it belongs to, in points.
 const GAP: f64 = 2.0;
 
@@ -33,6 +38,11 @@ impl Obstacles {
 
     pub fn add_box(&mut self, rect: Rect) {
         self.boxes.push(rect);
+    }
+
+    /// Whether the rectangle covers a curve.
+    pub fn covers_curve(&self, rect: &Rect) -> bool {
+        self.segments.iter().any(|(a, b, _)| length_inside(*a, *b, rect) > 0.0)
     }
 
     /// The cost of covering the rectangle, not counting the given curve.
@@ -72,7 +82,7 @@ impl Obstacles {
                 } else {
                     OUTSIDE_COST + beyond(&rect, frame)
                 };
-                let cost = outside + self.cost(&rect.expanded(1.0), None) + 3.0 * f64::from(ring);
+                let cost = outside + self.cost(&rect.expanded(1.5), None) + 3.0 * f64::from(ring);
                 if cost < best.0 - 1e-9 {
                     best = (cost, Point::new(rect.left, rect.bottom - layout.descent));
                 }
@@ -82,7 +92,7 @@ impl Obstacles {
         best.1
     }
 
-    /// Where a name on a curve is centred, and its slope in degrees; `None` when the curve is too short for it.
+    /// Where a name on a curve is centred, and its slope in radians; `None` when the curve is too short for it.
     pub fn along_curve(
         &mut self,
         curve: usize,
@@ -116,7 +126,8 @@ impl Obstacles {
                 for i in 0..squares {
                     let shift = (i as f64 + 0.5) / squares as f64 * width - 0.5 * width;
                     let center = middle.offset(shift * angle.cos(), shift * angle.sin());
-                    let square = Rect::new(center.x, center.y, center.x, center.y).expanded(0.5 * height);
+                    let square =
+                        Rect::new(center.x, center.y, center.x, center.y).expanded(0.5 * height + 1.0);
                     if !frame.encloses(&square) {
                         cost += 100.0;
                     }
@@ -145,22 +156,23 @@ impl Obstacles {
             center.x + reach_x,
             center.y + reach_y,
         ));
-        Some((center, angle.to_degrees()))
+        Some((center, angle))
     }
 
     /// The upper left corner of a box of the given size where it covers least, corners preferred.
     pub fn emptiest(&mut self, width: f64, height: f64, frame: &Rect) -> Point {
         let inner = frame.expanded(-4.0);
         let (room_x, room_y) = ((inner.width() - width).max(0.0), (inner.height() - height).max(0.0));
-        // Right before left and top before bottom, then what lies between.
-        let positions = [1.0, 0.0, 0.5, 0.75, 0.25];
         let mut best = (f64::INFINITY, Point::new(inner.left, inner.top));
-        for (row, y) in [0.0, 1.0, 0.5, 0.25, 0.75].into_iter().enumerate() {
-            for (column, x) in positions.into_iter().enumerate() {
+        for row in 0..=LEGEND_STEPS {
+            for column in 0..=LEGEND_STEPS {
+                // Top before bottom and right before left.
+                let x = 1.0 - f64::from(column) / f64::from(LEGEND_STEPS);
+                let y = f64::from(row) / f64::from(LEGEND_STEPS);
                 let corner = Point::new(inner.left + x * room_x, inner.top + y * room_y);
                 let rect = Rect::new(corner.x, corner.y, corner.x + width, corner.y + height);
-                let inland = 6.0 * (f64::from(row > 1) + f64::from(column > 1));
-                let cost = self.cost(&rect.expanded(2.0), None) + inland;
+                let inland = x.min(1.0 - x) * room_x + y.min(1.0 - y) * room_y;
+                let cost = COVERING_COST * self.cost(&rect.expanded(2.0), None) + INLAND_COST * inland;
                 if cost < best.0 - 1e-9 {
                     best = (cost, corner);
                 }
