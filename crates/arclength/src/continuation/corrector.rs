@@ -27,6 +27,8 @@ pub enum CorrectionFailure {
 
 /// A chord step that shrinks the update less than this asks for a new Jacobian.
 const CHORD_CONTRACTION: f64 = 0.05;
+/// After a first update longer than this the Jacobian at the start is not used again.
+const FAR: f64 = 0.03;
 /// An update this much longer than the one before it counts as divergence.
 const GROWTH_LIMIT: f64 = 2.0;
 /// Updates below this may stagnate at the level of rounding and still count as converged.
@@ -66,11 +68,12 @@ pub fn correct<C: Curve>(
             return Err(CorrectionFailure::NotFinite);
         }
         let contraction = length / previous;
-        let stagnates = contraction > 0.5 && length < STAGNATION_LIMIT;
+        let stagnates = iteration > 1 && contraction > 0.5 && length < STAGNATION_LIMIT;
         // The error left is below length * contraction once the contraction is known.
         let converged = length < settings.corrector_tolerance
-            || (length * contraction.min(1.0) < settings.corrector_tolerance
-                && contraction < CHORD_CONTRACTION);
+            || (iteration > 1
+                && contraction < CHORD_CONTRACTION
+                && length * contraction < settings.corrector_tolerance);
         if converged || stagnates {
             for (entry, origin) in update.iter_mut().zip(unknown.iter().zip(&start)) {
                 *entry = origin.0 - origin.1;
@@ -81,7 +84,7 @@ pub fn correct<C: Curve>(
         if iteration > 1 && contraction > GROWTH_LIMIT {
             return Err(CorrectionFailure::Diverged);
         }
-        fresh_jacobian = contraction > CHORD_CONTRACTION && (length > 1e-3 || previous.is_finite());
+        fresh_jacobian = if iteration == 1 { length > FAR } else { contraction > CHORD_CONTRACTION };
         previous = length;
     }
     Err(CorrectionFailure::Diverged)

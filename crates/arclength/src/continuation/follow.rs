@@ -87,7 +87,7 @@ pub fn follow<C: Curve>(
         return Ok(Followed { solutions, stop: Stop::Interrupted });
     }
     for _ in 0..settings.most_steps {
-        let advanced = match advance(curve, &mut current, &mut previous, &mut step, settings) {
+        let advanced = match advance(curve, &mut current, &mut previous, &mut step, request) {
             Ok(next) => next,
             Err(stop) => return Ok(Followed { solutions, stop }),
         };
@@ -190,7 +190,7 @@ fn converge<C: Curve>(
 }
 
 /// Tangent, orientation and point of a converged solution; the new tangent keeps the direction of the old.
-fn finish<C: Curve>(
+pub(crate) fn finish<C: Curve>(
     curve: &mut C,
     unknown: Vec<f64>,
     old_tangent: &[f64],
@@ -223,8 +223,16 @@ fn advance<C: Curve>(
     current: &mut Solution<C::Point>,
     previous: &mut Option<(Vec<f64>, f64)>,
     step: &mut f64,
-    settings: &Settings,
+    request: &Request,
 ) -> Result<Solution<C::Point>, Stop> {
+    let settings = &request.settings;
+    for bound in &request.bounds {
+        let rate = current.tangent[current.tangent.len() - bound.from_end].abs();
+        let most = settings.largest_parameter_change * (bound.upper - bound.lower);
+        if *step * rate > most {
+            *step = most / rate;
+        }
+    }
     loop {
         let length = *step;
         let mut unknown = predict(current, previous.as_ref(), length);

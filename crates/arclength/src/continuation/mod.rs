@@ -15,6 +15,7 @@ mod stop;
 
 pub use corrector::{Correction, CorrectionFailure, correct};
 pub use curve::{Adaptation, Curve, Solution};
+pub(crate) use follow::finish;
 pub use follow::{Bound, Followed, Origin, Request, follow, locate};
 pub use settings::Settings;
 pub use stop::Stop;

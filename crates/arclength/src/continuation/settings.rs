@@ -9,6 +9,8 @@ pub struct Settings {
     pub initial_step: f64,
     /// Largest step.
     pub largest_step: f64,
+    /// Largest change of a bounded parameter in one step, as part of its range.
+    pub largest_parameter_change: f64,
     /// Step below which the run gives up.
     pub smallest_step: f64,
     /// Distance between predicted and corrected point that the step control aims at.
@@ -25,7 +27,8 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             initial_step: 0.01,
-            largest_step: 0.1,
+            largest_step: 10.0,
+            largest_parameter_change: 0.04,
             smallest_step: 1e-9,
             predictor_error: 0.01,
             corrector_tolerance: 1e-10,

@@ -1,0 +1,404 @@
+//! Branches of limit cycles: where they start, how they are followed, what is kept of them.
+
+use super::collocation::Collocation;
+use super::curve::{CycleCurve, CycleInspection, Resolution};
+use super::limit_cycle::LimitCycle;
+use super::orbit::Orbit;
+use super::problem::PeriodicProblem;
+use super::special::Special;
+use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use crate::error::Error;
+use crate::field::VectorField;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+use std::ops::{ControlFlow, RangeInclusive};
+
+/// Mesh intervals of the first cycle next to a Hopf point.
+const FIRST_INTERVALS: usize = 8;
+/// Amplitude of the first cycle, as part of the amplitude at which the normal form has moved the parameter by
+/// the length of its range.
+const FIRST_AMPLITUDE: f64 = 0.02;
+/// Largest amplitude of the first cycle relative to the size of the equilibrium, for want of a better measure.
+const LARGEST_FIRST_AMPLITUDE: f64 = 0.1;
+
+/// A limit cycle of a branch.
+#[derive(Clone, Debug)]
+pub struct CyclePoint {
+    /// Value of the parameter.
+    pub value: f64,
+    /// Period.
+    pub period: f64,
+    /// Largest value of each state, of the interpolating polynomial.
+    pub max: Vec<f64>,
+    /// Smallest value of each state.
+    pub min: Vec<f64>,
+    /// Floquet multipliers, largest modulus first, the trivial one among them.
+    pub multipliers: Vec<Complex64>,
+    /// Distance of the computed trivial multiplier from 1.
+    pub trivial_multiplier_error: f64,
+    /// Number of nontrivial multipliers outside the unit circle.
+    pub unstable_multipliers: usize,
+    /// Whether the cycle is stable; `None` when a multiplier is closer to the unit circle than the error.
+    pub stable: Option<bool>,
+    /// Error estimate relative to the amplitudes.
+    pub error_estimate: f64,
+    /// Why the cycle is part of the branch.
+    pub role: Role,
+    /// Test functions by name: each changes sign at one kind of special cycle.
+    pub tests: Vec<(&'static str, f64)>,
+    /// The cycle itself.
+    pub orbit: Orbit,
+}
+
+/// Why a cycle is part of a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Role {
+    /// A step of the continuation, or an end of it.
+    Step,
+    /// Asked for by its parameter value.
+    Requested,
+    /// A bifurcation.
+    Special(Special),
+}
+
+/// A branch of limit cycles in the order in which it is traversed.
+#[derive(Debug)]
+pub struct CycleBranch {
+    /// Name of the parameter.
+    pub parameter: String,
+    /// The cycles.
+    pub points: Vec<CyclePoint>,
+    /// Why the branch ends, at its first and at its last point; the first is `None` where it starts at a
+    /// Hopf point.
+    pub stops: (Option<Stop>, Stop),
+}
+
+/// What a branch of cycles starts from.
+#[derive(Clone, Debug)]
+pub enum CycleStart {
+    /// A Hopf point.
+    Hopf {
+        /// Equilibrium.
+        state: Vec<f64>,
+        /// Angular frequency.
+        frequency: f64,
+        /// Critical right eigenvector.
+        eigenvector: Vec<Complex64>,
+        /// Rate at which the real part of the critical eigenvalue changes with the parameter.
+        crossing_speed: f64,
+        /// Real part of the cubic coefficient of the normal form, `first_lyapunov * frequency`.
+        cubic_coefficient: f64,
+    },
+    /// A cycle.
+    Orbit(Orbit),
+}
+
+/// A branch of limit cycles to be followed.
+///
+/// ```
+/// use arclength::cycle::{CycleStart, Cycles};
+/// use arclength::{Scalar, VectorField};
+/// use num_complex::Complex64;
+///
+/// /// x' = rho x - y - x (x^2 + y^2), y' = x + rho y - y (x^2 + y^2): circles of radius sqrt(rho).
+/// struct Circle;
+/// impl VectorField for Circle {
+///     fn state_names(&self) -> Vec<String> { vec!["x".into(), "y".into()] }
+///     fn parameter_names(&self) -> Vec<String> { vec!["rho".into()] }
+///     fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+///         let growth = p[0] - s[0] * s[0] - s[1] * s[1];
+///         d[0] = growth * s[0] - s[1];
+///         d[1] = s[0] + growth * s[1];
+///     }
+/// }
+///
+/// let half = 0.5_f64.sqrt();
+/// let start = CycleStart::Hopf {
+///     state: vec![0.0; 2],
+///     frequency: 1.0,
+///     eigenvector: vec![Complex64::new(half, 0.0), Complex64::new(0.0, -half)],
+///     crossing_speed: 1.0,
+///     cubic_coefficient: -1.0,
+/// };
+/// let branch = Cycles::of(&Circle, start).parameters(&[0.0]).along(0, 0.0..=1.0).at(&[0.25]).run()?;
+/// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).unwrap();
+/// assert!((quarter.max[0] - 0.5).abs() < 1e-8);
+/// assert_eq!(quarter.stable, Some(true));
+/// # Ok::<(), arclength::Error>(())
+/// ```
+pub struct Cycles<'a, F> {
+    field: &'a F,
+    start: CycleStart,
+    parameters: Vec<f64>,
+    active: usize,
+    range: (f64, f64),
+    values: Vec<f64>,
+    resolution: Resolution,
+    settings: Settings,
+    observer: Box<Observer<'a>>,
+}
+
+/// Told every cycle of a branch as it is found; may end the run.
+type Observer<'a> = dyn FnMut(f64, f64) -> ControlFlow<()> + 'a;
+
+impl<'a, F: VectorField> Cycles<'a, F> {
+    /// Cycles of the field, from a start.
+    pub fn of(field: &'a F, start: CycleStart) -> Self {
+        Self {
+            field,
+            start,
+            parameters: Vec::new(),
+            active: 0,
+            range: (f64::NEG_INFINITY, f64::INFINITY),
+            values: Vec::new(),
+            resolution: Resolution::default(),
+            settings: Settings::default(),
+            observer: Box::new(|_, _| ControlFlow::Continue(())),
+        }
+    }
+
+    /// All parameter values at the start.
+    pub fn parameters(mut self, parameters: &[f64]) -> Self {
+        self.parameters = parameters.to_vec();
+        self
+    }
+
+    /// The parameter to vary, by index, and its range.
+    pub fn along(mut self, parameter: usize, range: RangeInclusive<f64>) -> Self {
+        self.active = parameter;
+        self.range = (*range.start(), *range.end());
+        self
+    }
+
+    /// Parameter values at which cycles are wanted exactly.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.values = values.to_vec();
+        self
+    }
+
+    /// Resolution of the cycles.
+    pub fn resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// Settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
+    }
+
+    /// Somebody to tell parameter and period of every cycle found, who may end the run.
+    pub fn observer(mut self, observer: impl FnMut(f64, f64) -> ControlFlow<()> + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Follows the branch: from a Hopf point the one way there is, from a cycle both ways.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a start or range that makes no sense, [`Error::NotFound`] when no cycle is found
+    /// near the start.
+    pub fn run(mut self) -> Result<CycleBranch, Error> {
+        self.validate()?;
+        let parameter = self.field.parameter_names()[self.active].clone();
+        let request = Request {
+            bounds: vec![Bound { from_end: 1, lower: self.range.0, upper: self.range.1 }],
+            values: self.values.clone(),
+            settings: self.settings,
+        };
+        let (unknown, tangent, mesh, degree) = match self.start.clone() {
+            CycleStart::Hopf { state, frequency, eigenvector, crossing_speed, cubic_coefficient } => {
+                self.near_hopf(&state, frequency, &eigenvector, crossing_speed, cubic_coefficient)
+            }
+            CycleStart::Orbit(orbit) => {
+                let mut unknown = orbit.states.clone();
+                unknown.extend([orbit.period, self.parameters[self.active]]);
+                let mut tangent = vec![0.0; unknown.len()];
+                tangent[unknown.len() - 1] = self.range.1 - self.range.0;
+                (unknown, tangent, orbit.mesh.clone(), orbit.degree)
+            }
+        };
+        let from_hopf = matches!(self.start, CycleStart::Hopf { .. });
+        let problem = LimitCycle {
+            field: self.field,
+            parameters: self.parameters.clone(),
+            active: self.active,
+            scales: vec![1.0; self.field.dimension()],
+        };
+        let width = self.range.1 - self.range.0;
+        let mut run = |tangent: Vec<f64>, settings: Settings| -> Result<_, Error> {
+            let collocation = Collocation::new(problem.clone(), mesh.clone(), degree);
+            let mut curve = CycleCurve::new(collocation, self.resolution, width, &unknown);
+            curve.settings = settings;
+            let observer = &mut self.observer;
+            let request = Request { settings, ..request.clone() };
+            let followed = follow(&mut curve, unknown.clone(), tangent, &request, &mut |solution| {
+                let end = solution.unknown.len();
+                observer(solution.unknown[end - 1], solution.unknown[end - 2])
+            })?;
+            Ok(followed)
+        };
+        let forward = run(tangent.clone(), self.settings)?;
+        let (points, stops) = if from_hopf {
+            (points_of(&forward, degree), (None, forward.stop))
+        } else if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+            (points_of(&forward, degree), (Some(Stop::Closed), forward.stop))
+        } else {
+            let backward = run(tangent.iter().map(|entry| -entry).collect(), self.settings)?;
+            let mut points = points_of(&backward, degree);
+            points.reverse();
+            points.pop();
+            points.extend(points_of(&forward, degree));
+            (points, (Some(backward.stop), forward.stop))
+        };
+        Ok(CycleBranch { parameter, points, stops })
+    }
+
+    fn validate(&self) -> Result<(), Error> {
+        let invalid = |name: &str, value: String, allowed: &str| {
+            Err(Error::Invalid { name: name.into(), value, allowed: allowed.into() })
+        };
+        let count = self.field.parameter_names().len();
+        if self.parameters.len() != count {
+            return invalid(
+                "parameters",
+                format!("{} values", self.parameters.len()),
+                &format!("{count} values"),
+            );
+        }
+        if self.active >= count {
+            return invalid(
+                "parameter index",
+                self.active.to_string(),
+                &format!("0 to {}", count.saturating_sub(1)),
+            );
+        }
+        let finite = self.range.0.is_finite() && self.range.1.is_finite();
+        if !(finite && self.range.0 < self.range.1) {
+            return invalid(
+                "range",
+                format!("{}..={}", self.range.0, self.range.1),
+                "finite, start below end",
+            );
+        }
+        let value = self.parameters[self.active];
+        if !(self.range.0..=self.range.1).contains(&value) {
+            return invalid("start value", value.to_string(), "inside the range");
+        }
+        if !(2..=16).contains(&self.resolution.degree) {
+            return invalid("degree", self.resolution.degree.to_string(), "2 to 16");
+        }
+        if !(self.resolution.tolerance > 1e-13 && self.resolution.tolerance < 0.1) {
+            return invalid("tolerance", self.resolution.tolerance.to_string(), "between 1e-13 and 0.1");
+        }
+        Ok(())
+    }
+
+    /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
+    fn near_hopf(
+        &self,
+        state: &[f64],
+        frequency: f64,
+        eigenvector: &[Complex64],
+        crossing_speed: f64,
+        cubic_coefficient: f64,
+    ) -> (Vec<f64>, Vec<f64>, Vec<f64>, usize) {
+        let width = self.range.1 - self.range.0;
+        // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
+        let natural = (width * crossing_speed / cubic_coefficient).abs().sqrt();
+        let limit = state
+            .iter()
+            .zip(eigenvector)
+            .filter(|(value, _)| **value != 0.0)
+            .map(|(value, component)| LARGEST_FIRST_AMPLITUDE * value.abs() / component.norm().max(1e-300))
+            .fold(0.0, f64::max);
+        let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
+        let natural_start = FIRST_AMPLITUDE * natural;
+        let amplitude = if natural_start.is_finite() { natural_start.min(limit) } else { limit };
+        let degree = self.resolution.degree;
+        let mesh: Vec<f64> =
+            (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
+        let gauss = super::gauss::Gauss::new(degree);
+        let (mut unknown, mut tangent) = (Vec::new(), Vec::new());
+        for pair in mesh.windows(2) {
+            let nodes = std::iter::once(0.0).chain(gauss.points.iter().copied());
+            for time in nodes.map(|node| pair[0] + node * (pair[1] - pair[0])) {
+                let phase = Complex64::from_polar(2.0 * amplitude, 2.0 * PI * time);
+                for (value, component) in state.iter().zip(eigenvector) {
+                    let deviation = (component * phase).re;
+                    unknown.push(value + deviation);
+                    tangent.push(deviation);
+                }
+            }
+        }
+        unknown.extend([2.0 * PI / frequency, self.parameters[self.active]]);
+        tangent.extend([0.0, 0.0]);
+        (unknown, tangent, mesh, degree)
+    }
+}
+
+/// Plain data of the solutions found.
+fn points_of(followed: &Followed<CycleInspection>, degree: usize) -> Vec<CyclePoint> {
+    followed.solutions.iter().map(|(solution, origin)| point_of(solution, *origin, degree)).collect()
+}
+
+fn point_of(solution: &Solution<CycleInspection>, origin: Origin, degree: usize) -> CyclePoint {
+    let inspection = &solution.point;
+    let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
+    let (outside, certain) = inspection.floquet.unstable();
+    let special = inspection.special;
+    CyclePoint {
+        value: scalars[1],
+        period: scalars[0],
+        max: inspection.ranges.iter().map(|range| range.largest).collect(),
+        min: inspection.ranges.iter().map(|range| range.smallest).collect(),
+        multipliers: inspection.floquet.multipliers(),
+        trivial_multiplier_error: inspection.floquet.trivial_error,
+        unstable_multipliers: outside,
+        // At a bifurcation a multiplier is on the unit circle by definition.
+        stable: if special.is_some() || !certain { None } else { Some(outside == 0) },
+        error_estimate: inspection.error_estimate,
+        role: match (special, origin) {
+            (Some(special), _) => Role::Special(special),
+            (None, Origin::Requested) => Role::Requested,
+            _ => Role::Step,
+        },
+        tests: vec![
+            ("fold", inspection.fold_test),
+            ("branch point", solution.orientation),
+            ("period doubling", inspection.doubling_test()),
+            ("torus", outside as f64),
+        ],
+        orbit: Orbit {
+            mesh: inspection.mesh.clone(),
+            degree,
+            states: states.to_vec(),
+            period: scalars[0],
+            dimension: inspection.ranges.len(),
+        },
+    }
+}
+
+impl CycleBranch {
+    /// The bifurcations of the branch.
+    pub fn special_points(&self) -> impl Iterator<Item = (Special, &CyclePoint)> {
+        self.points.iter().filter_map(|point| match point.role {
+            Role::Special(special) => Some((special, point)),
+            _ => None,
+        })
+    }
+}
+
+impl<P: PeriodicProblem> Collocation<P> {
+    /// Time points of all nodes, in the order of the unknowns.
+    pub fn node_times(&self) -> Vec<f64> {
+        let mesh = self.mesh();
+        mesh.windows(2)
+            .flat_map(|pair| {
+                std::iter::once(pair[0])
+                    .chain(self.gauss().points.iter().map(move |point| pair[0] + point * (pair[1] - pair[0])))
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,284 @@
+//! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
+
+use super::collocation::Collocation;
+use super::extrema::{Range, ranges};
+use super::floquet::{Floquet, floquet};
+use super::limit_cycle::LimitCycle;
+use super::mesh::{equidistribute, error_profile, intervals_needed};
+use super::problem::PeriodicProblem;
+use super::special;
+use crate::continuation::{Adaptation, Curve, Settings, Solution, Stop};
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::linear::periodic_schur::PeriodicSchur;
+
+/// How finely cycles are resolved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    /// Error estimate, relative to the amplitude of each state variable, that no reported cycle exceeds.
+    pub tolerance: f64,
+    /// Degree of the polynomials, 2 to 16.
+    pub degree: usize,
+    /// Most mesh intervals.
+    pub most_intervals: usize,
+}
+
+impl Default for Resolution {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, degree: 7, most_intervals: 2000 }
+    }
+}
+
+/// Fewest mesh intervals.
+const FEWEST_INTERVALS: usize = 4;
+/// A new mesh aims at this part of the tolerance.
+const TARGET: f64 = 0.2;
+/// The mesh is made coarser when it has this many times the intervals needed.
+const EXCESS: f64 = 1.6;
+/// Part of its mean below which the amplitude of a state does not count as its size.
+const MEAN_PART: f64 = 0.01;
+/// Noise floor of the error estimate: part of the mean that is rounding.
+const ROUNDING_PART: f64 = 1e-6;
+/// A cycle whose amplitude is this part of the largest on its branch is about to end in a Hopf point.
+pub(super) const VANISHING: f64 = 1e-3;
+/// The period has to grow to this many times its start, and its rate of change in the parameter beyond
+/// [`HOMOCLINIC_SENSITIVITY`], to count as unbounded.
+const HOMOCLINIC_GROWTH: f64 = 20.0;
+const HOMOCLINIC_SENSITIVITY: f64 = 1e4;
+
+/// What is known about one cycle.
+#[derive(Clone, Debug)]
+pub struct CycleInspection {
+    /// Error estimate relative to the amplitudes.
+    pub error_estimate: f64,
+    /// Multipliers.
+    pub floquet: Floquet,
+    /// Largest and smallest value of each state.
+    pub(super) ranges: Vec<Range>,
+    /// Mesh of this solution.
+    pub mesh: Vec<f64>,
+    /// Rate of change of the parameter along the curve: zero at a fold.
+    pub fold_test: f64,
+    /// What is special about the cycle.
+    pub special: Option<special::Special>,
+}
+
+impl CycleInspection {
+    /// Product of `1 + mu` over the real nontrivial multipliers, scaled: zero at a period doubling.
+    pub fn doubling_test(&self) -> f64 {
+        let real = self.floquet.nontrivial.iter().filter(|multiplier| multiplier.is_real());
+        real.map(|multiplier| {
+            let value = multiplier.to_complex().re;
+            if value.is_finite() { (1.0 + value) / (1.0 + value.abs()) } else { value.signum() }
+        })
+        .product()
+    }
+}
+
+/// Limit cycles `u' = T f(u, p)` along one parameter.
+#[derive(Debug)]
+pub struct CycleCurve<'a, F> {
+    /// The discretised problem.
+    pub collocation: Collocation<LimitCycle<'a, F>>,
+    /// Resolution asked for.
+    pub resolution: Resolution,
+    /// Settings of corrections made while special points are located.
+    pub settings: Settings,
+    /// Weight of the parameter in the metric: the length of its range.
+    pub parameter_scale: f64,
+    period_scale: f64,
+    /// Sizes that measure the error: amplitudes.
+    amplitudes: Vec<f64>,
+    /// Largest amplitudes met on the branch.
+    largest: Vec<f64>,
+    first_period: Option<f64>,
+    error_estimate: f64,
+    schur: Option<(usize, PeriodicSchur)>,
+}
+
+impl<'a, F: VectorField> CycleCurve<'a, F> {
+    /// The curve through a start that is given on the mesh of the collocation.
+    pub fn new(
+        mut collocation: Collocation<LimitCycle<'a, F>>,
+        resolution: Resolution,
+        parameter_scale: f64,
+        start: &[f64],
+    ) -> Self {
+        collocation.set_reference(start);
+        let n = collocation.problem.dimension();
+        let mut curve = Self {
+            collocation,
+            resolution,
+            settings: Settings::default(),
+            parameter_scale,
+            period_scale: 1.0,
+            amplitudes: vec![1.0; n],
+            largest: vec![0.0; n],
+            first_period: None,
+            error_estimate: f64::INFINITY,
+            schur: None,
+        };
+        curve.rescale(start);
+        curve.collocation.set_reference(start);
+        curve
+    }
+
+    /// Measures sizes on a solution.
+    fn rescale(&mut self, unknown: &[f64]) {
+        let n = self.collocation.problem.dimension();
+        let states = &unknown[..unknown.len() - 2];
+        for component in 0..n {
+            let (mut smallest, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+            for value in states.iter().skip(component).step_by(n) {
+                smallest = smallest.min(*value);
+                largest = largest.max(*value);
+            }
+            let amplitude = 0.5 * (largest - smallest);
+            let mean = 0.5 * (largest + smallest).abs();
+            self.largest[component] = self.largest[component].max(amplitude);
+            let positive = |size: f64| if size > 0.0 && size.is_finite() { size } else { 1.0 };
+            self.amplitudes[component] = positive(amplitude.max(ROUNDING_PART * mean));
+            self.collocation.problem.scales[component] =
+                positive(amplitude.max(MEAN_PART * mean).max(0.1 * self.largest[component]));
+        }
+        self.period_scale = unknown[unknown.len() - 2].abs();
+    }
+
+    /// Largest amplitude relative to the largest met on the branch.
+    fn relative_amplitude(&self) -> f64 {
+        self.amplitudes.iter().zip(&self.largest).map(|(now, ever)| now / ever).fold(0.0, f64::max)
+    }
+}
+
+impl<F: VectorField> Curve for CycleCurve<'_, F> {
+    type Point = CycleInspection;
+
+    fn unknowns(&self) -> usize {
+        self.collocation.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.collocation.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.collocation.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.collocation.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        let end = vector.len() - 2;
+        state_metric(&self.collocation, &self.collocation.problem.scales, vector, image);
+        image[end] = vector[end] / (self.period_scale * self.period_scale);
+        image[end + 1] = vector[end + 1] / (self.parameter_scale * self.parameter_scale);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        self.rescale(unknown);
+        let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        if !worst.is_finite() {
+            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: f64::MAX });
+        }
+        self.error_estimate = worst;
+        let degree = self.collocation.gauss().degree();
+        let intervals = self.collocation.intervals();
+        let needed = intervals_needed(&errors, degree, TARGET * self.resolution.tolerance);
+        let wanted = (needed.ceil() as usize).max(FEWEST_INTERVALS);
+        let too_coarse = worst > self.resolution.tolerance;
+        if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
+            self.collocation.set_reference(unknown);
+            return Ok(Adaptation::Unchanged);
+        }
+        if wanted > self.resolution.most_intervals {
+            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: worst });
+        }
+        // An estimate from a coarse mesh is not to be trusted far: at most double at a time.
+        let count = wanted.min(2 * intervals);
+        let count = if too_coarse { count.max(intervals + 1) } else { count };
+        let mesh = equidistribute(self.collocation.mesh(), &errors, degree, count);
+        *unknown = self.collocation.carry(unknown, &mesh);
+        for vector in vectors.iter_mut() {
+            **vector = self.collocation.carry(vector, &mesh);
+        }
+        self.collocation.set_mesh(mesh, unknown);
+        Ok(Adaptation::Changed)
+    }
+
+    fn inspect(
+        &mut self,
+        unknown: &[f64],
+        tangent: &[f64],
+        _orientation: f64,
+    ) -> Result<CycleInspection, Error> {
+        let floquet = floquet(&self.collocation, unknown, &self.collocation.problem.scales, &mut self.schur)?;
+        let n = self.collocation.problem.dimension();
+        Ok(CycleInspection {
+            error_estimate: self.error_estimate,
+            floquet,
+            ranges: ranges(&self.collocation, unknown, n),
+            mesh: self.collocation.mesh().to_vec(),
+            fold_test: tangent[tangent.len() - 1] / self.parameter_scale,
+            special: None,
+        })
+    }
+
+    fn special_points(
+        &mut self,
+        before: &Solution<CycleInspection>,
+        after: &Solution<CycleInspection>,
+    ) -> Result<Vec<Solution<CycleInspection>>, Error> {
+        special::between(self, before, after)
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+        let n = self.collocation.problem.dimension();
+        let mut signature = vec![unknown[unknown.len() - 2].ln()];
+        for (range, scale) in ranges(&self.collocation, unknown, n).iter().zip(&self.largest) {
+            signature.extend([range.largest / scale, range.smallest / scale]);
+        }
+        signature
+    }
+
+    fn ending(&mut self, solution: &Solution<CycleInspection>) -> Option<Stop> {
+        let (period, parameter) =
+            (solution.unknown[solution.unknown.len() - 2], solution.unknown[solution.unknown.len() - 1]);
+        let first = *self.first_period.get_or_insert(period);
+        let rate = solution.tangent[solution.tangent.len() - 2] / self.period_scale;
+        let sensitivity = (rate / solution.point.fold_test).abs();
+        if period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY {
+            return Some(Stop::PeriodUnbounded { period, parameter });
+        }
+        if self.relative_amplitude() < VANISHING {
+            return Some(Stop::HopfPoint { parameter, frequency: 2.0 * std::f64::consts::PI / period });
+        }
+        None
+    }
+}
+
+/// Applies the metric of the states: mean square over the unit interval, each state in units of its scale.
+/// Components beyond the scales have weight zero.
+pub(super) fn state_metric<P: PeriodicProblem>(
+    collocation: &Collocation<P>,
+    scales: &[f64],
+    vector: &[f64],
+    image: &mut [f64],
+) {
+    let n = collocation.problem.dimension();
+    let size = collocation.interval_size();
+    for (interval, pair) in collocation.mesh().windows(2).enumerate() {
+        let start = interval * size;
+        image[start..start + n].fill(0.0);
+        for (point, weight) in collocation.gauss().weights.iter().enumerate() {
+            let start = start + (point + 1) * n;
+            let weight = weight * (pair[1] - pair[0]);
+            for component in 0..n {
+                let scale = scales.get(component).copied().unwrap_or(f64::INFINITY);
+                image[start + component] = weight * vector[start + component] / (scale * scale);
+            }
+        }
+    }
+}

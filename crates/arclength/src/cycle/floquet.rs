@@ -1,0 +1,129 @@
+//! Floquet multipliers of a cycle from the condensed blocks of its collocation system.
+//!
+//! The multiplier 1 that belongs to the direction of the flow is split off exactly: at every mesh point a
+//! reflection maps that direction onto the first axis, and what remains of the blocks `R_j` are factors of
+//! size `n - 1` whose product has the other multipliers. At a fold of cycles, where 1 is a double and
+//! defective eigenvalue of the monodromy matrix, this keeps the other multiplier accurate to rounding instead
+//! of its square root. The products are never formed (Fairgrieve and Jepson 1991; Lust 2001): the multipliers
+//! come from a periodic Schur decomposition.
+
+use super::collocation::Collocation;
+use super::problem::PeriodicProblem;
+use crate::error::Error;
+use crate::linear::multiplier::Multiplier;
+use crate::linear::periodic_schur::PeriodicSchur;
+use num_complex::Complex64;
+
+/// Floquet multipliers of a cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Floquet {
+    /// The multipliers other than the trivial one, largest modulus first.
+    pub nontrivial: Vec<Multiplier>,
+    /// The trivial multiplier as computed.
+    pub trivial: f64,
+    /// How far the computed trivial multiplier, and with it the split, is from exact.
+    pub trivial_error: f64,
+}
+
+impl Floquet {
+    /// All multipliers as complex numbers, the trivial one among them, largest modulus first.
+    pub fn multipliers(&self) -> Vec<Complex64> {
+        let mut all: Vec<Complex64> =
+            self.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
+        let place = all.partition_point(|multiplier| multiplier.norm() > self.trivial.abs());
+        all.insert(place, Complex64::from(self.trivial));
+        all
+    }
+
+    /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
+    /// closer to the circle than the error of the trivial one.
+    pub fn unstable(&self) -> (usize, bool) {
+        let margin = self.trivial_error.max(f64::EPSILON);
+        let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
+        let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
+        (outside, certain)
+    }
+}
+
+/// Multipliers from the blocks of the last factorisation at `unknown`, `scales` being the sizes of the states.
+pub(super) fn floquet<P: PeriodicProblem>(
+    collocation: &Collocation<P>,
+    unknown: &[f64],
+    scales: &[f64],
+    workspace: &mut Option<(usize, PeriodicSchur)>,
+) -> Result<Floquet, Error> {
+    let n = scales.len();
+    let intervals = collocation.intervals();
+    let scalars = &unknown[intervals * collocation.interval_size()..];
+    // Reflections v (I - 2 v v') that map the scaled flow direction at each mesh point to the first axis.
+    let mut reflectors = vec![0.0; intervals * n];
+    let mut signs = vec![1.0; intervals];
+    for interval in 0..intervals {
+        let reflector = &mut reflectors[interval * n..(interval + 1) * n];
+        collocation.problem.field(&collocation.interval(unknown, interval)[..n], scalars, reflector);
+        for (entry, scale) in reflector.iter_mut().zip(scales) {
+            *entry /= scale;
+        }
+        let norm = length(reflector);
+        if !(norm > 0.0 && norm.is_finite()) {
+            return Err(Error::Eigenvalues { quantity: "Floquet multipliers" });
+        }
+        signs[interval] = if reflector[0] > 0.0 { -1.0 } else { 1.0 };
+        reflector[0] -= signs[interval] * norm;
+        let norm = length(reflector);
+        reflector.iter_mut().for_each(|entry| *entry /= norm);
+    }
+    let mut factors = vec![0.0; intervals * (n - 1) * (n - 1)];
+    let mut trivial = 1.0;
+    let mut coupling = 0.0;
+    let mut block = vec![0.0; n * n];
+    for interval in 0..intervals {
+        let transfer = &collocation.transfer()[interval * n * n..(interval + 1) * n * n];
+        for column in 0..n {
+            for row in 0..n {
+                block[row + n * column] = transfer[row + n * column] * scales[column] / scales[row];
+            }
+        }
+        let right = &reflectors[interval * n..(interval + 1) * n];
+        let next = (interval + 1) % intervals;
+        let left = &reflectors[next * n..(next + 1) * n];
+        for row in 0..n {
+            let sum: f64 = (0..n).map(|column| block[row + n * column] * right[column]).sum();
+            for column in 0..n {
+                block[row + n * column] -= 2.0 * sum * right[column];
+            }
+        }
+        for column in block.chunks_exact_mut(n) {
+            let sum: f64 = column.iter().zip(left).map(|(a, b)| a * b).sum();
+            for (entry, component) in column.iter_mut().zip(left) {
+                *entry -= 2.0 * sum * component;
+            }
+        }
+        trivial *= block[0] * signs[interval] * signs[next];
+        coupling += block[1..n].iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        // The lengths of the flow vectors cancel in the product of the corner entries up to discretisation.
+        for column in 1..n {
+            for row in 1..n {
+                factors[interval * (n - 1) * (n - 1) + row - 1 + (n - 1) * (column - 1)] =
+                    block[row + n * column];
+            }
+        }
+    }
+    let trivial_error = (trivial - 1.0).abs().max(coupling);
+    let nontrivial = if n == 1 {
+        Vec::new()
+    } else {
+        if workspace.as_ref().is_none_or(|(count, _)| *count != intervals) {
+            *workspace = Some((intervals, PeriodicSchur::new(n - 1, intervals)));
+        }
+        match workspace.as_mut().map(|(_, schur)| schur.multipliers(&factors)) {
+            Some(Ok(multipliers)) => multipliers.to_vec(),
+            _ => return Err(Error::Eigenvalues { quantity: "Floquet multipliers" }),
+        }
+    };
+    Ok(Floquet { nontrivial, trivial, trivial_error })
+}
+
+fn length(vector: &[f64]) -> f64 {
+    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+}

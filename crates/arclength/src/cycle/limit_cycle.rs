@@ -1,0 +1,99 @@
+//! The boundary value problem of a limit cycle: `u' = T f(u, p)`, `u(1) = u(0)`, with the integral phase
+//! condition of Doedel (1981).
+
+use super::problem::{PeriodicProblem, Reference};
+use crate::differentiation::Scalar;
+use crate::field::VectorField;
+
+/// A limit cycle with scalars `(T, p)`: period and active parameter.
+#[derive(Debug)]
+pub struct LimitCycle<'a, F> {
+    /// The vector field.
+    pub field: &'a F,
+    /// All parameters; the active one is replaced by the unknown.
+    pub parameters: Vec<f64>,
+    /// Index of the active parameter.
+    pub active: usize,
+    /// Sizes of the state variables, for conditions that mix them.
+    pub scales: Vec<f64>,
+}
+
+impl<F> Clone for LimitCycle<'_, F> {
+    fn clone(&self) -> Self {
+        Self {
+            field: self.field,
+            parameters: self.parameters.clone(),
+            active: self.active,
+            scales: self.scales.clone(),
+        }
+    }
+}
+
+impl<F: VectorField> PeriodicProblem for LimitCycle<'_, F> {
+    #[inline(always)]
+    fn dimension(&self) -> usize {
+        self.scales.len()
+    }
+
+    #[inline(always)]
+    fn scalars(&self) -> usize {
+        2
+    }
+
+    #[inline(always)]
+    fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        with_parameters(&self.parameters, &[(self.active, scalars[1])], |parameters| {
+            self.field.evaluate(state, parameters, derivative);
+        });
+        for entry in derivative.iter_mut() {
+            *entry *= scalars[0];
+        }
+    }
+
+    #[inline(always)]
+    fn integrands<T: Scalar>(&self, state: &[T], _scalars: &[T], reference: Reference<'_>, values: &mut [T]) {
+        values[0] = phase_integrand(state, reference, &self.scales);
+    }
+}
+
+/// Integrand of the phase condition: `(u - u_ref) . u_ref'` in scaled variables.
+#[inline(always)]
+pub(super) fn phase_integrand<T: Scalar>(state: &[T], reference: Reference<'_>, scales: &[f64]) -> T {
+    let mut sum = T::zero();
+    for (index, scale) in scales.iter().enumerate() {
+        sum += (state[index] - reference.state[index]) * (reference.slope[index] / (scale * scale));
+    }
+    sum
+}
+
+/// Calls `action` with the parameters, some of them replaced, without allocating for the usual numbers of them.
+#[inline(always)]
+pub(super) fn with_parameters<T: Scalar, R>(
+    parameters: &[f64],
+    replaced: &[(usize, T)],
+    action: impl FnOnce(&[T]) -> R,
+) -> R {
+    const FEW: usize = 2;
+    const MANY: usize = 24;
+    let fill = |memory: &mut [T]| {
+        for (entry, value) in memory.iter_mut().zip(parameters) {
+            *entry = T::from(*value);
+        }
+        for (index, value) in replaced {
+            memory[*index] = *value;
+        }
+    };
+    if parameters.len() <= FEW {
+        let mut memory = [T::zero(); FEW];
+        fill(&mut memory[..parameters.len()]);
+        action(&memory[..parameters.len()])
+    } else if parameters.len() <= MANY {
+        let mut memory = [T::zero(); MANY];
+        fill(&mut memory[..parameters.len()]);
+        action(&memory[..parameters.len()])
+    } else {
+        let mut memory = vec![T::zero(); parameters.len()];
+        fill(&mut memory);
+        action(&memory)
+    }
+}

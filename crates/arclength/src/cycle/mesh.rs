@@ -1,0 +1,106 @@
+//! Error estimate of a collocation solution and meshes that equidistribute it.
+//!
+//! On an interval of width `h` the residual of a collocation polynomial is, to leading order, a constant
+//! times `(t - c_1) ... (t - c_m)`. Its value at the two ends of the interval gives the constant, its
+//! integral the error of the polynomial between the mesh points. (At the mesh points the error is of order
+//! `h^(2m)` and much smaller.) Sources: de Boor, "Good approximation by splines with variable knots" (1973);
+//! Russell and Christiansen, "Adaptive mesh selection strategies" (1978).
+
+use super::collocation::{Collocation, MOST_NODES, combine};
+use super::problem::PeriodicProblem;
+
+/// Ratio of the largest to the smallest mesh width of neighbours-to-be is limited through this floor on
+/// the mesh density, relative to its mean.
+const DENSITY_FLOOR: f64 = 0.2;
+/// Samples for the largest modulus of the integrated node polynomial.
+const SAMPLES: usize = 200;
+
+/// Largest error of the polynomial on each interval, relative to `scales`.
+pub(super) fn error_profile<P: PeriodicProblem>(
+    collocation: &Collocation<P>,
+    unknown: &[f64],
+    scales: &[f64],
+) -> Vec<f64> {
+    let gauss = collocation.gauss();
+    let n = collocation.problem.dimension();
+    let intervals = collocation.intervals();
+    let scalars = &unknown[intervals * collocation.interval_size()..];
+    let shape = largest_integral(collocation);
+    let ends = [0.0, 1.0];
+    let mut bases = [[0.0; MOST_NODES]; 2];
+    let mut slopes = [[0.0; MOST_NODES]; 2];
+    let nodes = gauss.degree() + 1;
+    for (index, end) in ends.iter().enumerate() {
+        gauss.basis(*end, &mut bases[index][..nodes]);
+        gauss.basis_slopes(*end, &mut slopes[index][..nodes]);
+    }
+    let (mut state, mut slope, mut field) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    (0..intervals)
+        .map(|interval| {
+            let width = collocation.mesh()[interval + 1] - collocation.mesh()[interval];
+            let values = collocation.interval(unknown, interval);
+            let mut largest = 0.0_f64;
+            for (index, end) in ends.iter().enumerate() {
+                combine(values, &bases[index][..nodes], &mut state);
+                combine(values, &slopes[index][..nodes], &mut slope);
+                collocation.problem.field(&state, scalars, &mut field);
+                let constant = 1.0 / gauss.node_polynomial(*end);
+                for component in 0..scales.len() {
+                    let residual = slope[component] - width * field[component];
+                    largest = largest.max((residual * constant * shape / scales[component]).abs());
+                }
+            }
+            largest
+        })
+        .collect()
+}
+
+/// `max |integral from 0 to t of (s - c_1) ... (s - c_m) ds|` over `t` in `[0, 1]`.
+fn largest_integral<P: PeriodicProblem>(collocation: &Collocation<P>) -> f64 {
+    let gauss = collocation.gauss();
+    let step = 1.0 / SAMPLES as f64;
+    let (mut integral, mut largest) = (0.0, 0.0_f64);
+    for sample in 0..SAMPLES {
+        let left = sample as f64 * step;
+        let simpson = gauss.node_polynomial(left)
+            + 4.0 * gauss.node_polynomial(left + 0.5 * step)
+            + gauss.node_polynomial(left + step);
+        integral += simpson * step / 6.0;
+        largest = largest.max(integral.abs());
+    }
+    largest
+}
+
+/// Number of intervals of an equidistributed mesh that would have the error `target`.
+pub(super) fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
+    let power = 1.0 / (degree as f64 + 1.0);
+    errors.iter().map(|error| (error / target).powf(power)).sum()
+}
+
+/// A mesh of `intervals` intervals on which the error is about the same everywhere.
+pub(super) fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
+    let power = 1.0 / (degree as f64 + 1.0);
+    let total: f64 = errors.iter().map(|error| error.powf(power)).sum();
+    // Mass of every old interval; the floor keeps quiet stretches from being starved.
+    let masses: Vec<f64> = errors
+        .iter()
+        .zip(mesh.windows(2))
+        .map(|(error, pair)| {
+            error.powf(power) + DENSITY_FLOOR * total.max(f64::MIN_POSITIVE) * (pair[1] - pair[0])
+        })
+        .collect();
+    let sum: f64 = masses.iter().sum();
+    let mut result = vec![0.0];
+    let (mut interval, mut passed) = (0, 0.0);
+    for index in 1..intervals {
+        let wanted = sum * index as f64 / intervals as f64;
+        while interval + 1 < masses.len() && passed + masses[interval] < wanted {
+            passed += masses[interval];
+            interval += 1;
+        }
+        let fraction = ((wanted - passed) / masses[interval]).clamp(0.0, 1.0);
+        result.push(mesh[interval] + fraction * (mesh[interval + 1] - mesh[interval]));
+    }
+    result.push(1.0);
+    result
+}

@@ -1,0 +1,184 @@
+//! Limit cycles against closed forms and published values.
+
+use approx::assert_relative_eq;
+use arclength::continuation::Stop;
+use arclength::cycle::{CycleStart, Cycles};
+use arclength::{Scalar, VectorField};
+use num_complex::Complex64;
+
+/// The towed wheel of the project's theory, l = 0.08 m, r = 1 m, towing speed active.
+struct Wheel;
+
+impl VectorField for Wheel {
+    fn state_names(&self) -> Vec<String> {
+        ["u", "q", "psi", "V", "Omega"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["v".into()]
+    }
+    fn dimension(&self) -> usize {
+        5
+    }
+    #[inline(always)]
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], out: &mut [T]) {
+        let (m_w, m_c, inertia_spin, inertia_wheel, inertia_caster) =
+            (0.3519, 0.0668, 4.63e-5, 2.38e-5, 3.48e-6);
+        let (radius, l_c, k, l, r) = (0.04, 0.012, 100.0, 0.08, 1.0);
+        let d = l - l_c;
+        let mass = m_w + m_c + inertia_spin / (radius * radius);
+        let inertia = inertia_caster + inertia_wheel + m_c * d * d;
+        let m = m_c * d;
+        let (u, q, psi, forward, yaw) = (x[0], x[1], x[2], x[3], x[4]);
+        let v = p[0];
+        let omega = v / r;
+        let (sine, cosine) = psi.sin_cos();
+        out[0] = forward * cosine + yaw * sine * l - v + omega * q;
+        out[1] = yaw * cosine * l - forward * sine - omega * u;
+        out[2] = omega - yaw;
+        out[3] = (yaw * yaw * m - (u * cosine - q * sine) * k) / mass;
+        out[4] = (-(forward * yaw * m) - (u * sine + q * cosine) * (k * l)) / inertia;
+    }
+}
+
+fn wheel_start() -> (CycleStart, f64) {
+    let frequency = 43.2553921186;
+    let v = 8.43103697014;
+    let (d, l, k, m_c) = (0.068, 0.08, 100.0, 0.0668);
+    let m = m_c * d;
+    let omega: f64 = v;
+    let a0 = m * omega * omega / k;
+    let v0 = omega * (1.0 - (l - a0) * (l - a0)).sqrt() / (1.0 - m * omega * omega / (k * l));
+    let b0 = -m * omega * v0 / (k * l);
+    let psi0 = (l - a0).asin();
+    let state = vec![a0 * psi0.cos() + b0 * psi0.sin(), -a0 * psi0.sin() + b0 * psi0.cos(), psi0, v0, omega];
+    let mut jacobian = vec![0.0; 25];
+    for column in 0..5 {
+        let duals: Vec<arclength::Dual<f64, 1>> = (0..5)
+            .map(|index| arclength::Dual::variable(state[index], if index == column { 0 } else { 1 }))
+            .collect();
+        let mut out = vec![arclength::Dual::constant(0.0); 5];
+        Wheel.evaluate(&duals, &[arclength::Dual::constant(v)], &mut out);
+        for row in 0..5 {
+            jacobian[row + 5 * column] = out[row].derivatives[0];
+        }
+    }
+    let eigenvector =
+        arclength::linear::eigenvectors::right_eigenvector(&jacobian, 5, Complex64::new(0.0, frequency))
+            .expect("shapes agree")
+            .vector;
+    (
+        CycleStart::Hopf {
+            state,
+            frequency,
+            eigenvector,
+            crossing_speed: 1.0,
+            cubic_coefficient: 6.520929e-5 * frequency,
+        },
+        v,
+    )
+}
+
+/// A cycle from single shooting with a tolerance of 3e-14.
+struct Reference {
+    v: f64,
+    period: f64,
+    psi_max: f64,
+    psi_min: f64,
+    multipliers: [(f64, f64); 5],
+}
+
+const REFERENCES: [Reference; 5] = [
+    Reference {
+        v: 8.0,
+        period: 0.14612684668050366,
+        psi_max: 0.2701391504417376,
+        psi_min: -0.12019038629884853,
+        multipliers: [
+            (1.0138325182041084, 0.0),
+            (0.9999999999999963, 0.0),
+            (-0.5016865337385307, -0.8146782443014935),
+            (-0.5016865337385307, 0.8146782443014935),
+            (7.175868173908287e-08, 0.0),
+        ],
+    },
+    Reference {
+        v: 6.0,
+        period: 0.1498182585503941,
+        psi_max: 0.5130785057286356,
+        psi_min: -0.3763047240963389,
+        multipliers: [
+            (1.0643648931772707, 0.0),
+            (1.0000000000000109, 0.0),
+            (-0.7714185444147086, -0.5946214697375807),
+            (-0.7714185444147086, 0.5946214697375807),
+            (2.1011417807292386e-06, 0.0),
+        ],
+    },
+    Reference {
+        v: 4.0,
+        period: 0.15274192836201247,
+        psi_max: 0.6351645637341435,
+        psi_min: -0.5003383285676317,
+        multipliers: [
+            (1.1137826096822392, 0.0),
+            (0.9999999999999861, 0.0),
+            (-0.8756735799692812, -0.4296369714753791),
+            (-0.8756735799692812, 0.4296369714753791),
+            (0.0001096174639132885, 0.0),
+        ],
+    },
+    Reference {
+        v: 2.0,
+        period: 0.15469423899444815,
+        psi_max: 0.7098150349910172,
+        psi_min: -0.5648677576526538,
+        multipliers: [
+            (1.160425345177388, 0.0),
+            (0.9999999999999696, 0.0),
+            (-0.7795610686932662, -0.4348475840276132),
+            (-0.7795610686932662, 0.4348475840276132),
+            (0.010349278582518067, 0.0),
+        ],
+    },
+    Reference {
+        v: 1.0,
+        period: 0.15522951404204402,
+        psi_max: 0.7307800097444889,
+        psi_min: -0.5801477894905818,
+        multipliers: [
+            (1.1325484248532904, 0.0),
+            (1.0000000000011307, 0.0),
+            (-0.6410755017822227, -0.5612690991230184),
+            (-0.6410755017822227, 0.5612690991230184),
+            (0.11699204049622661, 0.0),
+        ],
+    },
+];
+
+#[test]
+fn wheel_branch_agrees_with_single_shooting() {
+    let (start, v) = wheel_start();
+    let branch = Cycles::of(&Wheel, start)
+        .parameters(&[v])
+        .along(0, 0.2..=9.0)
+        .at(&[1.0, 2.0, 4.0, 6.0, 8.0])
+        .run()
+        .expect("the branch exists");
+    for reference in &REFERENCES {
+        let cycle = branch.points.iter().find(|cycle| cycle.value == reference.v).expect("asked for");
+        assert_relative_eq!(cycle.period, reference.period, max_relative = 1e-9);
+        assert_relative_eq!(cycle.max[2], reference.psi_max, max_relative = 1e-7);
+        assert_relative_eq!(cycle.min[2], reference.psi_min, max_relative = 1e-7);
+        for (re, im) in reference.multipliers {
+            let exact = Complex64::new(re, im);
+            let distance =
+                cycle.multipliers.iter().map(|mu| (mu - exact).norm()).fold(f64::INFINITY, f64::min);
+            assert!(distance < 1e-5 * exact.norm(), "{exact} at v = {}: {distance:e}", reference.v);
+        }
+        assert!(cycle.error_estimate < 1e-8);
+        assert_eq!(cycle.stable, Some(false));
+    }
+    assert!(branch.special_points().next().is_none(), "{:?}", branch.special_points().next());
+    assert!(matches!(branch.stops.1, Stop::RangeEnd { value: 0.2, .. }));
+    assert!(branch.points.len() < 60);
+}
