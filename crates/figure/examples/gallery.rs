@@ -70,7 +70,7 @@ fn stability_chart() -> Figure {
     let mut chart =
         Panel::new(Axis::new("$v$ (m/s)").limits(0.0, 16.0), Axis::new("$l$ (m)").limits(0.0, 0.3))
             .tag("(a)")
-            .note(Note::new((3.2, 0.2), "stable"))
+            .note(Note::new((1.5, 0.2), "stable"))
             .note(Note::new((6.0, 0.02), "unstable"));
     let mut shaded = boundary(1.0);
     shaded.extend([Point::new(0.0, 0.3), Point::new(0.0, 0.0461)]);
@@ -211,7 +211,7 @@ fn space() -> Figure {
         Axis::new("$l$ (m)").limits(0.0, 0.3),
         Axis::new("$\\psi$ (rad)").limits(-1.0, 1.0),
     )
-    .projection(Projection::axonometric(-32.0, 28.0).perspective(5.0).proportions(1.0, 1.3, 0.42))
+    .projection(Projection::axonometric(-24.0, 34.0).perspective(5.0).proportions(1.3, 1.5, 0.42))
     .ground_region(Region::new(shaded).fill(palette::SKY_BLUE.lightened(0.6)))
     .ground_curve(Line::new(boundary(1.0)).color(palette::BLUE))
     .legend_entry(LegendEntry::line("stable", palette::GREEN, Dash::Solid))

@@ -81,16 +81,16 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
         let mut hole = None;
         if !curve.style.name.is_empty() {
             let layout = TextLayout::new(&curve.style.name, SMALL_SIZE);
-            if let Some((center, angle)) =
-                obstacles.along_curve(*number, all, curve.style.name_at, &layout, plot)
-            {
-                let (sine, cosine) = angle.sin_cos();
+            if let Some(name) = obstacles.along_curve(*number, all, curve.style.name_at, &layout, plot) {
+                let (sine, cosine) = name.angle.sin_cos();
                 // From the centre of the text to the start of its baseline, turned with the text.
                 let (dx, dy) =
                     (-0.5 * layout.width, 0.5 * (layout.ascent - layout.descent) - 0.06 * SMALL_SIZE);
-                let origin = center.offset(cosine * dx - sine * dy, sine * dx + cosine * dy);
-                hole = Some((center, angle, layout.width + 4.0, layout.height()));
-                texts.add(layout, origin, angle.to_degrees(), color, false);
+                let origin = name.center.offset(cosine * dx - sine * dy, sine * dx + cosine * dy);
+                if name.interrupts {
+                    hole = Some((name.center, name.angle, layout.width + 4.0, layout.height()));
+                }
+                texts.add(layout, origin, name.angle.to_degrees(), color, false);
             }
         }
         for (visible, piece) in pieces {

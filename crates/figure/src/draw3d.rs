@@ -16,7 +16,7 @@ use crate::style::{FRAME_WIDTH, HALO_WIDTH, LABEL_GAP, MAJOR_TICK, SMALL_SIZE, T
 use crate::text::TextLayout;
 
 /// How much of what is behind shows through a wall.
-const WALL_OPACITY: f64 = 0.72;
+const WALL_OPACITY: f64 = 0.6;
 const WALL_EDGE: Color = Color::rgb(150, 150, 150);
 const GROUND_GRID: Color = Color::rgb(225, 225, 225);
 const PLUMB_LINE: Color = Color::rgb(90, 90, 90);
@@ -173,6 +173,7 @@ struct Labels {
     texts: Vec<Item>,
     ticks: Path,
     grid: Path,
+    boxes: Vec<Rect>,
     bounds: Rect,
 }
 
@@ -230,6 +231,7 @@ impl Labels {
         let automatic = scale.ticks(((length / TICK_ROOM) as usize).clamp(2, 6));
         let exponent = if axis.ticks.is_some() { 0 } else { automatic.exponent };
         let major = axis.ticks.clone().unwrap_or(automatic.major);
+        self.ticks.add_polyline(&[start, end]);
         let mut farthest = 0.0_f64;
         for (value, label) in major {
             let t = scale.fraction(value);
@@ -245,8 +247,19 @@ impl Labels {
             let reach = 0.5 * (layout.width * out.x.abs() + 0.7 * SMALL_SIZE * out.y.abs());
             let distance = MAJOR_TICK + LABEL_GAP + reach;
             farthest = farthest.max(distance + reach);
-            let place = at.offset(out.x * distance, out.y * distance);
-            let origin = Point::new(place.x - 0.5 * layout.width, place.y + 0.34 * SMALL_SIZE);
+            // At a corner of the box labels of two axes may meet; the later one moves along its edge.
+            let origin = (0..8)
+                .map(|step| 3.0 * f64::from(step))
+                .map(|shift| {
+                    at.offset(out.x * distance + along.x * shift, out.y * distance + along.y * shift)
+                })
+                .map(|place| Point::new(place.x - 0.5 * layout.width, place.y + 0.34 * SMALL_SIZE))
+                .find(|origin| {
+                    let bounds = layout.bounds(*origin).expanded(2.0);
+                    self.boxes.iter().all(|other| other.overlap_area(&bounds) == 0.0)
+                });
+            let Some(origin) = origin else { continue };
+            self.boxes.push(layout.bounds(origin));
             self.include(layout.bounds(origin));
             self.texts.push(plain_text(layout, origin, 0.0));
         }
@@ -260,7 +273,9 @@ impl Labels {
         };
         let layout = TextLayout::new(&source, TEXT_SIZE);
         let mut angle = along.y.atan2(along.x);
-        if angle.cos() < -1e-9 || (angle.cos().abs() <= 1e-9 && angle > 0.0) {
+        // Nearly upright labels read upwards, all others from left to right.
+        let turned_round = if angle.sin().abs() > 0.95 { angle.sin() > 0.0 } else { angle.cos() < 0.0 };
+        if turned_round {
             angle += std::f64::consts::PI;
         }
         let distance = farthest + LABEL_GAP + 0.5 * layout.height();

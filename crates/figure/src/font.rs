@@ -4,7 +4,6 @@
 
 use std::sync::OnceLock;
 
-use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 use crate::geometry::Point;
@@ -73,14 +72,6 @@ impl Glyph {
         f64::from(self.font.face().glyph_hor_advance(GlyphId(self.index)).unwrap_or(0))
     }
 
-    /// Change of the advance before `next` (pair kerning), in font units.
-    pub fn kerning(self, next: Glyph) -> f64 {
-        if self.font != next.font {
-            return 0.0;
-        }
-        pair_kerning(self.font.face(), GlyphId(self.index), GlyphId(next.index)).unwrap_or(0.0)
-    }
-
     /// Outline in font units, y downwards, origin on the baseline.
     pub fn outline(self) -> Path {
         let mut collector = Collector(Path::default());
@@ -88,28 +79,6 @@ impl Glyph {
         self.font.face().outline_glyph(GlyphId(self.index), &mut collector);
         collector.0
     }
-}
-
-/// Looks the pair up in the `kern` feature of the GPOS table.
-fn pair_kerning(face: &Face<'_>, first: GlyphId, second: GlyphId) -> Option<f64> {
-    let table = face.tables().gpos?;
-    let feature = table.features.find(ttf_parser::Tag::from_bytes(b"kern"))?;
-    for lookup in feature.lookup_indices.into_iter().filter_map(|index| table.lookups.get(index)) {
-        for subtable in lookup.subtables.into_iter::<PositioningSubtable<'_>>() {
-            let PositioningSubtable::Pair(pair) = subtable else { continue };
-            let Some(coverage) = pair.coverage().get(first) else { continue };
-            let records = match pair {
-                PairAdjustment::Format1 { sets, .. } => sets.get(coverage).and_then(|set| set.get(second)),
-                PairAdjustment::Format2 { classes, matrix, .. } => {
-                    matrix.get((classes.0.get(first), classes.1.get(second)))
-                }
-            };
-            if let Some((value, _)) = records {
-                return Some(f64::from(value.x_advance));
-            }
-        }
-    }
-    None
 }
 
 struct Collector(Path);
@@ -154,11 +123,5 @@ mod tests {
         {
             assert_ne!(Font::Text.glyph(character).index, 0, "{character}");
         }
-    }
-
-    #[test]
-    fn a_pair_that_needs_it_is_kerned() {
-        let (a, v) = (Font::Bold.glyph('A'), Font::Bold.glyph('V'));
-        assert!(a.kerning(v) < 0.0);
     }
 }

@@ -9,6 +9,10 @@ use crate::text::TextLayout;
 /// Cost of covering another label, per square point, and of standing out of the panel.
 const LABEL_COST: f64 = 3.0;
 const OUTSIDE_COST: f64 = 1e6;
+/// Cost of a name standing beside its curve, of a steep one, and of covering other curves, per point.
+const BESIDE_COST: f64 = 12.0;
+const STEEPNESS_COST: f64 = 10.0;
+const CROSSING_COST: f64 = 3.0;
 /// A legend is tried at this many steps across the panel. Its cost for covering curves, and for standing away from the
 /// edges, each per point.
 const LEGEND_STEPS: u32 = 12;
@@ -23,6 +27,16 @@ pub(crate) struct Obstacles {
     segments: Vec<(Point, Point, usize)>,
     boxes: Vec<Rect>,
     curves: usize,
+}
+
+/// The place of a name along its curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlacedName {
+    pub center: Point,
+    /// Slope in radians, between -pi/2 and pi/2.
+    pub angle: f64,
+    /// Whether it stands on the curve, which then leaves a gap for it.
+    pub interrupts: bool,
 }
 
 impl Obstacles {
@@ -92,7 +106,8 @@ impl Obstacles {
         best.1
     }
 
-    /// Where a name on a curve is centred, and its slope in radians; `None` when the curve is too short for it.
+    /// Where the name of a curve stands: on the curve, which it interrupts, or close beside it where the curve has too
+    /// near a neighbour; `None` when the curve is too short for it.
     pub fn along_curve(
         &mut self,
         curve: usize,
@@ -100,11 +115,12 @@ impl Obstacles {
         at: Option<f64>,
         layout: &TextLayout,
         frame: &Rect,
-    ) -> Option<(Point, f64)> {
+    ) -> Option<PlacedName> {
         let (width, height) = (layout.width, layout.height());
         let half = 0.5 * width + GAP;
         let total: f64 = pieces.iter().map(|piece| length(piece)).sum();
-        let mut best: Option<(f64, Point, f64)> = None;
+        let squares = (width / height).ceil().max(1.0) as usize;
+        let mut best: Option<(f64, PlacedName)> = None;
         let mut before = 0.0;
         for piece in pieces {
             let long = length(piece);
@@ -115,48 +131,53 @@ impl Obstacles {
                     continue;
                 }
                 let (from, middle, to) = (along(piece, s - half), along(piece, s), along(piece, s + half));
-                let chord = from.distance(to);
                 let bend = middle.distance(from.lerp(to, 0.5));
                 let mut angle = (to.y - from.y).atan2(to.x - from.x);
                 if angle.cos() < 0.0 {
                     angle += std::f64::consts::PI;
                 }
-                let squares = (width / height).ceil().max(1.0) as usize;
-                let mut cost = 20.0 * bend + 10.0 * (2.0 * half - chord) + 6.0 * angle.sin().abs();
-                for i in 0..squares {
-                    let shift = (i as f64 + 0.5) / squares as f64 * width - 0.5 * width;
-                    let center = middle.offset(shift * angle.cos(), shift * angle.sin());
-                    let square =
-                        Rect::new(center.x, center.y, center.x, center.y).expanded(0.5 * height + 1.0);
-                    if !frame.encloses(&square) {
-                        cost += 100.0;
-                    }
-                    cost += self.cost(&square, Some(curve));
-                }
+                let (sine, cosine) = angle.sin_cos();
                 let fraction = (before + s) / total;
-                match at {
-                    Some(wanted) => cost = (fraction - wanted).abs(),
-                    // Between equals the middle of the curve is best.
-                    None => cost += 4.0 * (fraction - 0.5).abs(),
-                }
-                if best.is_none_or(|(lowest, _, _)| cost < lowest - 1e-9) {
-                    best = Some((cost, middle, angle));
+                // Between equals the middle of the curve is best.
+                let position =
+                    at.map_or(4.0 * (fraction - 0.5).abs(), |wanted| 1e3 * (fraction - wanted).abs());
+                let shape = 20.0 * bend
+                    + 10.0 * (2.0 * half - from.distance(to))
+                    + STEEPNESS_COST * sine.abs()
+                    + position;
+                for side in [0.0, -1.0, 1.0] {
+                    let beside = side * (0.5 * height + GAP + bend);
+                    let center = middle.offset(-sine * beside, cosine * beside);
+                    let own = if side == 0.0 { Some(curve) } else { None };
+                    let mut cost = shape + BESIDE_COST * f64::abs(side);
+                    for i in 0..squares {
+                        let shift = (i as f64 + 0.5) / squares as f64 * width - 0.5 * width;
+                        let middle = center.offset(shift * cosine, shift * sine);
+                        let square =
+                            Rect::new(middle.x, middle.y, middle.x, middle.y).expanded(0.5 * height + 0.5);
+                        // Whatever runs close to the curve under a name beside it could be taken for the curve.
+                        let foot = middle.offset(sine * beside, -cosine * beside);
+                        let strip = Rect::new(foot.x, foot.y, foot.x, foot.y).expanded(GAP);
+                        if side != 0.0 {
+                            cost += CROSSING_COST * self.cost(&strip, Some(curve));
+                        }
+                        let outside = if frame.encloses(&square) { 0.0 } else { 100.0 };
+                        cost += outside + CROSSING_COST * self.cost(&square, own);
+                    }
+                    if best.as_ref().is_none_or(|(lowest, _)| cost < lowest - 1e-9) {
+                        best = Some((cost, PlacedName { center, angle, interrupts: side == 0.0 }));
+                    }
                 }
             }
             before += long;
         }
-        let (_, center, angle) = best?;
-        let (reach_x, reach_y) = (
-            0.5 * (width * angle.cos().abs() + height * angle.sin().abs()),
-            0.5 * (width * angle.sin().abs() + height * angle.cos().abs()),
-        );
-        self.add_box(Rect::new(
-            center.x - reach_x,
-            center.y - reach_y,
-            center.x + reach_x,
-            center.y + reach_y,
-        ));
-        Some((center, angle))
+        let (_, name) = best?;
+        let (sine, cosine) = (name.angle.sin().abs(), name.angle.cos().abs());
+        let reach_x = 0.5 * (width * cosine + height * sine);
+        let reach_y = 0.5 * (width * sine + height * cosine);
+        let Point { x, y } = name.center;
+        self.add_box(Rect::new(x - reach_x, y - reach_y, x + reach_x, y + reach_y));
+        Some(name)
     }
 
     /// The upper left corner of a box of the given size where it covers least, corners preferred.
@@ -226,6 +247,26 @@ mod tests {
         let layout = TextLayout::new("HB1", 8.0);
         let origin = obstacles.beside_point(Point::new(100.0, 60.0), 2.0, &layout, &FRAME);
         assert_eq!(length_inside(line[0], line[1], &layout.bounds(origin)), 0.0);
+    }
+
+    #[test]
+    fn a_name_stands_on_a_lonely_curve_and_beside_a_crowded_one() {
+        let line = |y: f64| vec![Point::new(0.0, y), Point::new(200.0, y)];
+        let layout = TextLayout::new("$r=1$ m", 8.0);
+        let mut alone = Obstacles::default();
+        let curve = alone.add_curve(&[line(60.0)]);
+        let name = alone.along_curve(curve, &[line(60.0)], None, &layout, &FRAME).unwrap();
+        assert!(name.interrupts && name.center == Point::new(100.0, 60.0));
+        let mut crowded = Obstacles::default();
+        let curve = crowded.add_curve(&[line(60.0)]);
+        crowded.add_curve(&[line(57.0)]);
+        let name = crowded.along_curve(curve, &[line(60.0)], None, &layout, &FRAME).unwrap();
+        assert!(!name.interrupts && name.center.y > 62.0);
+        assert!(
+            alone
+                .along_curve(0, &[vec![Point::new(0.0, 0.0), Point::new(9.0, 0.0)]], None, &layout, &FRAME)
+                .is_none()
+        );
     }
 
     #[test]

@@ -89,27 +89,19 @@ impl TextLayout {
 fn set(pieces: &[Piece], size: f64, start: Point, font: Font, layout: &mut TextLayout) -> f64 {
     let scale = size / UNITS_PER_EM;
     let mut x = start.x;
-    let mut previous: Option<Glyph> = None;
     for piece in pieces {
         match piece {
             Piece::Character(character) => {
                 let glyph = font.glyph(*character);
-                if let Some(previous) = previous {
-                    x += previous.kerning(glyph) * scale;
-                }
                 layout.glyphs.push(PlacedGlyph { glyph, at: Point::new(x, start.y), size });
                 x += glyph.advance() * scale;
-                previous = Some(glyph);
                 layout.ascent = layout.ascent.max(CAPITAL_HEIGHT * size - start.y);
                 // Digits and capitals have no descender; a label of those alone is centred better without one.
                 if !character.is_ascii_digit() && !character.is_ascii_uppercase() && *character != '−' {
                     layout.descent = layout.descent.max(DESCENDER_DEPTH * size + start.y);
                 }
             }
-            Piece::Space(em) => {
-                x += em * size;
-                previous = None;
-            }
+            Piece::Space(em) => x += em * size,
             Piece::Scripts { lower, upper } => {
                 let below = Point::new(x, start.y + SUBSCRIPT_DROP * size);
                 let above = Point::new(x + SUPERSCRIPT_GAP * size, start.y - SUPERSCRIPT_RISE * size);
@@ -117,7 +109,6 @@ fn set(pieces: &[Piece], size: f64, start: Point, font: Font, layout: &mut TextL
                 let after_upper =
                     if upper.is_empty() { x } else { set(upper, size * SCRIPT_SCALE, above, font, layout) };
                 x = after_lower.max(after_upper) + 0.02 * size;
-                previous = None;
             }
         }
     }
