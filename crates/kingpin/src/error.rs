@@ -151,6 +151,29 @@ pub enum KingpinError {
     /// The five-state model needs longitudinal elasticity.
     #[error("k_u = inf: this needs a finite k_u; with lateral elasticity only the model has three states")]
     LateralElasticityOnly,
+    /// An interval that is empty.
+    #[error("{key} = {start}:{end}: empty interval; the start must be below the end")]
+    EmptyInterval {
+        /// The parameter.
+        key: Key,
+        /// Start.
+        start: f64,
+        /// End.
+        end: f64,
+    },
+    /// A grid that is too coarse or too fine.
+    #[error("a grid of {columns} x {rows} points; allowed: at least 2 x 2, at most {most} points")]
+    GridSize {
+        /// Points along x.
+        columns: usize,
+        /// Points along y.
+        rows: usize,
+        /// Most points.
+        most: usize,
+    },
+    /// The observer asked to stop.
+    #[error("cancelled")]
+    Cancelled,
     /// There is no uniform motion.
     #[error("no uniform motion at v = {v} m/s, l = {l} m, r = {r} m: {reason}")]
     NoUniformMotion {

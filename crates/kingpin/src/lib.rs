@@ -11,21 +11,33 @@
 //! wheel.set("v", "5")?;
 //! let motion = wheel.uniform_motion()?;
 //! assert_eq!(motion.u(), 0.0);
-//! assert!(motion.contact_force().lateral < 0.0);
+//! assert!(motion.is_stable() && !motion.rolls());
 //! # Ok::<(), kingpin::KingpinError>(())
 //! ```
 
+pub mod boundary;
+pub mod characteristic;
+pub mod chart;
 pub mod contact;
 pub mod error;
+pub mod hurwitz;
+mod lanes;
+pub mod linear_stability;
 pub mod parameters;
+pub mod plane;
 pub mod rolling;
 pub mod simulation;
+mod tracing;
 pub mod uniform_motion;
 pub mod wheel;
 
+pub use boundary::Curve;
+pub use chart::{GrowthRateChart, StabilityChart};
 pub use contact::ContactForce;
 pub use error::{KingpinError, NoUniformMotion, Position};
+pub use linear_stability::CriticalSpeed;
 pub use parameters::Key;
+pub use plane::{Axis, Plane};
 pub use rolling::RollingWheel;
 pub use uniform_motion::UniformMotion;
 pub use wheel::Wheel;

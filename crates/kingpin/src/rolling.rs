@@ -16,6 +16,7 @@
 //! wheel to king pin, and `F2` across it.
 
 use crate::error::KingpinError;
+use crate::lanes::Arithmetic;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
 use arclength::{Scalar, VectorField};
@@ -49,7 +50,7 @@ pub(crate) struct Body<C> {
     pub rotational_stiffness: C,
 }
 
-impl<C: Scalar> Body<C> {
+impl<C: Arithmetic> Body<C> {
     #[inline(always)]
     pub fn new(get: impl Fn(Key) -> C) -> Self {
         let arm = get(Key::L) - get(Key::LC);
@@ -61,9 +62,9 @@ impl<C: Scalar> Body<C> {
             caster_length: get(Key::L),
             static_moment,
             rolling_mass,
-            inverse_rolling_mass: rolling_mass.recip(),
+            inverse_rolling_mass: C::from(1.0) / rolling_mass,
             yaw_inertia,
-            inverse_yaw_inertia: yaw_inertia.recip(),
+            inverse_yaw_inertia: C::from(1.0) / yaw_inertia,
             longitudinal_stiffness: get(Key::KU),
             lateral_stiffness: get(Key::KQ),
             longitudinal_damping: get(Key::CU),

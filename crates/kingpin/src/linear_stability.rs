@@ -1,0 +1,280 @@
+//! Linear stability of the uniform motion.
+//!
+//! For the plain wheel (equal stiffnesses, no dampers, no spring about the king pin) the characteristic polynomial and
+//! the critical yaw rate are closed forms: stability is lost at `v = r w_crit(l)`, whatever the radius. For any other
+//! wheel the polynomial is that of the Jacobian, and the critical speed is found by root-finding.
+//!
+//! **Rectilinear towing.** At `omega = 0` the polynomial is the product of a quadratic, of the longitudinal oscillation
+//! of wheel and king pin, and a cubic, of the lateral motion. Without longitudinal damping the former is neutral, at
+//! every wheel and speed, and turning however slightly damps it or not; growth rate and stability are then those of the
+//! lateral motion, on which shimmy depends. The eigenvalues show both.
+
+use crate::characteristic::{characteristic_polynomial, largest_real_part_first, roots};
+use crate::hurwitz::{self, determinants, hopf_condition, plain_characteristic_polynomial};
+use crate::parameters::Key;
+use crate::rolling::Body;
+use crate::uniform_motion::{UniformMotion, jacobian};
+use crate::wheel::Wheel;
+use num_complex::Complex64;
+
+/// Smallest speed in m/s at which a change of stability is looked for.
+const SLOWEST: f64 = 1e-3;
+/// Number of speeds, in geometric progression, between which changes of stability are looked for.
+const SPEEDS: usize = 400;
+/// The interval of the critical speed is halved until it is this small, relative to the speed.
+const CRITICAL_SPEED_TOLERANCE: f64 = 4.0 * f64::EPSILON;
+
+/// The speed at which the uniform motion loses (or gains) its stability.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalSpeed {
+    /// Towing speed in m/s.
+    pub speed: f64,
+    /// Yaw rate `omega = v/r` in rad/s.
+    pub yaw_rate: f64,
+    /// What is left of the growth rate there, in 1/s.
+    pub residual: f64,
+}
+
+/// The characteristic polynomial at a uniform motion.
+enum Characteristic {
+    /// On a circle: `s^5 + c1 s^4 + ... + c5`.
+    Circle([f64; 5]),
+    /// In rectilinear towing: two factors.
+    Straight { longitudinal: [f64; 2], lateral: [f64; 3] },
+}
+
+impl Characteristic {
+    #[inline]
+    fn at(wheel: &Wheel, state: &[f64; 5]) -> Self {
+        let (omega, forward_speed) = (wheel.towing_yaw_rate(), state[3]);
+        if omega == 0.0 {
+            return Self::straight(&wheel.body(), forward_speed);
+        }
+        if !wheel.is_plain() {
+            return Self::Circle(characteristic_polynomial(&jacobian(wheel, state).1));
+        }
+        let [c1, c2, c3, c4, c5] = plain_characteristic_polynomial(&wheel.body(), omega * omega);
+        Self::Circle([forward_speed * c1, c2, forward_speed * c3, c4, forward_speed * c5])
+    }
+
+    fn straight(body: &Body<f64>, v: f64) -> Self {
+        let (l, inverse_inertia) = (body.caster_length, body.inverse_yaw_inertia);
+        let damping = body.static_moment * v + body.rotational_damping + body.lateral_damping * l * l;
+        let stiffness =
+            body.rotational_stiffness + l * body.lateral_damping * v + l * l * body.lateral_stiffness;
+        Self::Straight {
+            longitudinal: [body.longitudinal_damping, body.longitudinal_stiffness]
+                .map(|coefficient| coefficient * body.inverse_rolling_mass),
+            lateral: [damping, stiffness, l * body.lateral_stiffness * v]
+                .map(|coefficient| coefficient * inverse_inertia),
+        }
+    }
+
+    fn coefficients(&self) -> [f64; 5] {
+        match *self {
+            Self::Circle(coefficients) => coefficients,
+            Self::Straight { longitudinal: [a1, a2], lateral: [b1, b2, b3] } => {
+                [a1 + b1, a2 + a1 * b1 + b2, a2 * b1 + a1 * b2 + b3, a2 * b2 + a1 * b3, a2 * b3]
+            }
+        }
+    }
+
+    fn eigenvalues(&self) -> [Complex64; 5] {
+        match self {
+            Self::Circle(coefficients) => roots(coefficients),
+            Self::Straight { longitudinal, lateral } => {
+                let ([a, b], [c, d, e]) = (roots(longitudinal), roots(lateral));
+                let mut eigenvalues = [a, b, c, d, e];
+                eigenvalues.sort_unstable_by(largest_real_part_first);
+                eigenvalues
+            }
+        }
+    }
+
+    #[inline]
+    fn growth_rate(&self) -> f64 {
+        match self {
+            Self::Circle(coefficients) => roots(coefficients)[0].re,
+            Self::Straight { longitudinal: [0.0, _], lateral } => roots(lateral)[0].re,
+            Self::Straight { .. } => self.eigenvalues()[0].re,
+        }
+    }
+
+    fn is_stable(&self) -> bool {
+        match self {
+            Self::Circle(coefficients) => hurwitz::is_stable(coefficients),
+            // The longitudinal damping is not negative.
+            Self::Straight { lateral, .. } => hurwitz::is_stable_cubic(lateral),
+        }
+    }
+}
+
+impl UniformMotion {
+    fn characteristic(&self) -> Characteristic {
+        Characteristic::at(self.wheel(), &self.state())
+    }
+
+    /// The coefficients `c1 ... c5` of the characteristic polynomial `s^5 + c1 s^4 + ... + c5`.
+    pub fn characteristic_polynomial(&self) -> [f64; 5] {
+        self.characteristic().coefficients()
+    }
+
+    /// The eigenvalues in 1/s, largest real part first.
+    ///
+    /// ```
+    /// let motion = kingpin::Wheel::default().uniform_motion()?;
+    /// assert!(motion.eigenvalues().iter().all(|eigenvalue| eigenvalue.re < 0.0));
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn eigenvalues(&self) -> [Complex64; 5] {
+        self.characteristic().eigenvalues()
+    }
+
+    /// The largest real part of the eigenvalues, in 1/s; in rectilinear towing without longitudinal damping that of the
+    /// lateral motion.
+    pub fn growth_rate(&self) -> f64 {
+        self.characteristic().growth_rate()
+    }
+
+    /// Whether the uniform motion is linearly stable, by the Routh-Hurwitz conditions; in rectilinear towing without
+    /// longitudinal damping those of the lateral motion.
+    pub fn is_stable(&self) -> bool {
+        self.characteristic().is_stable()
+    }
+}
+
+impl Wheel {
+    /// The growth rate of the uniform motion in 1/s, and whether the wheel rolls in it; `None` where there is no such
+    /// motion.
+    #[inline]
+    pub(crate) fn growth_rate_and_rolling(&self) -> Option<(f64, bool)> {
+        let state = self.uniform_state().ok()?;
+        let growth_rate = Characteristic::at(self, &state).growth_rate();
+        Some((growth_rate, self.rolling_contact_force(&state).rolls()))
+    }
+
+    /// A smooth function of the parameters, positive where the uniform motion is stable and zero at a Hopf point on the
+    /// boundary of stability; `None` where there is no motion or another of the conditions for stability fails.
+    pub(crate) fn flutter_margin(&self) -> Option<f64> {
+        let state = self.uniform_state().ok()?;
+        if self.is_plain() {
+            let (body, omega) = (self.body(), self.towing_yaw_rate());
+            let [stiff, inertial] = hopf_condition(&body);
+            // In rectilinear towing `D2` changes its sign together with `N`.
+            let others = omega == 0.0 || beside_the_hopf_condition(&body, omega * omega);
+            let margin = -stiff - inertial * omega * omega;
+            return (others && body.static_moment > 0.0).then_some(margin);
+        }
+        match Characteristic::at(self, &state) {
+            Characteristic::Circle([c1, c2, c3, c4, c5]) => {
+                let [second, fourth] = determinants([c1, c2, c3, c4, c5]);
+                let mixed = c1 * c4 - c5;
+                let scale = second * (c3 * c4 + c2 * c5) + mixed * mixed;
+                let omega = self.towing_yaw_rate() * self.get(Key::L) / self.get(Key::V);
+                // Without longitudinal damping the determinant vanishes with the yaw rate squared.
+                let vanishing = if self.get(Key::CU) == 0.0 { omega * omega } else { 1.0 };
+                let others = [c1, c3, c5, second].into_iter().all(|condition| condition > 0.0);
+                others.then_some(fourth / (scale * vanishing))
+            }
+            Characteristic::Straight { lateral: [c1, c2, c3], .. } => {
+                (c1 > 0.0 && c3 > 0.0).then_some((c1 * c2 - c3) / (c1 * c2 + c3))
+            }
+        }
+    }
+
+    /// As [`flutter_margin`](Self::flutter_margin), but zero where a real eigenvalue is.
+    pub(crate) fn divergence_margin(&self) -> Option<f64> {
+        let state = self.uniform_state().ok()?;
+        let coefficients = Characteristic::at(self, &state).coefficients();
+        let [c1, _, c3, c4, c5] = coefficients;
+        let [second, fourth] = determinants(coefficients);
+        let others = [c1, c3, second, fourth].into_iter().all(|condition| condition > 0.0);
+        others.then_some(c5 / (c1 * c4).abs())
+    }
+
+    /// The yaw rate `w_crit(l)` in rad/s at which a plain wheel changes its stability, at every radius the same; `None`
+    /// where it does not, and for a wheel with dampers, different stiffnesses or a spring about the king pin.
+    ///
+    /// ```
+    /// let critical = kingpin::Wheel::default().critical_yaw_rate().unwrap();
+    /// assert!((critical - 8.43103697014).abs() < 1e-11);
+    /// ```
+    pub fn critical_yaw_rate(&self) -> Option<f64> {
+        if !self.is_plain() {
+            return None;
+        }
+        let body = self.body();
+        let [stiff, inertial] = hopf_condition(&body);
+        let squared = -stiff / inertial;
+        (squared > 0.0 && squared.is_finite() && beside_the_hopf_condition(&body, squared))
+            .then(|| squared.sqrt())
+    }
+
+    /// The caster length `l_crit = l_c + (J_Cz + J_wzeta)/(m_c l_c)` in m above which the plain wheel is stable in
+    /// rectilinear towing at every speed; `None` where there is none, as for [`critical_yaw_rate`](Self::critical_yaw_rate).
+    pub fn critical_caster_length(&self) -> Option<f64> {
+        let arm = self.get(Key::LC);
+        let inertia = self.get(Key::JCz) + self.get(Key::JWzeta);
+        (self.is_plain() && arm > 0.0).then(|| arm + inertia / (self.get(Key::MC) * arm))
+    }
+
+    /// The smallest towing speed at which the uniform motion changes its stability; `None` where it does not.
+    ///
+    /// A plain wheel on a circle has it in closed form, `r w_crit(l)`. Otherwise the growth rate is sampled at 400
+    /// speeds from 1 mm/s to the largest at which the motion exists, and its first zero is found by bisection.
+    pub fn critical_speed(&self) -> Option<CriticalSpeed> {
+        if self.get(Key::KU).is_infinite() {
+            return None;
+        }
+        let radius = self.get(Key::TurningRadius);
+        let growth_rate = |speed: f64| {
+            let (growth_rate, _) = self.with(Key::V, speed).ok()?.growth_rate_and_rolling()?;
+            Some(growth_rate)
+        };
+        if self.is_plain() {
+            // In rectilinear towing the stability of a plain wheel does not depend on the speed.
+            let yaw_rate = self.critical_yaw_rate().filter(|_| radius.is_finite())?;
+            let speed = radius * yaw_rate;
+            return Some(CriticalSpeed { speed, yaw_rate, residual: growth_rate(speed)?.abs() });
+        }
+        let body = self.body();
+        let limit = (body.lateral_stiffness * body.caster_length / body.static_moment).sqrt() * radius;
+        let fastest = Key::V.allowed().highest;
+        let fastest = if limit < fastest { limit } else { fastest };
+        let ratio = (fastest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
+        let mut before: Option<(f64, f64)> = None;
+        for index in 0..SPEEDS {
+            let speed = SLOWEST * ratio.powi(index as i32);
+            let Some(rate) = growth_rate(speed) else {
+                before = None;
+                continue;
+            };
+            if let Some((slower, slower_rate)) = before.filter(|(_, other)| (*other < 0.0) != (rate < 0.0)) {
+                let speed = bisect(slower, slower_rate, speed, growth_rate)?;
+                let residual = growth_rate(speed)?.abs();
+                return Some(CriticalSpeed { speed, yaw_rate: speed / radius, residual });
+            }
+            before = Some((speed, rate));
+        }
+        None
+    }
+}
+
+/// Whether a plain wheel has a uniform motion on a circle wide enough, and the Hurwitz conditions other than
+/// `N + D omega^2 < 0` hold.
+fn beside_the_hopf_condition(body: &Body<f64>, yaw_rate_squared: f64) -> bool {
+    let polynomial = plain_characteristic_polynomial(body, yaw_rate_squared);
+    let [c1, _, c3, _, c5] = polynomial;
+    let [second, _] = determinants(polynomial);
+    let remaining = body.lateral_stiffness * body.caster_length - body.static_moment * yaw_rate_squared;
+    [remaining, c1, c3, c5, second].into_iter().all(|condition| condition > 0.0)
+}
+
+/// The zero of a function between two points where its signs differ.
+fn bisect(mut low: f64, low_value: f64, mut high: f64, function: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    while high - low > CRITICAL_SPEED_TOLERANCE * high {
+        let middle = 0.5 * (low + high);
+        if (function(middle)? < 0.0) == (low_value < 0.0) { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}
