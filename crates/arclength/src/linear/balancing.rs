@@ -17,26 +17,21 @@ const MAXIMUM_SWEEPS: usize = 100;
 pub(super) fn isolate(matrix: &mut [f64], n: usize) -> (usize, usize) {
     let (mut low, mut high) = (0, n);
     // Rows without off-diagonal entries go to the bottom.
-    'rows: while high > 1 {
-        for row in (0..high).rev() {
-            if (0..high).all(|column| column == row || matrix[row + n * column] == 0.0) {
-                exchange(matrix, n, row, high - 1);
-                high -= 1;
-                continue 'rows;
-            }
-        }
-        break;
+    while let Some(row) = (0..high)
+        .rev()
+        .find(|row| (0..high).all(|column| column == *row || matrix[row + n * column] == 0.0))
+        .filter(|_| high > 1)
+    {
+        exchange(matrix, n, row, high - 1);
+        high -= 1;
     }
     // Columns without off-diagonal entries go to the left.
-    'columns: while low + 1 < high {
-        for column in low..high {
-            if (low..high).all(|row| row == column || matrix[row + n * column] == 0.0) {
-                exchange(matrix, n, column, low);
-                low += 1;
-                continue 'columns;
-            }
-        }
-        break;
+    while let Some(column) = (low..high)
+        .find(|column| (low..high).all(|row| row == *column || matrix[row + n * column] == 0.0))
+        .filter(|_| low + 1 < high)
+    {
+        exchange(matrix, n, column, low);
+        low += 1;
     }
     (low, high)
 }

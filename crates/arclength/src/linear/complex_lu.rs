@@ -58,18 +58,15 @@ impl ComplexLu {
         for (k, pivot) in self.pivots.iter().enumerate() {
             vector.swap(k, *pivot);
         }
-        for k in 0..n {
+        let columns = self.factors.chunks_exact(n.max(1));
+        for (k, column) in columns.clone().enumerate() {
             let value = vector[k];
-            for row in k + 1..n {
-                vector[row] -= self.factors[row + n * k] * value;
-            }
+            vector[k + 1..].iter_mut().zip(&column[k + 1..]).for_each(|(x, l)| *x -= l * value);
         }
-        for k in (0..n).rev() {
-            vector[k] /= self.factors[k + n * k];
+        for (k, column) in columns.enumerate().rev() {
+            vector[k] /= column[k];
             let value = vector[k];
-            for row in 0..k {
-                vector[row] -= self.factors[row + n * k] * value;
-            }
+            vector[..k].iter_mut().zip(column).for_each(|(x, u)| *x -= u * value);
         }
     }
 }

@@ -131,21 +131,16 @@ pub(super) fn normalize(vector: &mut [Complex64]) {
     vector.iter_mut().for_each(|x| *x /= norm);
 }
 
-/// The number of modulus one that makes the largest component real and positive.
-pub(super) fn phase(vector: &[Complex64]) -> Complex64 {
+/// Makes the largest component real and positive; returns the number of modulus one by which the vector was multiplied.
+pub(super) fn fix_phase(vector: &mut [Complex64]) -> Complex64 {
     let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
-    vector
-        .iter()
-        .find(|x| x.norm() >= (1.0 - TIE) * largest && largest > 0.0)
-        .map_or(Complex64::ONE, |x| if x.im == 0.0 { x.re.signum().into() } else { x.conj() / x.norm() })
-}
-
-fn fix_phase(vector: &mut [Complex64]) {
-    let phase = phase(vector);
-    vector.iter_mut().for_each(|x| *x *= phase);
-    // The rotated component is real up to rounding; make it exactly so.
-    let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
-    if let Some(x) = vector.iter_mut().find(|x| x.norm() >= (1.0 - TIE) * largest) {
-        x.im = 0.0;
-    }
+    let Some(at) = vector.iter().position(|x| x.norm() >= (1.0 - TIE) * largest && largest > 0.0) else {
+        return Complex64::ONE;
+    };
+    let component = vector[at];
+    let turn =
+        if component.im == 0.0 { component.re.signum().into() } else { component.conj() / component.norm() };
+    vector.iter_mut().for_each(|x| *x *= turn);
+    vector[at].im = 0.0;
+    turn
 }
