@@ -19,6 +19,7 @@ pub mod boundary;
 pub mod characteristic;
 pub mod chart;
 pub mod contact;
+pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
 mod lanes;
