@@ -1,7 +1,7 @@
 //! The run itself: predict, correct, adapt, inspect, locate, repeat.
 
 use super::corrector::{inner, norm};
-use super::{Adaptation, CorrectionFailure, Curve, Settings, Solution, Stop, correct};
+use super::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, correct};
 use crate::error::Error;
 use std::ops::ControlFlow;
 
@@ -91,6 +91,12 @@ pub fn follow<C: Curve>(
             Ok(next) => next,
             Err(stop) => return Ok(Followed { solutions, stop }),
         };
+        let ending = curve.ending(&current, &advanced);
+        let ending = match ending {
+            Some(Ending::Between(stop)) => return Ok(Followed { solutions, stop }),
+            Some(Ending::After(stop)) => Some(stop),
+            None => None,
+        };
         let mut between = match curve.special_points(&current, &advanced) {
             Ok(special) => special.into_iter().map(|solution| (solution, Origin::Special)).collect(),
             Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
@@ -159,7 +165,6 @@ pub fn follow<C: Curve>(
         let Some((next, _)) = between.last() else { continue };
         let next = next.clone();
         solutions.extend(between);
-        let ending = curve.ending(&next);
         if let Some(stop) = ending {
             return Ok(Followed { solutions, stop });
         }

@@ -14,7 +14,7 @@ mod settings;
 mod stop;
 
 pub use corrector::{Correction, CorrectionFailure, correct};
-pub use curve::{Adaptation, Curve, Solution};
+pub use curve::{Adaptation, Curve, Ending, Solution};
 pub(crate) use follow::finish;
 pub use follow::{Bound, Followed, Origin, Request, follow, locate};
 pub use settings::Settings;

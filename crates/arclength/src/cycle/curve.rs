@@ -7,7 +7,7 @@ use super::limit_cycle::LimitCycle;
 use super::mesh::{equidistribute, error_profile, intervals_needed};
 use super::problem::PeriodicProblem;
 use super::special;
-use crate::continuation::{Adaptation, Curve, Settings, Solution, Stop};
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -39,12 +39,10 @@ const EXCESS: f64 = 1.6;
 const MEAN_PART: f64 = 0.01;
 /// Noise floor of the error estimate: part of the mean that is rounding.
 const ROUNDING_PART: f64 = 1e-6;
-/// A cycle whose amplitude is this part of the largest on its branch is about to end in a Hopf point.
-pub(super) const VANISHING: f64 = 1e-3;
 /// The period has to grow to this many times its start, and its rate of change in the parameter beyond
 /// [`HOMOCLINIC_SENSITIVITY`], to count as unbounded.
-const HOMOCLINIC_GROWTH: f64 = 20.0;
-const HOMOCLINIC_SENSITIVITY: f64 = 1e4;
+const HOMOCLINIC_GROWTH: f64 = 5.0;
+const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
 
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
@@ -144,9 +142,30 @@ impl<'a, F: VectorField> CycleCurve<'a, F> {
         self.period_scale = unknown[unknown.len() - 2].abs();
     }
 
-    /// Largest amplitude relative to the largest met on the branch.
-    fn relative_amplitude(&self) -> f64 {
-        self.amplitudes.iter().zip(&self.largest).map(|(now, ever)| now / ever).fold(0.0, f64::max)
+    /// Mean squares of the deviations of two solutions from their means, and the mean product of the two.
+    fn deviation_products(&self, one: &[f64], other: &[f64]) -> (f64, f64, f64) {
+        let n = self.collocation.problem.dimension();
+        let end = one.len() - 2;
+        let mean = |vector: &[f64], component: usize| {
+            let nodes = end / n;
+            vector[..end].iter().skip(component).step_by(n).sum::<f64>() / nodes as f64
+        };
+        let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
+        for component in 0..n {
+            let scale = self.largest[component];
+            if scale == 0.0 {
+                continue;
+            }
+            let (mean_one, mean_other) = (mean(one, component), mean(other, component));
+            let values = one[..end].iter().zip(&other[..end]).skip(component).step_by(n);
+            for (a, b) in values {
+                let (a, b) = ((a - mean_one) / scale, (b - mean_other) / scale);
+                first += a * a;
+                second += b * b;
+                mixed += a * b;
+            }
+        }
+        (first, second, mixed)
     }
 }
 
@@ -243,17 +262,31 @@ impl<F: VectorField> Curve for CycleCurve<'_, F> {
         signature
     }
 
-    fn ending(&mut self, solution: &Solution<CycleInspection>) -> Option<Stop> {
-        let (period, parameter) =
-            (solution.unknown[solution.unknown.len() - 2], solution.unknown[solution.unknown.len() - 1]);
+    fn ending(
+        &mut self,
+        before: &Solution<CycleInspection>,
+        after: &Solution<CycleInspection>,
+    ) -> Option<Ending> {
+        let end = after.unknown.len() - 2;
+        let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let first = *self.first_period.get_or_insert(period);
-        let rate = solution.tangent[solution.tangent.len() - 2] / self.period_scale;
-        let sensitivity = (rate / solution.point.fold_test).abs();
+        let rate = after.tangent[end] / self.period_scale;
+        let sensitivity = (rate / after.point.fold_test).abs();
         if period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY {
-            return Some(Stop::PeriodUnbounded { period, parameter });
+            return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
         }
-        if self.relative_amplitude() < VANISHING {
-            return Some(Stop::HopfPoint { parameter, frequency: 2.0 * std::f64::consts::PI / period });
+        // Through amplitude zero the curve goes on to the same cycles half a period later.
+        let (size_before, size_after, product) = self.deviation_products(&before.unknown, &after.unknown);
+        if product < 0.0 {
+            let (a, b) = (before.unknown[end + 1], parameter);
+            // The squared amplitude is linear in the parameter next to a Hopf point.
+            let parameter = if size_before == size_after {
+                0.5 * (a + b)
+            } else {
+                (a * size_after - b * size_before) / (size_after - size_before)
+            };
+            let frequency = 2.0 * std::f64::consts::PI / period;
+            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
         }
         None
     }
