@@ -28,6 +28,7 @@ pub mod parameters;
 pub mod plane;
 pub mod rolling;
 pub mod simulation;
+pub mod sliding;
 mod tracing;
 pub mod uniform_motion;
 pub mod wheel;

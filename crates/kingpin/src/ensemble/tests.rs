@@ -65,7 +65,7 @@ fn a_trajectory_does_not_depend_on_its_company() {
     let stop = |trajectory: usize| {
         move |progress: Progress<'_>| {
             assert_eq!(progress.trajectory, trajectory);
-            if progress.time > 0.1 && trajectory % 3 == 0 {
+            if progress.time > 0.1 && trajectory.is_multiple_of(3) {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())

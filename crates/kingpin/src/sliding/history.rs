@@ -1,0 +1,130 @@
+//! Sampled motions of the wheel that may slide.
+
+use super::model::{S1, S2, SlipState};
+use super::{Contact, HybridState, Phase, SlidingWheel, as_slip_state};
+use crate::simulation::SimulationError;
+
+/// A motion sampled at equal intervals. Everything is SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlidingHistory {
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// States [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES), one for each time.
+    pub states: Vec<[f64; 7]>,
+    /// Friction force along and across the caster in N, one for each time.
+    pub friction: Vec<[f64; 2]>,
+    /// Power of the towing frame in W, one for each time.
+    pub towing_power: Vec<f64>,
+    /// Power that friction and dampers dissipate in W, one for each time.
+    pub dissipated_power: Vec<f64>,
+    /// Normal force in N.
+    pub normal_force: f64,
+    /// Phases in order; neighbours of the same kind are those between which the slip passed through zero.
+    pub phases: Vec<Phase>,
+    /// Kinetic and spring energy at the end less that at the start, in J.
+    pub energy_gained: f64,
+}
+
+impl SlidingHistory {
+    /// Slip speed `|s|` in m/s at each time.
+    pub fn slip(&self) -> Vec<f64> {
+        self.states.iter().map(|state| (state[3] - state[6]).hypot(state[4])).collect()
+    }
+
+    /// Part of the time in which the wheel slides.
+    pub fn sliding_fraction(&self) -> f64 {
+        let total: f64 = self.phases.iter().map(|phase| phase.end - phase.start).sum();
+        let sliding: f64 = self
+            .phases
+            .iter()
+            .filter(|phase| phase.contact == Contact::Sliding)
+            .map(|phase| phase.end - phase.start)
+            .sum();
+        if total > 0.0 { sliding / total } else { 0.0 }
+    }
+}
+
+impl SlidingWheel {
+    /// Simulates from a state `(u, q, psi, V, Omega)` without slip, sampled at `samples` equidistant times from 0
+    /// to `duration`, both included.
+    ///
+    /// # Errors
+    /// A duration or number of samples that is not allowed, or a motion that cannot be followed.
+    pub fn simulate(
+        &self,
+        initial: &[f64; 5],
+        duration: f64,
+        samples: usize,
+    ) -> Result<SlidingHistory, SimulationError> {
+        self.simulate_hybrid(self.rolling_state(initial), duration, samples)
+    }
+
+    /// Simulates from the states [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES); otherwise like
+    /// [`simulate`](Self::simulate). Without slip (`V1 = W`, `V2 = 0`) the wheel rolls if friction can hold it.
+    ///
+    /// # Errors
+    /// As [`simulate`](Self::simulate).
+    pub fn simulate_from(
+        &self,
+        initial: &[f64; 7],
+        duration: f64,
+        samples: usize,
+    ) -> Result<SlidingHistory, SimulationError> {
+        let [u, q, psi, forward, lateral, yaw, rim] = *initial;
+        let state = [u, q, psi, forward, lateral, yaw, forward - rim];
+        let slips = state[S1] != 0.0 || state[S2] != 0.0;
+        let contact = if slips { Contact::Sliding } else { Contact::Rolling };
+        self.simulate_hybrid(HybridState { contact, state }, duration, samples)
+    }
+
+    fn simulate_hybrid(
+        &self,
+        initial: HybridState,
+        duration: f64,
+        samples: usize,
+    ) -> Result<SlidingHistory, SimulationError> {
+        if !(duration > 0.0 && duration.is_finite()) {
+            return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
+        }
+        if samples < 2 {
+            return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
+        }
+        let last = (samples - 1) as f64;
+        let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
+        let equations = &self.equations;
+        let mut history = SlidingHistory {
+            times: Vec::with_capacity(samples),
+            states: Vec::with_capacity(samples),
+            friction: Vec::with_capacity(samples),
+            towing_power: Vec::with_capacity(samples),
+            dissipated_power: Vec::with_capacity(samples),
+            normal_force: self.rolling.wheel().normal_force(),
+            phases: Vec::new(),
+            energy_gained: 0.0,
+        };
+        let end = self.follow(initial, duration, &times, |phase, resumes, solution| {
+            for (time, state) in solution.samples() {
+                let state: SlipState = as_slip_state(state);
+                history.times.push(time);
+                history.states.push(HybridState { contact: phase.contact, state }.public());
+                let friction = match phase.contact {
+                    Contact::Sliding if state[S1] != 0.0 || state[S2] != 0.0 => {
+                        equations.sliding_force(&state)
+                    }
+                    _ => equations.holding_force(&state),
+                };
+                let (towing, dissipated) = equations.power(&state, friction);
+                history.friction.push(friction);
+                history.towing_power.push(towing);
+                history.dissipated_power.push(dissipated);
+            }
+            match history.phases.last_mut() {
+                Some(before) if resumes => before.end = phase.end,
+                _ => history.phases.push(phase),
+            }
+            true
+        })?;
+        history.energy_gained = equations.energy(&end.state) - equations.energy(&initial.state);
+        Ok(history)
+    }
+}
