@@ -7,7 +7,7 @@ use crate::expand::expanded_lines;
 use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
 use crate::source::decode;
-use crate::tape::{Tape, schedule};
+use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
 use arclength::{Scalar, VectorField};
 
 /// A model read from a `.ode` text.
@@ -242,12 +242,19 @@ fn read(source: &str) -> Result<Model, OdeError> {
         initial[declarations.state(&formula.name)?] = lowering.lower(&formula.expression, Scope::Initial)?;
     }
 
-    let graph = &lowering.graph;
-    let field = schedule(graph, &field, states, parameters);
+    let first = declarations.symbols.states[0].span;
+    let compile = |results: &[u32], states: usize| {
+        schedule(&lowering.graph, results, states, parameters).ok_or_else(|| OdeError::TooLarge {
+            place: first.into(),
+            what: "the model needs too many registers".into(),
+            limit: MAXIMUM_REGISTERS,
+        })
+    };
+    let field = compile(&field, states)?;
     let time = if field.uses_time() { lowering.time.map(|span| filled(span.into(), source)) } else { None };
-    let auxiliary = schedule(graph, &auxiliary, states, parameters);
-    let derivation = schedule(graph, &derivation, 0, parameters);
-    let initial = schedule(graph, &initial, 0, parameters);
+    let auxiliary = compile(&auxiliary, states)?;
+    let derivation = compile(&derivation, 0)?;
+    let initial = compile(&initial, 0)?;
 
     let mut warnings = std::mem::take(&mut declarations.warnings);
     warnings.append(&mut lowering.warnings);

@@ -82,6 +82,16 @@ impl Graph {
                 Operation::Binary(BinaryOperation::Subtract, a, b) => {
                     return self.insert(Operation::Binary(BinaryOperation::Subtract, b, a));
                 }
+                Operation::Binary(scaling @ (BinaryOperation::Multiply | BinaryOperation::Divide), a, b) => {
+                    // The sign goes into a constant factor or divisor.
+                    for (constant, other, constant_first) in [(a, b, true), (b, a, false)] {
+                        if let Some(value) = self.constant_value(constant) {
+                            let constant = self.constant(-value);
+                            let (a, b) = if constant_first { (constant, other) } else { (other, constant) };
+                            return self.binary(scaling, a, b);
+                        }
+                    }
+                }
                 _ => {}
             }
         }
@@ -132,6 +142,10 @@ impl Graph {
             (Add, _, Some(b)) => Some(self.binary(Subtract, a, b)),
             (Add, Some(a), None) => Some(self.binary(Subtract, b, a)),
             (Subtract, _, Some(b)) => Some(self.binary(Add, a, b)),
+            (Subtract, Some(a), None) if self.constant_value(b).is_none() => {
+                let sum = self.binary(Add, a, b);
+                Some(self.unary(UnaryOperation::Negate, sum))
+            }
             (Multiply | Divide, Some(a), Some(b)) => Some(self.binary(operation, a, b)),
             (Multiply | Divide, Some(a), None) => {
                 let product = self.binary(operation, a, b);

@@ -1,76 +1,112 @@
 //! The instructions and what they do.
 
+use super::registers::Registers;
 use super::special::{bessel_j, bessel_y, complementary_error_function, error_function};
 use crate::expression::{BinaryOperation, UnaryOperation};
 use arclength::Scalar;
 
-/// Index of a register.
-pub(crate) type Register = u32;
-
-/// One step. The last register named is the one that is written.
+/// One step over registers with indices of type `R`. The last register named is the one that is written.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Instruction {
-    Constant(f64, Register),
-    Time(Register),
-    Add(Register, Register, Register),
-    Subtract(Register, Register, Register),
-    Multiply(Register, Register, Register),
-    Divide(Register, Register, Register),
-    Negate(Register, Register),
-    AddConstant(Register, f64, Register),
-    MultiplyConstant(Register, f64, Register),
-    DivideByConstant(Register, f64, Register),
+pub(crate) enum Instruction<R> {
+    Constant(f64, R),
+    Time(R),
+    Add(R, R, R),
+    Subtract(R, R, R),
+    Multiply(R, R, R),
+    Divide(R, R, R),
+    Negate(R, R),
+    AddConstant(R, f64, R),
+    MultiplyConstant(R, f64, R),
+    DivideByConstant(R, f64, R),
     /// constant - operand
-    SubtractFromConstant(Register, f64, Register),
+    SubtractFromConstant(R, f64, R),
     /// a b + c
-    MultiplyAdd(Register, Register, Register, Register),
+    MultiplyAdd(R, R, R, R),
     /// a b - c
-    MultiplySubtract(Register, Register, Register, Register),
+    MultiplySubtract(R, R, R, R),
     /// c - a b
-    SubtractProduct(Register, Register, Register, Register),
+    SubtractProduct(R, R, R, R),
+    /// a b + c d
+    SumOfProducts([R; 4], R),
+    /// a b - c d
+    DifferenceOfProducts([R; 4], R),
+    /// a b c
+    MultiplyMultiply(R, R, R, R),
+    /// (a + b) c
+    AddMultiply(R, R, R, R),
+    /// (a - b) c
+    SubtractMultiply(R, R, R, R),
+    /// a b / c
+    MultiplyDivide(R, R, R, R),
+    /// a constant + b
+    ScaleAdd(R, R, f64, R),
+    /// a constant - b
+    ScaleSubtract(R, R, f64, R),
+    /// b - a constant
+    SubtractScaled(R, R, f64, R),
+    /// (a + constant) b
+    AddConstantMultiply(R, R, f64, R),
+    /// (constant - a) b
+    SubtractFromConstantMultiply(R, R, f64, R),
+    Reciprocal(R, R),
+    Exponential(R, R),
     /// Sine and cosine of the first, in this order.
-    SineCosine(Register, Register, Register),
-    Unary(UnaryOperation, Register, Register),
-    Binary(BinaryOperation, Register, Register, Register),
-    WholePower(Register, i32, Register),
+    SineCosine(R, R, R),
+    Unary(UnaryOperation, R, R),
+    Binary(BinaryOperation, R, R, R),
+    WholePower(R, i32, R),
     /// The second if the first is not zero, else the third.
-    Select(Register, Register, Register, Register),
+    Select(R, R, R, R),
 }
 
-/// Registers of known or of any number.
-pub(super) trait Registers<T> {
-    fn read(&self, register: Register) -> T;
-    fn write(&mut self, register: Register, value: T);
-}
+const _: () = assert!(size_of::<Instruction<u16>>() == 16);
 
-impl<T: Copy, const N: usize> Registers<T> for [T; N] {
-    #[inline(always)]
-    fn read(&self, register: Register) -> T {
-        // N is a power of two above every register, so the mask changes nothing and proves the bound.
-        self[register as usize & (N - 1)]
-    }
-    #[inline(always)]
-    fn write(&mut self, register: Register, value: T) {
-        self[register as usize & (N - 1)] = value;
-    }
-}
-
-impl<T: Copy> Registers<T> for [T] {
-    #[inline(always)]
-    fn read(&self, register: Register) -> T {
-        self[register as usize]
-    }
-    #[inline(always)]
-    fn write(&mut self, register: Register, value: T) {
-        self[register as usize] = value;
+impl<R: Copy> Instruction<R> {
+    /// The registers read and those written.
+    pub fn registers(&self) -> (Vec<R>, Vec<R>) {
+        use Instruction as I;
+        match *self {
+            I::Constant(_, to) | I::Time(to) => (vec![], vec![to]),
+            I::Negate(a, to)
+            | I::AddConstant(a, _, to)
+            | I::MultiplyConstant(a, _, to)
+            | I::DivideByConstant(a, _, to)
+            | I::SubtractFromConstant(a, _, to)
+            | I::Reciprocal(a, to)
+            | I::Exponential(a, to)
+            | I::Unary(_, a, to)
+            | I::WholePower(a, _, to) => (vec![a], vec![to]),
+            I::Add(a, b, to)
+            | I::Subtract(a, b, to)
+            | I::Multiply(a, b, to)
+            | I::Divide(a, b, to)
+            | I::ScaleAdd(a, b, _, to)
+            | I::ScaleSubtract(a, b, _, to)
+            | I::SubtractScaled(a, b, _, to)
+            | I::AddConstantMultiply(a, b, _, to)
+            | I::SubtractFromConstantMultiply(a, b, _, to)
+            | I::Binary(_, a, b, to) => (vec![a, b], vec![to]),
+            I::MultiplyAdd(a, b, c, to)
+            | I::MultiplySubtract(a, b, c, to)
+            | I::SubtractProduct(a, b, c, to)
+            | I::MultiplyMultiply(a, b, c, to)
+            | I::AddMultiply(a, b, c, to)
+            | I::SubtractMultiply(a, b, c, to)
+            | I::MultiplyDivide(a, b, c, to)
+            | I::Select(a, b, c, to) => (vec![a, b, c], vec![to]),
+            I::SumOfProducts(factors, to) | I::DifferenceOfProducts(factors, to) => {
+                (factors.to_vec(), vec![to])
+            }
+            I::SineCosine(a, sine, cosine) => (vec![a], vec![sine, cosine]),
+        }
     }
 }
 
 #[inline(always)]
-pub(super) fn execute<T: Scalar>(
-    instruction: &Instruction,
+pub(super) fn execute<T: Scalar, R: Copy>(
+    instruction: &Instruction<R>,
     time: T,
-    registers: &mut (impl Registers<T> + ?Sized),
+    registers: &mut impl Registers<T, R>,
 ) {
     use Instruction as I;
     let r = registers;
@@ -89,6 +125,23 @@ pub(super) fn execute<T: Scalar>(
         I::MultiplyAdd(a, b, c, to) => r.write(to, r.read(a) * r.read(b) + r.read(c)),
         I::MultiplySubtract(a, b, c, to) => r.write(to, r.read(a) * r.read(b) - r.read(c)),
         I::SubtractProduct(a, b, c, to) => r.write(to, r.read(c) - r.read(a) * r.read(b)),
+        I::SumOfProducts([a, b, c, d], to) => r.write(to, r.read(a) * r.read(b) + r.read(c) * r.read(d)),
+        I::DifferenceOfProducts([a, b, c, d], to) => {
+            r.write(to, r.read(a) * r.read(b) - r.read(c) * r.read(d));
+        }
+        I::MultiplyMultiply(a, b, c, to) => r.write(to, r.read(a) * r.read(b) * r.read(c)),
+        I::AddMultiply(a, b, c, to) => r.write(to, (r.read(a) + r.read(b)) * r.read(c)),
+        I::SubtractMultiply(a, b, c, to) => r.write(to, (r.read(a) - r.read(b)) * r.read(c)),
+        I::MultiplyDivide(a, b, c, to) => r.write(to, r.read(a) * r.read(b) / r.read(c)),
+        I::ScaleAdd(a, b, constant, to) => r.write(to, r.read(a) * constant + r.read(b)),
+        I::ScaleSubtract(a, b, constant, to) => r.write(to, r.read(a) * constant - r.read(b)),
+        I::SubtractScaled(a, b, constant, to) => r.write(to, r.read(b) - r.read(a) * constant),
+        I::AddConstantMultiply(a, b, constant, to) => r.write(to, (r.read(a) + constant) * r.read(b)),
+        I::SubtractFromConstantMultiply(a, b, constant, to) => {
+            r.write(to, (-r.read(a) + constant) * r.read(b));
+        }
+        I::Reciprocal(a, to) => r.write(to, r.read(a).recip()),
+        I::Exponential(a, to) => r.write(to, r.read(a).exp()),
         I::SineCosine(a, sine, cosine) => {
             let (s, c) = r.read(a).sin_cos();
             r.write(sine, s);

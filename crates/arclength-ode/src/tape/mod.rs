@@ -1,35 +1,90 @@
 //! The compiled form of a model: a straight list of instructions over registers.
 //!
 //! Registers hold, in this order, the states, the parameters and then intermediate results, which
-//! are reused as soon as they are dead. The number of registers is a power of two known to the
-//! compiler ([`run`](Tape::run) picks the smallest that fits), so that the workspace lies on the
-//! stack and an index masked by it needs no bounds check.
+//! are reused as soon as they are dead. Nearly every model gets by with 256 registers: a workspace
+//! of fixed size on the stack, with indices of one byte that need no check. Others allocate theirs.
 
 mod instruction;
+mod registers;
 mod schedule;
+mod selection;
 mod special;
 
 pub(crate) use instruction::{apply_binary, apply_unary};
-pub(crate) use schedule::schedule;
+pub(crate) use schedule::{MAXIMUM_REGISTERS, schedule};
 
 use arclength::Scalar;
-use instruction::{Instruction, Register, execute};
+use instruction::{Instruction, execute};
+use registers::{Registers, STACK_REGISTERS, Stack};
 
 /// A compiled list of quantities.
 #[derive(Clone, Debug)]
 pub(crate) struct Tape {
-    instructions: Vec<Instruction>,
-    /// Where the results are at the end.
-    results: Vec<Register>,
+    program: Program,
     states: usize,
     parameters: usize,
     registers: usize,
 }
 
+/// Invariant: every register that an instruction or a result reads is below the number of registers
+/// and holds a state or a parameter, or was written by an earlier instruction.
+#[derive(Clone, Debug)]
+enum Program {
+    OnStack(Code<u8>),
+    OnHeap(Code<u16>),
+}
+
+#[derive(Clone, Debug)]
+struct Code<R> {
+    instructions: Vec<Instruction<R>>,
+    /// Where the results are at the end.
+    results: Vec<R>,
+}
+
+impl<R: Copy + Into<usize>> Code<R> {
+    /// # Panics
+    ///
+    /// If the invariant of [`Program`] does not hold, which no model can bring about.
+    fn check(self, inputs: usize, registers: usize) -> Self {
+        let mut written = vec![false; registers];
+        written[..inputs].fill(true);
+        for instruction in &self.instructions {
+            let (reads, writes) = instruction.registers();
+            assert!(reads.into_iter().all(|register| written[register.into()]), "read before written");
+            writes.into_iter().for_each(|register| written[register.into()] = true);
+        }
+        assert!(self.results.iter().all(|&register| written[register.into()]), "result never written");
+        self
+    }
+
+    #[inline(always)]
+    fn run<T: Scalar>(&self, registers: &mut impl Registers<T, R>, time: T, results: &mut [T]) {
+        // Two at a time: less counting, and two indirect jumps are easier to predict than one.
+        let (pairs, last) = self.instructions.as_chunks::<2>();
+        for [first, second] in pairs {
+            execute(first, time, registers);
+            execute(second, time, registers);
+        }
+        if let [last] = last {
+            execute(last, time, registers);
+        }
+        for (result, &register) in results.iter_mut().zip(&self.results) {
+            *result = registers.read(register);
+        }
+    }
+
+    fn uses_time(&self) -> bool {
+        self.instructions.iter().any(|instruction| matches!(instruction, Instruction::Time(_)))
+    }
+}
+
 impl Tape {
     /// Number of instructions.
     pub fn instructions(&self) -> usize {
-        self.instructions.len()
+        match &self.program {
+            Program::OnStack(code) => code.instructions.len(),
+            Program::OnHeap(code) => code.instructions.len(),
+        }
     }
 
     /// Number of registers, states and parameters included.
@@ -39,45 +94,30 @@ impl Tape {
 
     /// Whether the results depend on the time.
     pub fn uses_time(&self) -> bool {
-        self.instructions.iter().any(|instruction| matches!(instruction, Instruction::Time(_)))
+        match &self.program {
+            Program::OnStack(code) => code.uses_time(),
+            Program::OnHeap(code) => code.uses_time(),
+        }
     }
 
     /// Evaluates the results at a time, state and parameters.
     pub fn evaluate<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
-        match self.registers {
-            0..=16 => self.run::<T, 16>(time, state, parameters, results),
-            17..=32 => self.run::<T, 32>(time, state, parameters, results),
-            33..=64 => self.run::<T, 64>(time, state, parameters, results),
-            65..=128 => self.run::<T, 128>(time, state, parameters, results),
-            129..=256 => self.run::<T, 256>(time, state, parameters, results),
-            _ => self.run_on_heap(time, state, parameters, results),
-        }
-    }
-
-    #[inline(never)]
-    fn run<T: Scalar, const N: usize>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
-        let mut registers = [T::zero(); N];
-        registers[..self.states].copy_from_slice(&state[..self.states]);
-        registers[self.states..self.states + self.parameters].copy_from_slice(&parameters[..self.parameters]);
-        for instruction in &self.instructions {
-            execute(instruction, time, &mut registers);
-        }
-        for (result, register) in results.iter_mut().zip(&self.results) {
-            *result = registers[*register as usize & (N - 1)];
-        }
-    }
-
-    /// Models with more registers than the stack should hold pay for one allocation.
-    #[inline(never)]
-    fn run_on_heap<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
-        let mut registers = vec![T::zero(); self.registers];
-        registers[..self.states].copy_from_slice(&state[..self.states]);
-        registers[self.states..self.states + self.parameters].copy_from_slice(&parameters[..self.parameters]);
-        for instruction in &self.instructions {
-            execute(instruction, time, registers.as_mut_slice());
-        }
-        for (result, register) in results.iter_mut().zip(&self.results) {
-            *result = registers[*register as usize];
+        let state = &state[..self.states];
+        let parameters = &parameters[..self.parameters];
+        match &self.program {
+            Program::OnStack(code) => {
+                // SAFETY: the invariant of `Program`, and the states and parameters are written first.
+                let mut registers = unsafe { Stack::new() };
+                registers.load(0, state);
+                registers.load(self.states, parameters);
+                code.run(&mut registers, time, results);
+            }
+            Program::OnHeap(code) => {
+                let mut registers = vec![T::zero(); self.registers];
+                registers.load(0, state);
+                registers.load(self.states, parameters);
+                code.run(&mut registers, time, results);
+            }
         }
     }
 }
