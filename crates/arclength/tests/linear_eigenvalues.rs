@@ -180,6 +180,28 @@ fn eigenvectors_of_a_jordan_block_are_its_only_ones() {
 }
 
 #[test]
+fn eigenvector_of_zero_matrix() {
+    let vector = right_eigenvector(&[0.0], 1, Complex64::ZERO).unwrap();
+    assert_eq!((vector.vector[0], vector.residual), (Complex64::ONE, 0.0));
+}
+
+#[test]
+fn defective_eigenvalue_needs_another_starting_vector() {
+    // Eigenvalues 2 and, three times, 0 with Jordan blocks; the computed ones are off by 1e-8.
+    let matrix = from_rows(&[
+        &[0.0, 0.0, 0.0, 0.0],
+        &[1.0, 0.0, 0.0, 1.0],
+        &[0.0, 1.0, 1.0, 0.0],
+        &[1.0, 1.0, 1.0, 1.0],
+    ]);
+    for value in eigenvalues(&matrix, 4).unwrap() {
+        let right = right_eigenvector(&matrix, 4, value).unwrap();
+        let left = left_eigenvector(&matrix, 4, value).unwrap();
+        assert!(right.residual < 1e-14 && left.residual < 1e-14, "{value}: {right:?} {left:?}");
+    }
+}
+
+#[test]
 fn wrong_eigenvalue_shows_in_the_residual() {
     let matrix = from_rows(&[&[2.0, 1.0], &[0.0, 3.0]]);
     assert!(right_eigenvector(&matrix, 2, 2.5.into()).unwrap().residual > 1e-2);

@@ -340,6 +340,21 @@ fn workspace_gives_what_the_function_gives() {
 
 proptest! {
     #[test]
+    fn products_of_small_integers_keep_their_trace(n in 1usize..8, count in 1usize..4, seed in any::<u64>()) {
+        // Often singular, defective, or with nearly dependent columns; the trace of the product is exact.
+        let mut random = Random(seed);
+        let factors: Vec<f64> = (0..n * n * count).map(|_| (1.5 * random.next()).round()).collect();
+        let mut whole = factors[..n * n].to_vec();
+        factors.chunks_exact(n * n).skip(1).for_each(|factor| whole = product(factor, &whole, n));
+        let trace: f64 = (0..n).map(|k| whole[k + n * k]).sum();
+        let found = multipliers(&factors, n, count).unwrap();
+        let sum: Complex64 = found.iter().map(|m| m.to_complex()).sum();
+        let norm = |factor: &[f64]| factor.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let bound: f64 = factors.chunks_exact(n * n).map(norm).product();
+        prop_assert!((sum - trace).norm() <= 1e-12 * bound, "{sum} {trace}");
+    }
+
+    #[test]
     fn short_products_agree_with_the_product_formed_directly(n in 1usize..9, count in 1usize..4, seed in any::<u64>()) {
         let mut random = Random(seed);
         // Near a multiple of the identity, so that the product is well conditioned.

@@ -56,24 +56,28 @@ pub(super) fn scale(matrix: &mut [f64], n: usize, low: usize, high: usize, scale
     for _ in 0..MAXIMUM_SWEEPS {
         let mut settled = true;
         for i in low..high {
-            let mut column_norm = (low..high).map(|row| matrix[row + n * i].powi(2)).sum::<f64>().sqrt();
-            let mut row_norm = (low..high).map(|column| matrix[i + n * column].powi(2)).sum::<f64>().sqrt();
-            if column_norm == 0.0 || row_norm == 0.0 {
+            let mut column_square: f64 = (low..high).map(|row| matrix[row + n * i].powi(2)).sum();
+            let mut row_square: f64 = (low..high).map(|column| matrix[i + n * column].powi(2)).sum();
+            if column_square == 0.0 || row_square == 0.0 {
                 continue;
             }
-            let sum = column_norm + row_norm;
+            let (column_before, row_before) = (column_square, row_square);
             let mut factor = 1.0;
-            while 2.0 * column_norm < row_norm && scales[i] * factor < LARGEST_SCALE {
+            while 4.0 * column_square < row_square && scales[i] * factor < LARGEST_SCALE {
                 factor *= 2.0;
-                column_norm *= 2.0;
-                row_norm *= 0.5;
+                column_square *= 4.0;
+                row_square *= 0.25;
             }
-            while column_norm >= 2.0 * row_norm && scales[i] * factor > SMALLEST_SCALE {
+            while column_square >= 4.0 * row_square && scales[i] * factor > SMALLEST_SCALE {
                 factor *= 0.5;
-                column_norm *= 0.5;
-                row_norm *= 2.0;
+                column_square *= 0.25;
+                row_square *= 4.0;
             }
-            if factor == 1.0 || column_norm + row_norm >= WORTHWHILE * sum {
+            if factor == 1.0 {
+                continue;
+            }
+            let before = column_before.sqrt() + row_before.sqrt();
+            if column_square.sqrt() + row_square.sqrt() >= WORTHWHILE * before {
                 continue;
             }
             settled = false;

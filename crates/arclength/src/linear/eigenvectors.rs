@@ -10,10 +10,14 @@ use super::balancing::{largest_exponent, power_of_two, scale};
 use super::complex_lu::ComplexLu;
 use super::eigenvalues::{EigenvalueError, check};
 
-/// Steps of inverse iteration; two suffice for a simple eigenvalue accurate to rounding.
-pub(super) const MAXIMUM_STEPS: usize = 5;
-/// A residual below this, relative to the norm of the matrix, is rounding error.
-pub(super) const SMALL_RESIDUAL: f64 = f64::EPSILON;
+/// Steps of inverse iteration from one starting vector; two suffice for a simple eigenvalue accurate to rounding.
+const MAXIMUM_STEPS: usize = 5;
+/// Starting vectors tried, for one may be nearly orthogonal to what is sought.
+const MAXIMUM_STARTS: usize = 4;
+/// A relative residual below this is rounding error.
+const SMALL_RESIDUAL: f64 = f64::EPSILON;
+/// With a relative residual below this no further starting vector is tried.
+const ACCEPTABLE_RESIDUAL: f64 = 1e-14;
 /// Components whose modulus is within this part of the largest count as largest; the first of them becomes real.
 const TIE: f64 = 1e-6;
 
@@ -22,7 +26,8 @@ const TIE: f64 = 1e-6;
 pub struct Eigenvector {
     /// The components.
     pub vector: Vec<Complex64>,
-    /// Residual relative to the matrix, `|A q - lambda q| / |A|` (Frobenius norm), after balancing.
+    /// Residual after balancing, relative to the matrix or the eigenvalue, whichever is larger:
+    /// `|A q - lambda q| / max(|A|, |lambda|)` with the Frobenius norm.
     pub residual: f64,
 }
 
@@ -59,30 +64,21 @@ pub fn right_eigenvector(
     let norm = balanced.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut shifted: Vec<Complex64> = balanced.iter().map(|x| Complex64::from(*x)).collect();
     (0..n).for_each(|i| shifted[i + n * i] -= eigenvalue);
-    let size = norm.max(eigenvalue.norm()).max(f64::MIN_POSITIVE);
+    let size = match norm.max(eigenvalue.norm()) {
+        0.0 => 1.0,
+        size => size,
+    };
     let lu = ComplexLu::of(n, shifted.clone(), f64::EPSILON * size);
 
-    let mut iterate = starting_vector(n);
-    let mut best = (f64::INFINITY, iterate.clone());
-    for _ in 0..MAXIMUM_STEPS {
-        lu.solve(&mut iterate);
-        normalize(&mut iterate);
+    let residual = |iterate: &[Complex64]| {
         let mut square = 0.0;
         for row in 0..n {
             let entry: Complex64 = (0..n).map(|column| shifted[row + n * column] * iterate[column]).sum();
             square += entry.norm_sqr();
         }
-        let residual = square.sqrt() / size;
-        if residual < best.0 {
-            best = (residual, iterate.clone());
-        } else {
-            break;
-        }
-        if residual <= SMALL_RESIDUAL {
-            break;
-        }
-    }
-    let (residual, mut vector) = best;
+        square.sqrt() / size
+    };
+    let (mut vector, residual) = inverse_iteration(n, |iterate| lu.solve(iterate), residual);
     vector.iter_mut().zip(&scales).for_each(|(x, scale)| *x *= scale);
     normalize(&mut vector);
     fix_phase(&mut vector);
@@ -113,11 +109,42 @@ pub(super) fn check_eigenvalue(eigenvalue: Complex64) -> Result<(), EigenvalueEr
     }
 }
 
-/// A real vector without symmetry, so that it is orthogonal to an eigenvector by bad luck only.
-pub(super) fn starting_vector(length: usize) -> Vec<Complex64> {
-    // Multiples of the golden ratio modulo one are spread evenly.
+/// Solves repeatedly from one or more starting vectors; returns the iterate of smallest residual, and the residual.
+pub(super) fn inverse_iteration(
+    length: usize,
+    solve: impl Fn(&mut [Complex64]),
+    residual: impl Fn(&[Complex64]) -> f64,
+) -> (Vec<Complex64>, f64) {
+    let mut best = vec![Complex64::ZERO; length];
+    let mut smallest = f64::INFINITY;
+    for start in 1..=MAXIMUM_STARTS {
+        let mut iterate = starting_vector(length, start);
+        let mut previous = f64::INFINITY;
+        for _ in 0..MAXIMUM_STEPS {
+            solve(&mut iterate);
+            normalize(&mut iterate);
+            let current = residual(&iterate);
+            if current < smallest {
+                smallest = current;
+                best.copy_from_slice(&iterate);
+            }
+            if current <= SMALL_RESIDUAL || current >= previous {
+                break;
+            }
+            previous = current;
+        }
+        if smallest <= ACCEPTABLE_RESIDUAL {
+            break;
+        }
+    }
+    (best, smallest)
+}
+
+/// Real vectors without symmetry: multiples of the golden ratio modulo one are spread evenly.
+fn starting_vector(length: usize, start: usize) -> Vec<Complex64> {
     let golden = 0.5 * (5f64.sqrt() - 1.0);
-    (1..=length).map(|k| Complex64::from(0.5 + (k as f64 * golden).fract())).collect()
+    let offset = if start == 1 { 0.5 } else { -0.5 };
+    (1..=length).map(|k| Complex64::from(offset + ((k as f64).powi(start as i32) * golden).fract())).collect()
 }
 
 /// Scales to Euclidean norm one, whatever the size of the components.

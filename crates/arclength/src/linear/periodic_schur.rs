@@ -21,9 +21,9 @@ use super::wide_range::WideRange;
 
 /// Sweeps allowed for one window before it is given up.
 const MAXIMUM_SWEEPS: usize = 300;
-/// A column is negligible below this multiple of the bound on its rounding errors. Half of it still finds nearly all
-/// exactly singular factors; regular ones are taken for singular from a reciprocal condition number of about 1e-11 on.
-const NOISE_MARGIN: f64 = f64::EPSILON;
+/// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they may have
+/// grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
+const LARGEST_AMPLIFICATION: f64 = 256.0;
 /// Shifts that turn the first column by less than this would underflow on their way through the factors.
 pub(super) const HOPELESS_SHIFT: f64 = 1e-100;
 
@@ -63,6 +63,8 @@ pub struct PeriodicSchur {
     noise: Vec<f64>,
     /// The largest entry in each row of each factor as given.
     row_sizes: Vec<f64>,
+    /// How far nearly dependent columns of each factor amplify the noise.
+    amplification: Vec<f64>,
     magnitudes: Vec<f64>,
     scales: Vec<f64>,
     reflector: Vec<f64>,
@@ -81,6 +83,7 @@ impl PeriodicSchur {
             factors: vec![0.0; (count + 1) * n * n],
             noise: vec![0.0; (count + 1) * n],
             row_sizes: vec![0.0; (count + 1) * n],
+            amplification: vec![1.0; count + 1],
             magnitudes: vec![0.0; n * n],
             scales: vec![1.0; n],
             reflector: vec![0.0; n],
@@ -132,6 +135,7 @@ impl PeriodicSchur {
     fn reduce(&mut self) {
         let (n, size) = (self.n, self.n * self.n);
         self.noise.fill(0.0);
+        self.amplification.fill(1.0);
         self.row_sizes.fill(0.0);
         for (factor, row_sizes) in self.factors.chunks_exact(size).zip(self.row_sizes.chunks_exact_mut(n)) {
             for column in factor.chunks_exact(n) {
@@ -144,11 +148,13 @@ impl PeriodicSchur {
                 let factor = &mut factor[..size];
                 let (noise_before, noise) = self.noise.split_at_mut(n * i);
                 let column = &mut factor[n * k + k..n * k + n];
-                if column.iter().zip(&noise[k..n]).all(|(x, noise)| x.abs() <= NOISE_MARGIN * noise) {
+                let margin = f64::EPSILON * self.amplification[i];
+                let negligible = |x: &f64, noise: &f64| x.abs() <= margin * noise;
+                if column.iter().zip(&noise[k..n]).all(|(x, noise)| negligible(x, noise)) {
                     // Singular. What else is noise in these rows must not pass for rank.
                     for column in factor.chunks_exact_mut(n).skip(k) {
                         for (x, noise) in column[k..].iter_mut().zip(&noise[k..n]) {
-                            *x = if x.abs() <= NOISE_MARGIN * noise { 0.0 } else { *x };
+                            *x = if negligible(x, noise) { 0.0 } else { *x };
                         }
                     }
                     continue;
@@ -159,15 +165,14 @@ impl PeriodicSchur {
                     continue;
                 }
                 let largest = apply_left(factor, n, k, k + 1, reflector, tau);
-                // Rounding errors of this step, and those of the reflector itself, which came from a noisy column.
-                let pivot = factor[k + n * k].abs();
-                let (noise_of_pivot, noise) = (noise[k] / pivot, &mut noise[k..n]);
                 let row_sizes = &self.row_sizes[n * i + k..];
-                for ((noise, v), row_size) in noise.iter_mut().zip(&*reflector).zip(row_sizes) {
-                    if *v != 0.0 {
-                        *noise += row_size + largest * (v.abs() * (1.0 + noise_of_pivot) + *noise / pivot);
-                    }
+                for ((noise, v), row_size) in noise[k..n].iter_mut().zip(&*reflector).zip(row_sizes) {
+                    *noise += if *v == 0.0 { 0.0 } else { row_size + largest * v.abs() };
                 }
+                // A short column leaves the direction of the reflector uncertain.
+                let uncertainty = (largest + noise[k]) / factor[k + n * k].abs();
+                let amplification = &mut self.amplification[i];
+                *amplification = (*amplification * (1.0 + uncertainty)).min(LARGEST_AMPLIFICATION);
                 apply_right(&mut before[size * (i - 1)..], n, k, reflector, tau, &mut self.sums);
                 add_noise(&mut noise_before[n * (i - 1)..], &self.sums, &self.row_sizes[n * (i - 1)..]);
             }

@@ -11,7 +11,7 @@ use std::f64::consts::LN_2;
 use super::balancing::{largest_exponent, power_of_two};
 use super::complex_lu::ComplexLu;
 use super::eigenvalues::{EigenvalueError, check};
-use super::eigenvectors::{MAXIMUM_STEPS, SMALL_RESIDUAL, fix_phase, normalize, starting_vector};
+use super::eigenvectors::{fix_phase, inverse_iteration, normalize};
 use super::multiplier::Multiplier;
 use super::periodic_schur::{common_scales, scale_factor};
 use super::wide_range::WideRange;
@@ -67,21 +67,8 @@ pub fn product_eigenvector(
     let (system, scales, exponents) = CyclicSystem::new(factors, n, count, multiplier);
     let condensed = system.condense();
 
-    let mut iterate = starting_vector(n * count);
-    let mut best = (f64::INFINITY, iterate.clone());
-    for _ in 0..MAXIMUM_STEPS {
-        condensed.solve(&mut iterate);
-        normalize(&mut iterate);
-        let residual = system.residual(&iterate);
-        if residual >= best.0 {
-            break;
-        }
-        best = (residual, iterate.clone());
-        if residual <= SMALL_RESIDUAL {
-            break;
-        }
-    }
-    let (residual, mut vectors) = best;
+    let solve = |iterate: &mut [Complex64]| condensed.solve(iterate);
+    let (mut vectors, residual) = inverse_iteration(n * count, solve, |iterate| system.residual(iterate));
     for vector in vectors.chunks_exact_mut(n) {
         vector.iter_mut().zip(&scales).for_each(|(x, scale)| *x *= scale);
     }
