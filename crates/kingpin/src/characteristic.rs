@@ -15,6 +15,10 @@ const BALANCING_SWEEPS: usize = 100;
 const LAGUERRE_TOLERANCE: f64 = 1e-10;
 /// Laguerre's iteration takes four or five steps; every tenth is halved, which breaks cycles.
 const LAGUERRE_STEPS: usize = 60;
+/// Newton's method converges quadratically to a simple root of a cubic: a relative step below this leaves an error at the
+/// level of rounding. A double root takes up to twenty-seven steps to it, each of which halves the error.
+const CUBIC_TOLERANCE: f64 = 1e-8;
+const CUBIC_STEPS: usize = 40;
 /// Roots with a smaller imaginary part than this, relative to the modulus, may be real.
 const NEAR_REAL_AXIS: f64 = 1e-4;
 /// Newton's method polishes a root by at most this part of its distance from the others.
@@ -118,23 +122,25 @@ pub fn roots<const N: usize>(coefficients: &[f64; N]) -> [Complex64; N] {
     let mut rest = whole;
     let mut degree = N;
     let mut found = [Complex64::ZERO; N];
-    while degree > 2 {
+    while degree > 3 {
         let root = laguerre(&rest, degree);
         if is_real(&rest, degree, root) {
             found[N - degree] = Complex64::new(root.re, 0.0);
             deflate_linear(&mut rest, degree, root.re);
             degree -= 1;
         } else {
-            (found[N - degree], found[N + 1 - degree]) = (root, root.conj());
+            let upper = Complex64::new(root.re, root.im.abs());
+            (found[N - degree], found[N + 1 - degree]) = (upper, upper.conj());
             deflate_quadratic(&mut rest, degree, 2.0 * root.re, -root.norm_sqr());
             degree -= 2;
         }
     }
-    if degree == 2 {
-        [found[N - 2], found[N - 1]] = quadratic_roots(rest[1], rest[0]);
-    } else {
-        found[N - 1] = Complex64::new(-rest[0], 0.0);
+    if degree == 3 {
+        let root = real_root_of_cubic(rest[2], rest[1], rest[0]);
+        found[N - 3] = Complex64::new(root, 0.0);
+        deflate_cubic(&mut rest, root);
     }
+    [found[N - 2], found[N - 1]] = quadratic_roots(rest[1], rest[0]);
     let mut found = polish(&whole[..=N], &found);
     found.sort_unstable_by(largest_real_part_first);
     found
@@ -235,6 +241,39 @@ fn deflate_quadratic(polynomial: &mut [f64; 6], degree: usize, linear: f64, cons
     }
 }
 
+/// The real root of `s^3 + a s^2 + b s + c` that lies beyond the inflection and both extrema, if there are any: from a
+/// bound on it Newton's method converges monotonically.
+fn real_root_of_cubic(a: f64, b: f64, c: f64) -> f64 {
+    let inflection = -a / 3.0;
+    let slope = b + a * inflection;
+    let value = c + inflection * (b + inflection * (a + inflection));
+    let mut offset = -(value.abs().cbrt() + f64::max(-slope, 0.0).sqrt()).copysign(value);
+    for _ in 0..CUBIC_STEPS {
+        let derivative = 3.0 * offset * offset + slope;
+        if derivative <= 0.0 {
+            break;
+        }
+        let step = (offset * (offset * offset + slope) + value) / derivative;
+        offset -= step;
+        if step.abs() <= CUBIC_TOLERANCE * offset.abs() {
+            break;
+        }
+    }
+    inflection + offset
+}
+
+/// Divides a cubic by `s - root`, in the direction that does not amplify the error of the root.
+fn deflate_cubic(polynomial: &mut [f64; 6], root: f64) {
+    let [c, b, a, ..] = *polynomial;
+    if root.abs().powi(3) > c.abs() {
+        let constant = -c / root;
+        (polynomial[0], polynomial[1]) = (constant, (constant - b) / root);
+    } else {
+        let linear = a + root;
+        (polynomial[0], polynomial[1]) = (b + root * linear, linear);
+    }
+}
+
 /// The roots of `s^2 + linear s + constant`, without cancellation.
 fn quadratic_roots(linear: f64, constant: f64) -> [Complex64; 2] {
     let half = -0.5 * linear;
@@ -254,6 +293,11 @@ fn quadratic_roots(linear: f64, constant: f64) -> [Complex64; 2] {
 fn polish<const N: usize>(polynomial: &[f64], roots: &[Complex64; N]) -> [Complex64; N] {
     let mut polished = *roots;
     for (index, root) in roots.iter().enumerate() {
+        if root.im < 0.0 {
+            // The lower root of a pair follows the upper.
+            polished[index] = polished[index - 1].conj();
+            continue;
+        }
         let (mut value, mut slope) = (Complex64::ZERO, Complex64::ZERO);
         for &coefficient in polynomial.iter().rev() {
             slope = slope * root + value;
