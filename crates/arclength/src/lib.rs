@@ -3,9 +3,12 @@
 //! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
 //! from forward-mode automatic differentiation ([`Dual`]).
 
+pub mod algebraic;
+pub mod branch;
 pub mod continuation;
 pub mod cycle;
 pub mod differentiation;
+pub mod equilibrium;
 pub mod error;
 pub mod field;
 pub mod integration;

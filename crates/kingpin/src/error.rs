@@ -59,6 +59,12 @@ pub enum NoUniformMotion {
         /// `r` in m.
         radius: f64,
     },
+    /// Newton's method did not find the caster angle of the wheel with lateral elasticity only.
+    #[error("Newton's method stopped with residual {residual:e}; lower k_psi")]
+    NotFound {
+        /// What is left of the equation for `sin psi`.
+        residual: f64,
+    },
     /// Newton's method was led from the isotropic wheel towards the given one and stopped on the way.
     #[error(
         "it was followed from k_u = k_q to k_u = {longitudinal_stiffness} N/m and lost there \
@@ -151,6 +157,29 @@ pub enum KingpinError {
     /// The five-state model needs longitudinal elasticity.
     #[error("k_u = inf: this needs a finite k_u; with lateral elasticity only the model has three states")]
     LateralElasticityOnly,
+    /// The three-state model has no longitudinal elasticity.
+    #[error(
+        "k_u = {longitudinal} N/m: the model with lateral elasticity only needs k_u = inf, and none of k, k_u, c_u varies"
+    )]
+    LongitudinalElasticity {
+        /// `k_u` in N/m.
+        longitudinal: f64,
+    },
+    /// A branch could not be followed.
+    #[error(transparent)]
+    Continuation(#[from] arclength::Error),
+    /// The value to start from is outside the interval to be followed.
+    #[error("{key} = {value} is outside {start}:{end}; the interval has to contain the start")]
+    OutsideInterval {
+        /// The parameter.
+        key: Key,
+        /// Its value at the start.
+        value: f64,
+        /// Start of the interval.
+        start: f64,
+        /// End of the interval.
+        end: f64,
+    },
     /// An interval that is empty.
     #[error("{key} = {start}:{end}: empty interval; the start must be below the end")]
     EmptyInterval {

@@ -15,7 +15,9 @@
 //! # Ok::<(), kingpin::KingpinError>(())
 //! ```
 
+mod active;
 pub mod boundary;
+pub mod branches;
 pub mod characteristic;
 pub mod chart;
 pub mod contact;
@@ -23,6 +25,7 @@ pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
 mod lanes;
+pub mod lateral;
 pub mod linear_stability;
 pub mod parameters;
 pub mod plane;
@@ -37,6 +40,7 @@ pub use boundary::Curve;
 pub use chart::{GrowthRateChart, StabilityChart};
 pub use contact::ContactForce;
 pub use error::{KingpinError, NoUniformMotion, Position};
+pub use lateral::{LateralUniformMotion, LateralWheel};
 pub use linear_stability::CriticalSpeed;
 pub use parameters::Key;
 pub use plane::{Axis, Plane};

@@ -7,6 +7,7 @@ use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
 use super::special::Special;
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use crate::equilibrium::HopfPoint;
 use crate::error::Error;
 use crate::field::VectorField;
 use num_complex::Complex64;
@@ -91,6 +92,19 @@ pub enum CycleStart {
     },
     /// A cycle.
     Orbit(Orbit),
+}
+
+impl From<&HopfPoint> for CycleStart {
+    fn from(point: &HopfPoint) -> Self {
+        Self::Hopf {
+            state: point.state.clone(),
+            frequency: point.frequency,
+            eigenvector: point.eigenvector.clone(),
+            // They only set the size of the first cycle.
+            crossing_speed: point.crossing_speed.unwrap_or(0.0),
+            cubic_coefficient: point.c1_real.unwrap_or(0.0),
+        }
+    }
 }
 
 /// A branch of limit cycles to be followed.
@@ -315,7 +329,7 @@ impl<'a, F: VectorField> Cycles<'a, F> {
             .fold(0.0, f64::max);
         let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
         let natural_start = FIRST_AMPLITUDE * natural;
-        let amplitude = if natural_start.is_finite() { natural_start.min(limit) } else { limit };
+        let amplitude = if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit };
         let degree = self.resolution.degree;
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();

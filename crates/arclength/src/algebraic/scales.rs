@@ -1,0 +1,220 @@
+//! Natural sizes of the state variables of a vector field, whatever their units.
+//!
+//! A change of units `x = D y` changes the Jacobian by a diagonal similarity, so balancing the Jacobian
+//! (Osborne, *J. ACM* 7, 1960) tells the ratios of the units of variables that influence each other. The
+//! absolute size comes from the state itself or, where that is zero, from the distance over which the
+//! Jacobian changes by its own size.
+
+use crate::differentiation::Dual;
+use crate::field::VectorField;
+
+/// A variable is at least this part of what the others, in its units, are.
+const COUPLED_SHARE: f64 = 1e-2;
+/// A variable is at least this part of the distance over which the field is nonlinear.
+const NONLINEAR_SHARE: f64 = 1e-3;
+/// Sweeps of balancing.
+const SWEEPS: usize = 30;
+
+/// Sizes of the states at an equilibrium; `speed` is the derivative of the field with respect to the parameters times
+/// their ranges (zero where nothing is known).
+pub(crate) fn natural_scales<F: VectorField>(
+    field: &F,
+    state: &[f64],
+    parameters: &[f64],
+    speed: &[f64],
+) -> Vec<f64> {
+    let n = state.len();
+    let (jacobian, lengths) = derivatives(field, state, parameters, speed);
+    let group = strongly_coupled(&jacobian, n);
+    let units = balance(&jacobian, n, &group);
+    let nonlinear = nonlinear_lengths(&jacobian, &lengths, &units, n, speed);
+    (0..n)
+        .map(|index| {
+            let members = || (0..n).filter(|&other| group[other] == group[index]);
+            let own = |k: usize| state[k].abs().min(nonlinear[k]);
+            let coupled = members().map(|k| own(k) / units[k]).fold(0.0, f64::max);
+            let nonlinear = members().map(|k| nonlinear[k] / units[k]).fold(f64::INFINITY, f64::min);
+            let mut common = coupled;
+            if nonlinear.is_finite() {
+                common = common.max(NONLINEAR_SHARE * nonlinear);
+            }
+            if common == 0.0 {
+                let rate = (0..n * n)
+                    .filter(|entry| group[entry % n] == group[index] && group[entry / n] == group[index])
+                    .map(|entry| (jacobian[entry] * units[entry / n] / units[entry % n]).abs())
+                    .fold(0.0, f64::max);
+                let driven = members().map(|k| speed[k].abs() / units[k]).fold(0.0, f64::max);
+                common = driven / rate;
+            }
+            if !(common.is_finite() && common > 0.0) {
+                common = 1.0;
+            }
+            let scale = own(index).max(COUPLED_SHARE * common * units[index]);
+            if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
+        })
+        .collect()
+}
+
+/// The Jacobian and its first and second derivatives with respect to every state, the moduli of the latter two by
+/// entry: index `entry + n * n * state`.
+struct Derivatives {
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+fn derivatives<F: VectorField>(
+    field: &F,
+    state: &[f64],
+    parameters: &[f64],
+    speed: &[f64],
+) -> (Vec<f64>, Derivatives) {
+    type Triple = Dual<Dual<Dual<f64, 1>, 1>, 1>;
+    let n = state.len();
+    debug_assert_eq!(speed.len(), n);
+    let mut jacobian = vec![0.0; n * n];
+    let mut found = Derivatives { first: vec![0.0; n * n * n], second: vec![0.0; n * n * n] };
+    let constant = |value: f64| Triple::from(value);
+    let parameters: Vec<Triple> = parameters.iter().map(|&value| constant(value)).collect();
+    let mut unknown: Vec<Triple> = state.iter().map(|&value| constant(value)).collect();
+    let mut image = vec![constant(0.0); n];
+    for direction in 0..n {
+        for column in 0..n {
+            unknown[column].derivatives[0] = Dual::from(1.0);
+            unknown[direction].value.derivatives[0] = Dual::from(1.0);
+            unknown[direction].value.value.derivatives[0] = 1.0;
+            field.evaluate(&unknown, &parameters, &mut image);
+            for (row, value) in image.iter().enumerate() {
+                let entry = row + n * column;
+                let slope = value.derivatives[0];
+                jacobian[entry] = slope.value.value;
+                found.first[entry + n * n * direction] = slope.value.derivatives[0].abs();
+                found.second[entry + n * n * direction] = slope.derivatives[0].derivatives[0].abs();
+            }
+            unknown[column] = constant(state[column]);
+            unknown[direction] = constant(state[direction]);
+        }
+    }
+    (jacobian, found)
+}
+
+/// For every state the distance over which the balanced Jacobian changes by its own size; infinite where the field is
+/// linear in it.
+fn nonlinear_lengths(
+    jacobian: &[f64],
+    derivatives: &Derivatives,
+    units: &[f64],
+    n: usize,
+    speed: &[f64],
+) -> Vec<f64> {
+    let balanced = |matrix: &[f64]| {
+        matrix
+            .iter()
+            .enumerate()
+            .map(|(entry, value)| (value * units[entry / n] / units[entry % n]).abs())
+            .filter(|value| value.is_finite())
+            .fold(0.0, f64::max)
+    };
+    let linear = balanced(jacobian);
+    let driven = speed
+        .iter()
+        .zip(units)
+        .map(|(value, unit)| (value / unit).abs())
+        .filter(|value| value.is_finite())
+        .fold(0.0, f64::max);
+    (0..n)
+        .map(|state| {
+            let block = n * n * state..n * n * (state + 1);
+            let quadratic = balanced(&derivatives.first[block.clone()]) * units[state];
+            let cubic = balanced(&derivatives.second[block]) * units[state] * units[state];
+            let by_quadratic = (linear / quadratic).max((driven / quadratic).sqrt());
+            let by_cubic = (linear / cubic).sqrt().max((driven / cubic).cbrt());
+            let length = by_quadratic.min(by_cubic) * units[state];
+            if length > 0.0 { length } else { f64::INFINITY }
+        })
+        .collect()
+}
+
+/// Numbers the groups of states that influence each other, directly or through others.
+fn strongly_coupled(jacobian: &[f64], n: usize) -> Vec<usize> {
+    let mut reaches: Vec<bool> = (0..n * n).map(|entry| jacobian[entry] != 0.0 || entry / n == entry % n).collect();
+    for middle in 0..n {
+        for column in 0..n {
+            if reaches[middle + n * column] {
+                for row in 0..n {
+                    reaches[row + n * column] |= reaches[row + n * middle];
+                }
+            }
+        }
+    }
+    (0..n)
+        .map(|index| {
+            (0..=index)
+                .find(|&other| reaches[index + n * other] && reaches[other + n * index])
+                .unwrap_or(index)
+        })
+        .collect()
+}
+
+/// Units `D` that make the rows and columns of `D^-1 J D` equally large within every group.
+fn balance(jacobian: &[f64], n: usize, group: &[usize]) -> Vec<f64> {
+    let mut units = vec![1.0_f64; n];
+    for _ in 0..SWEEPS {
+        let mut change = 0.0_f64;
+        for index in 0..n {
+            let (mut row, mut column) = (0.0, 0.0);
+            for other in (0..n).filter(|&other| other != index && group[other] == group[index]) {
+                row += (jacobian[index + n * other] * units[other] / units[index]).abs();
+                column += (jacobian[other + n * index] * units[index] / units[other]).abs();
+            }
+            let factor = (row / column).sqrt();
+            if factor.is_finite() && factor > 0.0 {
+                units[index] *= factor;
+                change = change.max(factor.ln().abs());
+            }
+        }
+        if change < 1e-6 {
+            break;
+        }
+    }
+    units
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::differentiation::Scalar;
+
+    /// A pendulum driven by a current, in units `scale` times larger.
+    struct Scaled([f64; 3]);
+
+    impl VectorField for Scaled {
+        fn state_names(&self) -> Vec<String> {
+            ["angle", "rate", "current"].map(String::from).to_vec()
+        }
+        fn parameter_names(&self) -> Vec<String> {
+            vec!["torque".into()]
+        }
+        fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+            let [a, b, c] = self.0;
+            let (angle, rate, current) = (state[0] / a, state[1] / b, state[2] / c);
+            derivative[0] = rate * a;
+            derivative[1] = (-angle.sin() * 4.0 - rate * 0.1 + current) * b;
+            derivative[2] = (parameters[0] - current * 3.0 - rate) * c;
+        }
+    }
+
+    #[test]
+    fn scales_follow_the_units() {
+        for state in [[0.0; 3], [0.3, 0.0, 4.0 * 0.3f64.sin()]] {
+            let reference = natural_scales(&Scaled([1.0; 3]), &state, &[0.5], &[0.0, 0.0, 1.0]);
+            assert!(reference.iter().all(|scale| (1e-3..10.0).contains(scale)), "{reference:?}");
+            let units = [1e-6, 1e3, 1e9];
+            let scaled_state: Vec<f64> = state.iter().zip(units).map(|(x, unit)| x * unit).collect();
+            let scaled = natural_scales(&Scaled(units), &scaled_state, &[0.5], &[0.0, 0.0, 1e9]);
+            for index in 0..3 {
+                let ratio = scaled[index] / (reference[index] * units[index]);
+                assert!((ratio - 1.0).abs() < 1e-4, "{state:?} {index} {ratio}");
+            }
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! The linear algebra that a curve of solutions of an algebraic problem asks for.
+
+use super::{AlgebraicProblem, Differentiator, ScaledLu};
+use crate::continuation::{Curve, Settings, Solution, correct, finish};
+use crate::error::Error;
+
+/// A problem with one unknown more than equations, the scales of its unknowns, and memory.
+#[derive(Clone, Debug)]
+pub(crate) struct DenseSystem<P> {
+    pub problem: P,
+    /// Sizes of the unknowns: the metric is Euclidean after division by them.
+    pub scales: Vec<f64>,
+    /// The Jacobian at the last factorisation, bordered below, column-major.
+    pub matrix: Vec<f64>,
+    /// Smallest and largest value of every unknown so far.
+    visited: Vec<[f64; 2]>,
+    lu: ScaledLu,
+    differentiator: Differentiator,
+    scratch: Vec<f64>,
+}
+
+impl<P: AlgebraicProblem> DenseSystem<P> {
+    pub fn new(problem: P, scales: Vec<f64>) -> Self {
+        let n = problem.unknowns();
+        Self {
+            problem,
+            scales,
+            matrix: vec![0.0; n * n],
+            visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
+            lu: ScaledLu::default(),
+            differentiator: Differentiator::default(),
+            scratch: Vec::new(),
+        }
+    }
+
+    /// As [`Curve::residual`].
+    pub fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        let equations = self.problem.equations();
+        self.problem.evaluate(unknown, &mut residual[..equations], &mut self.scratch);
+    }
+
+    /// As [`Curve::factorize`].
+    pub fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        let n = unknown.len();
+        self.differentiator.jacobian(&self.problem, unknown, residual, &mut self.matrix, n);
+        for (column, &entry) in border.iter().enumerate() {
+            self.matrix[n - 1 + n * column] = entry;
+        }
+        self.lu.factorize(n, &self.matrix, &self.scales)
+    }
+
+    /// Evaluates the Jacobian without factorising it; the border is left as it was.
+    pub fn linearize(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        let n = unknown.len();
+        self.differentiator.jacobian(&self.problem, unknown, residual, &mut self.matrix, n);
+    }
+
+    /// Modulus of the determinant of the last factorised matrix after scaling of rows and columns.
+    pub fn determinant_size(&self) -> f64 {
+        self.lu.determinant_size()
+    }
+
+    /// As [`Curve::solve`].
+    pub fn solve(&self, vector: &mut [f64]) {
+        self.lu.solve(vector);
+    }
+
+    /// As [`Curve::apply_metric`].
+    pub fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        for ((image, entry), scale) in image.iter_mut().zip(vector).zip(&self.scales) {
+            *image = entry / (scale * scale);
+        }
+    }
+
+    /// The scales of the first `count` unknowns grow to the ranges that the curve has covered.
+    pub fn grow_scales(&mut self, unknown: &[f64], count: usize) {
+        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.scales).take(count) {
+            *range = [range[0].min(*value), range[1].max(*value)];
+            *scale = scale.max(range[1] - range[0]);
+        }
+    }
+
+    /// A tangent at `unknown`, a unit vector in the metric with either sign.
+    ///
+    /// # Errors
+    /// When the Jacobian does not have full rank.
+    pub fn tangent(&mut self, unknown: &[f64]) -> Result<Vec<f64>, Error> {
+        let n = unknown.len();
+        let mut residual = vec![0.0; n];
+        // Without symmetry, so that it is orthogonal to the tangent by bad luck only.
+        let mut tangent: Vec<f64> =
+            (0..n).map(|index| (0.5 + (0.618 * index as f64).fract()) * self.scales[index]).collect();
+        let mut border = vec![0.0; n];
+        for _ in 0..3 {
+            self.apply_metric(&tangent, &mut border);
+            if self.factorize(unknown, &border, &mut residual) == 0.0 {
+                return Err(singular());
+            }
+            tangent.fill(0.0);
+            tangent[n - 1] = 1.0;
+            self.solve(&mut tangent);
+            let length = length(&tangent, &self.scales);
+            if !(length.is_finite() && length > 0.0) {
+                return Err(singular());
+            }
+            tangent.iter_mut().for_each(|entry| *entry /= length);
+        }
+        Ok(tangent)
+    }
+}
+
+fn singular() -> Error {
+    Error::NotFound { sought: "tangent", cause: crate::continuation::CorrectionFailure::Singular }
+}
+
+/// Euclidean length after division by the scales.
+pub(crate) fn length(vector: &[f64], scales: &[f64]) -> f64 {
+    vector.iter().zip(scales).map(|(entry, scale)| (entry / scale).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Position of `unknown` along the tangent at `origin`, in the metric.
+pub(crate) fn position<P>(origin: &Solution<P>, unknown: &[f64], scales: &[f64]) -> f64 {
+    let coordinates = origin.tangent.iter().zip(scales).zip(unknown.iter().zip(&origin.unknown));
+    coordinates.map(|((tangent, scale), (there, here))| tangent / scale * ((there - here) / scale)).sum()
+}
+
+/// The cubic through two solutions with their tangents, at a fraction of the way; `distance` is that between them.
+pub(crate) fn interpolate<P>(before: &Solution<P>, after: &Solution<P>, distance: f64, fraction: f64) -> Vec<f64> {
+    let s = fraction;
+    let step = s * s * (3.0 - 2.0 * s);
+    let (departure, arrival) = (s * (1.0 - s) * (1.0 - s) * distance, s * s * (s - 1.0) * distance);
+    let ends = before.unknown.iter().zip(&after.unknown);
+    let tangents = before.tangent.iter().zip(&after.tangent);
+    ends.zip(tangents).map(|((a, b), (u, v))| a + step * (b - a) + departure * u + arrival * v).collect()
+}
+
+/// A solution between two neighbours, at a fraction of the way.
+///
+/// # Errors
+/// When the corrector fails.
+pub(crate) fn between<C: Curve>(
+    curve: &mut C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    distance: f64,
+    fraction: f64,
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    let mut unknown = interpolate(before, after, distance, fraction);
+    let mut border = vec![0.0; unknown.len()];
+    curve.apply_metric(&before.tangent, &mut border);
+    correct(curve, &mut unknown, &border, settings)
+        .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
+    finish(curve, unknown, &before.tangent)
+}

@@ -1,0 +1,158 @@
+//! Branch points of equilibria: the coefficients of the bifurcation equation and the other branch.
+
+use super::fold::null_vectors;
+use super::multilinear::MultilinearForms;
+use super::problem::EquilibriumProblem;
+use crate::algebraic::{Differentiator, ScaledLu, length};
+use crate::error::Error;
+use crate::field::VectorField;
+use serde::{Deserialize, Serialize};
+
+/// How two branches cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Crossing {
+    /// Both branches exist on both sides of the parameter value.
+    Transcritical,
+    /// One branch lies on one side only, tangential to the parameter's value.
+    Pitchfork,
+}
+
+/// A branch point, located by Newton's method on its defining system.
+///
+/// The branches leave it in the directions `alpha (q, 0) + beta (x1, 1)` with
+/// `quadratic alpha^2 + 2 mixed alpha beta + parametric beta^2 = 0` (Keller 1977).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BranchPoint {
+    /// All parameters.
+    pub parameters: Vec<f64>,
+    /// Index of the parameter along which it was found.
+    pub active: usize,
+    /// Value of that parameter.
+    pub parameter: f64,
+    /// Error estimate of that value.
+    pub location_error: f64,
+    /// The equilibrium.
+    pub state: Vec<f64>,
+    /// Null vector `q` of the Jacobian, `<q, q> = 1`.
+    pub null_vector: Vec<f64>,
+    /// `<p, B(q, q)>`, with `<p, q> = 1`.
+    pub quadratic: f64,
+    /// `<p, B(q, x1) + f_xp q>`, where `x1` is the slope of a branch in the parameter, orthogonal to `q` after
+    /// division by the sizes of the states.
+    pub mixed: f64,
+    /// The second derivative of `<p, f>` along `(x1, 1)`.
+    pub parametric: f64,
+    /// At a pitchfork, the cubic coefficient of the flow on the centre manifold, `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6`:
+    /// negative if the pitchfork is supercritical.
+    pub cubic: Option<f64>,
+    /// How the branches cross.
+    pub crossing: Crossing,
+    /// Tangents (state, then parameter) of the branch on which the point was found and of the other one; of unit length
+    /// after division by the sizes of states and parameter.
+    pub tangents: [Vec<f64>; 2],
+}
+
+/// A coefficient smaller than this, relative to the others, is zero at a pitchfork.
+const PITCHFORK: f64 = 1e-6;
+
+impl BranchPoint {
+    /// The branch point at a located singular equilibrium on a branch with the direction `tangent`.
+    pub(crate) fn at<F: VectorField>(
+        problem: &EquilibriumProblem<'_, F>,
+        unknown: &[f64],
+        tangent: &[f64],
+        scales: &[f64],
+        location_error: f64,
+    ) -> Result<Option<Self>, Error> {
+        let n = problem.dimension;
+        let state = unknown[..n].to_vec();
+        let parameters = problem.parameters_at(&unknown[n..]);
+        let active = problem.active[0];
+        let (null_vector, left, _) = null_vectors(problem, unknown)?;
+        let forms = MultilinearForms { field: problem.field, state: &state, parameters: &parameters };
+        let project = |image: &[f64]| -> f64 { image.iter().zip(&left).map(|(value, p)| value * p).sum() };
+
+        // The Jacobian bordered by the null vectors, to solve with it on their complements.
+        let m = n + 1;
+        let mut jacobian = vec![0.0; n * m];
+        let mut residual = vec![0.0; n];
+        Differentiator::default().jacobian(problem, unknown, &mut residual, &mut jacobian, n);
+        let mut bordered = vec![0.0; m * m];
+        for column in 0..n {
+            bordered[m * column..m * column + n].copy_from_slice(&jacobian[n * column..n * (column + 1)]);
+            bordered[n + m * column] = null_vector[column] / (scales[column] * scales[column]);
+            bordered[column + m * n] = left[column] * scales[column] * scales[column];
+        }
+        let mut columns = scales[..n].to_vec();
+        columns.push(1.0);
+        let mut lu = ScaledLu::default();
+        if lu.factorize(m, &bordered, &columns) == 0.0 {
+            return Ok(None);
+        }
+        let solve = |right_hand_side: &[f64]| {
+            let mut vector = right_hand_side.to_vec();
+            vector.push(0.0);
+            lu.solve(&mut vector);
+            vector.truncate(n);
+            vector
+        };
+        let slope: Vec<f64> = jacobian[n * n..].iter().map(|entry| -entry).collect();
+        let mut across = solve(&slope);
+        across.resize(n + parameters.len(), 0.0);
+        across[n + active] = 1.0;
+        let square = forms.real(&[&null_vector, &null_vector]);
+        let quadratic = project(&square);
+        let mixed = project(&forms.real(&[&null_vector, &across]));
+        let parametric = project(&forms.real(&[&across, &across]));
+
+        // In the scaled metric, so that the two directions compare.
+        let direction = |alpha: f64, beta: f64| {
+            let mut vector: Vec<f64> = (0..n).map(|i| alpha * null_vector[i] + beta * across[i]).collect();
+            vector.push(beta);
+            let size = length(&vector, scales);
+            vector.iter_mut().for_each(|entry| *entry /= size);
+            vector
+        };
+        let null_size = length(&null_vector, &scales[..n]);
+        let range = scales[n];
+        let (a, b, c) = (quadratic / (null_size * null_size), mixed * range / null_size, parametric * range * range);
+        let discriminant = b * b - a * c;
+        if !(discriminant > 0.0 && discriminant.is_finite()) {
+            return Ok(None);
+        }
+        // Roots (alpha : beta) of a alpha^2 + 2 b alpha beta + c beta^2 without cancellation.
+        let stable = -(b + discriminant.sqrt().copysign(b));
+        let roots = [(stable, a), (c, stable)].map(|(alpha, beta)| direction(alpha / null_size, beta * range));
+        let along = |vector: &[f64]| {
+            vector.iter().zip(tangent).zip(scales).map(|((x, y), s)| x / s * (y / s)).sum::<f64>()
+        };
+        let [mut own, mut other] = roots;
+        if along(&own).abs() < along(&other).abs() {
+            std::mem::swap(&mut own, &mut other);
+        }
+        if along(&own) < 0.0 {
+            own.iter_mut().for_each(|entry| *entry = -*entry);
+        }
+        let crossing = if a.abs() < PITCHFORK * b.abs() { Crossing::Pitchfork } else { Crossing::Transcritical };
+        let cubic = (crossing == Crossing::Pitchfork).then(|| {
+            let correction = solve(&square.iter().map(|entry| -entry).collect::<Vec<_>>());
+            let cubes = forms.real(&[&null_vector, &null_vector, &null_vector]);
+            (project(&cubes) + 3.0 * project(&forms.real(&[&null_vector, &correction]))) / 6.0
+        });
+        Ok(Some(Self {
+            parameter: parameters[active],
+            parameters,
+            active,
+            location_error,
+            state,
+            null_vector,
+            quadratic,
+            mixed,
+            parametric,
+            cubic,
+            crossing,
+            tangents: [own, other],
+        }))
+    }
+}

@@ -1,0 +1,91 @@
+//! Folds of equilibria and their quadratic coefficient.
+
+use super::multilinear::MultilinearForms;
+use super::problem::EquilibriumProblem;
+use crate::algebraic::{AlgebraicProblem, Differentiator};
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
+use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
+
+/// A fold, located by Newton's method on its defining system, with its normal form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FoldPoint {
+    /// All parameters.
+    pub parameters: Vec<f64>,
+    /// Index of the parameter along which it was found.
+    pub active: usize,
+    /// Value of that parameter.
+    pub parameter: f64,
+    /// Error estimate of that value.
+    pub location_error: f64,
+    /// The equilibrium.
+    pub state: Vec<f64>,
+    /// Null vector `q` of the Jacobian, `<q, q> = 1`, its largest component positive.
+    pub null_vector: Vec<f64>,
+    /// Coefficient `a = <p, B(q, q)>/2` of the normal form `w' = a w^2` on the centre manifold, with `<p, q> = 1`
+    /// (Kuznetsov, equation 5.23); `None` where zero is a double eigenvalue, so that `<p, q> = 0`.
+    pub quadratic: Option<f64>,
+    /// Speed `<p, f_p>` with which the parameter unfolds the fold; `None` as for `quadratic`.
+    pub unfolding: Option<f64>,
+}
+
+/// Product of unit null vectors below which zero counts as a double eigenvalue.
+const DOUBLE: f64 = 1e-9;
+
+/// Null vectors `q`, `p` of the Jacobian at an equilibrium, `<q, q> = 1` and `<p, q> = 1` if that is possible, and
+/// whether it is.
+pub(crate) fn null_vectors<F: VectorField>(
+    problem: &EquilibriumProblem<'_, F>,
+    unknown: &[f64],
+) -> Result<(Vec<f64>, Vec<f64>, bool), Error> {
+    let n = problem.dimension;
+    let mut matrix = vec![0.0; n * unknown.len()];
+    let mut residual = vec![0.0; n];
+    Differentiator::default().jacobian(problem, unknown, &mut residual, &mut matrix, n);
+    let failed = |_| Error::Eigenvalues { quantity: "null vectors" };
+    let real = |vector: Vec<Complex64>| -> Vec<f64> { vector.into_iter().map(|entry| entry.re).collect() };
+    let right = real(right_eigenvector(&matrix[..n * n], n, Complex64::ZERO).map_err(failed)?.vector);
+    let mut left = real(left_eigenvector(&matrix[..n * n], n, Complex64::ZERO).map_err(failed)?.vector);
+    let product: f64 = left.iter().zip(&right).map(|(p, q)| p * q).sum();
+    // The size of the terms of the product does not depend on units, the vectors' norms do.
+    let size: f64 = left.iter().zip(&right).map(|(p, q)| (p * q).abs()).sum();
+    let simple = product.abs() > DOUBLE * size;
+    if simple {
+        left.iter_mut().for_each(|entry| *entry /= product);
+    }
+    Ok((right, left, simple))
+}
+
+impl FoldPoint {
+    /// The fold at a located singular equilibrium.
+    pub(crate) fn at<F: VectorField>(
+        problem: &EquilibriumProblem<'_, F>,
+        unknown: &[f64],
+        location_error: f64,
+    ) -> Result<Self, Error> {
+        let n = problem.dimension;
+        debug_assert_eq!(problem.unknowns(), unknown.len());
+        let state = unknown[..n].to_vec();
+        let parameters = problem.parameters_at(&unknown[n..]);
+        let active = problem.active[0];
+        let (null_vector, left, simple) = null_vectors(problem, unknown)?;
+        let forms = MultilinearForms { field: problem.field, state: &state, parameters: &parameters };
+        let project = |image: Vec<f64>| -> f64 { image.iter().zip(&left).map(|(value, p)| value * p).sum() };
+        let mut along = vec![0.0; n + parameters.len()];
+        along[n + active] = 1.0;
+        let quadratic = simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
+        let unfolding = simple.then(|| project(forms.real(&[&along])));
+        Ok(Self {
+            quadratic,
+            unfolding,
+            parameter: parameters[active],
+            parameters,
+            active,
+            location_error,
+            state,
+            null_vector,
+        })
+    }
+}

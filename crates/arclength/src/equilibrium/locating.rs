@@ -1,0 +1,270 @@
+//! Newton's method on the defining system of a special point that was bracketed on a curve of equilibria.
+
+use super::branch_point::BranchPoint;
+use super::curve::{EquilibriumCurve, Inspection, Tests};
+use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
+use super::fold::FoldPoint;
+use super::hopf::HopfPoint;
+use super::special::{NeutralSaddle, SpecialPoint};
+use crate::algebraic::{Solved, length, position, solve_square};
+use crate::branch::SpecialKind;
+use crate::continuation::{Solution, finish, locate};
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
+use num_complex::Complex64;
+
+/// Lengths, as parts of a bracket, to which it is shortened before Newton's method is tried, and tried again.
+const BRACKETS: [f64; 2] = [1e-2, 1e-6];
+/// The same where Newton's method fails and the bracket is all there is.
+const LAST_BRACKET: f64 = 1e-10;
+/// A located point may lie this part of the bracket outside it.
+const MARGIN: f64 = 0.1;
+/// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
+const UNPERTURBED: f64 = 1e-8;
+
+type Node = Solution<Inspection>;
+
+/// A solution close to the zero of a test function.
+fn near_zero<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    after: &Node,
+    tolerance: f64,
+    test: fn(&Tests) -> f64,
+) -> Node {
+    let settings = curve.settings;
+    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point.tests))) {
+        Ok(Some(near)) => near,
+        // Next to a branch point corrections fail, but the ends are good starts.
+        _ if test(&before.point.tests).abs() < test(&after.point.tests).abs() => before.clone(),
+        _ => after.clone(),
+    }
+}
+
+/// Whether `unknown` lies between the two ends, give or take a margin, and near the curve.
+fn inside(scales: &[f64], before: &Node, distance: f64, unknown: &[f64]) -> bool {
+    let along = position(before, unknown, scales);
+    let offset: Vec<f64> = unknown.iter().zip(&before.unknown).map(|(there, here)| there - here).collect();
+    let margin = MARGIN * distance;
+    along > -margin && along < distance + margin && length(&offset, scales) < 1.5 * distance
+}
+
+/// Error estimate of the parameter, the last unknown.
+fn location_error(solved: &Solved) -> f64 {
+    let (Some(update), Some(value)) = (solved.last_update.last(), solved.unknown.last()) else { return 0.0 };
+    update.abs().max(f64::EPSILON * value.abs())
+}
+
+/// What is left when the defining system has no regular solution.
+fn degenerate<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    after: &Node,
+    distance: f64,
+    of: SpecialKind,
+    test: fn(&Tests) -> f64,
+) -> Node {
+    let mut node = near_zero(curve, before, after, LAST_BRACKET, test);
+    let n = curve.dimension();
+    let parameter = node.unknown[n];
+    let location_error = LAST_BRACKET * distance * curve.system.scales[n];
+    node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, parameter, location_error }));
+    node
+}
+
+/// Completes a located point of the curve.
+fn complete<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    unknown: Vec<f64>,
+    special: SpecialPoint,
+) -> Result<Node, Error> {
+    let mut node = finish(curve, unknown, &before.tangent)?;
+    node.point.special = Some(Box::new(special));
+    Ok(node)
+}
+
+/// The fold between two solutions.
+pub(super) fn fold<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    after: &Node,
+    distance: f64,
+) -> Result<Node, Error> {
+    let n = curve.dimension();
+    let test = |tests: &Tests| tests.fold;
+    for tolerance in BRACKETS {
+        let near = near_zero(curve, before, after, tolerance, test);
+        let scales = curve.system.scales.clone();
+        let size = length(&near.tangent[..n], &scales[..n]);
+        let vector: Vec<f64> = near.tangent[..n].iter().map(|entry| entry / size).collect();
+        let normal = vector.iter().zip(&scales).map(|(entry, scale)| entry / (scale * scale)).collect();
+        let system = FoldSystem { equilibria: curve.system.problem.clone(), normal };
+        let start = [&near.unknown[..n], &vector, &near.unknown[n..]].concat();
+        let sizes = [&scales[..n], &scales[..n], &scales[n..]].concat();
+        let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
+        let unknown = [&solved.unknown[..n], &solved.unknown[2 * n..]].concat();
+        if inside(&scales, before, distance, &unknown) {
+            let point = FoldPoint::at(&curve.system.problem, &unknown, location_error(&solved))?;
+            return complete(curve, before, unknown, SpecialPoint::Fold(point));
+        }
+    }
+    Ok(degenerate(curve, before, after, distance, SpecialKind::Fold, test))
+}
+
+/// The Hopf point or neutral saddle between two solutions.
+pub(super) fn hopf<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    after: &Node,
+    distance: f64,
+) -> Result<Node, Error> {
+    let n = curve.dimension();
+    let test = |tests: &Tests| tests.hopf;
+    for tolerance in BRACKETS {
+        let near = near_zero(curve, before, after, tolerance, test);
+        let Some(pair) = near.point.spectrum.critical_pair() else { continue };
+        let matrix = curve.jacobian(&near.unknown);
+        let scales = curve.system.scales.clone();
+        let Some((system, start)) =
+            HopfSystem::from_pair(curve.system.problem.clone(), &near.unknown, &matrix, pair, &scales)?
+        else {
+            continue;
+        };
+        let sizes = [&scales[..n], &scales[..n], &scales[..n], &[1.0], &scales[n..]].concat();
+        let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
+        let unknown = [&solved.unknown[..n], &solved.unknown[3 * n + 1..]].concat();
+        if !inside(&scales, before, distance, &unknown) {
+            continue;
+        }
+        let kappa = solved.unknown[3 * n];
+        let eigenvalue = system.rate * kappa.abs().sqrt();
+        let error = location_error(&solved);
+        let problem = &curve.system.problem;
+        let special = if kappa > 0.0 {
+            SpecialPoint::Hopf(HopfPoint::at(problem, &unknown, &scales, eigenvalue, error)?)
+        } else {
+            let parameters = problem.parameters_at(&unknown[n..]);
+            SpecialPoint::NeutralSaddle(NeutralSaddle {
+                parameter: unknown[n],
+                parameters,
+                active: problem.active[0],
+                location_error: error,
+                state: unknown[..n].to_vec(),
+                eigenvalue,
+            })
+        };
+        return complete(curve, before, unknown, special);
+    }
+    Ok(degenerate(curve, before, after, distance, SpecialKind::Hopf, test))
+}
+
+impl<'a, F: VectorField> HopfSystem<'a, F> {
+    /// The system and a start close to a point with two eigenvalues of sum nearly zero, `pair`, of the Jacobian `matrix`
+    /// there. `None` if both are zero.
+    pub(crate) fn from_pair(
+        equilibria: super::problem::EquilibriumProblem<'a, F>,
+        unknown: &[f64],
+        matrix: &[f64],
+        pair: [Complex64; 2],
+        scales: &[f64],
+    ) -> Result<Option<(Self, Vec<f64>)>, Error> {
+        let n = equilibria.dimension;
+        let rate = (pair[0] * pair[1]).norm().sqrt();
+        if rate == 0.0 || !rate.is_finite() {
+            return Ok(None);
+        }
+        let failed = |_| Error::Eigenvalues { quantity: "eigenvectors of the Hopf point" };
+        let unit = |mut vector: Vec<f64>| {
+            let size = length(&vector, &scales[..n]);
+            vector.iter_mut().for_each(|entry| *entry /= size);
+            vector
+        };
+        let one = right_eigenvector(matrix, n, pair[0]).map_err(failed)?.vector;
+        let first: Vec<f64> = if pair[0].im == 0.0 {
+            let other = right_eigenvector(matrix, n, pair[1]).map_err(failed)?.vector;
+            let [one, other] = [one, other].map(|vector| unit(vector.iter().map(|entry| entry.re).collect()));
+            one.iter().zip(&other).map(|(a, b)| a + b).collect()
+        } else {
+            // The real part of a multiple of the eigenvector that is long, so that it does not vanish in the metric.
+            let real: Vec<f64> = one.iter().map(|entry| entry.re).collect();
+            let imaginary: Vec<f64> = one.iter().map(|entry| entry.im).collect();
+            if length(&real, &scales[..n]) >= length(&imaginary, &scales[..n]) { real } else { imaginary }
+        };
+        let first = unit(first);
+        let second: Vec<f64> = (0..n)
+            .map(|row| (0..n).map(|column| matrix[row + n * column] * first[column]).sum::<f64>() / rate)
+            .collect();
+        let Some((normal, conormal)) = normals(&first, &second, &scales[..n]) else { return Ok(None) };
+        // The square of the frequency is positive for a pair of complex eigenvalues, negative for real ones.
+        let kappa = if pair[0].im == 0.0 { -1.0 } else { 1.0 };
+        let start = [&unknown[..n], &first, &second, &[kappa], &unknown[n..]].concat();
+        Ok(Some((Self { equilibria, normal, conormal, rate }, start)))
+    }
+}
+
+/// The covectors that single out `first` in the plane that it spans with `second`; `None` if they are parallel.
+pub(crate) fn normals(first: &[f64], second: &[f64], scales: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let dual = |vector: &[f64]| -> Vec<f64> {
+        vector.iter().zip(scales).map(|(entry, scale)| entry / (scale * scale)).collect()
+    };
+    let against = |covector: &[f64], vector: &[f64]| -> f64 { covector.iter().zip(vector).map(|(a, b)| a * b).sum() };
+    let mut normal = dual(first);
+    let square = against(&normal, first);
+    normal.iter_mut().for_each(|entry| *entry /= square);
+    let share = against(&normal, second);
+    let rest: Vec<f64> = second.iter().zip(first).map(|(b, a)| b - share * a).collect();
+    let size = length(&rest, scales);
+    let conormal: Vec<f64> = dual(&rest).iter().map(|entry| entry / size).collect();
+    conormal.iter().all(|entry| entry.is_finite()).then_some((normal, conormal))
+}
+
+/// The branch point between two solutions.
+pub(super) fn branch_point<F: VectorField>(
+    curve: &mut EquilibriumCurve<'_, F>,
+    before: &Node,
+    after: &Node,
+    distance: f64,
+) -> Result<Node, Error> {
+    let n = curve.dimension();
+    let test = |tests: &Tests| tests.branch_point;
+    let failed = |_| Error::Eigenvalues { quantity: "null vector of the branch point" };
+    for tolerance in [1.0, BRACKETS[0], BRACKETS[1]] {
+        let near = near_zero(curve, before, after, tolerance, test);
+        let matrix = curve.jacobian(&near.unknown);
+        let scales = curve.system.scales.clone();
+        let rate = near.point.spectrum.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let mut left: Vec<f64> = left_eigenvector(&matrix, n, Complex64::ZERO)
+            .map_err(failed)?
+            .vector
+            .iter()
+            .map(|entry| entry.re)
+            .collect();
+        let size = left.iter().zip(&scales).map(|(entry, scale)| (entry * scale).powi(2)).sum::<f64>().sqrt();
+        left.iter_mut().for_each(|entry| *entry /= size);
+        let normal = left.iter().zip(&scales).map(|(entry, scale)| entry * scale * scale).collect();
+        let inverse: Vec<f64> = scales[..n].iter().map(|scale| scale.recip()).collect();
+        let system = BranchPointSystem {
+            equilibria: curve.system.problem.clone(),
+            normal,
+            scales: scales[..n].to_vec(),
+        };
+        let start = [&near.unknown[..n], &left, &[0.0], &near.unknown[n..]].concat();
+        let rate = if rate > 0.0 { rate } else { 1.0 };
+        let sizes = [&scales[..n], &inverse, &[rate], &scales[n..]].concat();
+        let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
+        let unknown = [&solved.unknown[..n], &solved.unknown[2 * n + 1..]].concat();
+        if !inside(&scales, before, distance, &unknown) || solved.unknown[2 * n].abs() > UNPERTURBED * rate {
+            continue;
+        }
+        let tangent: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
+        let error = location_error(&solved);
+        let Some(point) = BranchPoint::at(&curve.system.problem, &unknown, &tangent, &scales, error)? else {
+            continue;
+        };
+        // The Jacobian bordered by the tangent is singular here: what is known comes from the normal form.
+        return curve.at_branch_point(unknown, point);
+    }
+    Ok(degenerate(curve, before, after, distance, SpecialKind::BranchPoint, test))
+}

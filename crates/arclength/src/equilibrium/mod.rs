@@ -1,0 +1,28 @@
+//! Equilibria: finding one, following branches of them, their bifurcations with normal forms.
+//!
+//! [`Equilibria`] follows a branch in one parameter and locates folds (LP), branch points (BP) and Hopf points (HB) by
+//! Newton's method on their defining systems. Source: Kuznetsov, *Elements of Applied Bifurcation Theory*, 3rd edition
+//! (2004), chapters 5 and 10; Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria* (2000).
+
+mod branch;
+mod branch_point;
+mod curve;
+pub(crate) mod defining;
+mod events;
+mod fold;
+pub(crate) mod hopf;
+pub(crate) mod locating;
+pub(crate) mod multilinear;
+mod newton;
+pub(crate) mod problem;
+mod run;
+mod special;
+pub(crate) mod spectrum;
+
+pub use branch::{EquilibriumBranch, EquilibriumPoint};
+pub use branch_point::{BranchPoint, Crossing};
+pub use fold::FoldPoint;
+pub use hopf::HopfPoint;
+pub use newton::find_equilibrium;
+pub use run::{Equilibria, equilibrium_settings};
+pub use special::{NeutralSaddle, SpecialPoint};

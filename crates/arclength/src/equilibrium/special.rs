@@ -1,0 +1,82 @@
+//! Special points of a branch of equilibria.
+
+use super::branch_point::BranchPoint;
+use super::fold::FoldPoint;
+use super::hopf::HopfPoint;
+use crate::branch::SpecialKind;
+use serde::{Deserialize, Serialize};
+
+/// Two real eigenvalues with sum zero: not a bifurcation, but the Hopf test function vanishes there too.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NeutralSaddle {
+    /// All parameters.
+    pub parameters: Vec<f64>,
+    /// Index of the parameter along which it was found.
+    pub active: usize,
+    /// Value of that parameter.
+    pub parameter: f64,
+    /// Error estimate of that value.
+    pub location_error: f64,
+    /// The equilibrium.
+    pub state: Vec<f64>,
+    /// The positive one of the two eigenvalues.
+    pub eigenvalue: f64,
+}
+
+/// A special point with its normal form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum SpecialPoint {
+    /// Fold.
+    Fold(FoldPoint),
+    /// Branch point.
+    BranchPoint(BranchPoint),
+    /// Hopf point.
+    Hopf(HopfPoint),
+    /// Neutral saddle.
+    NeutralSaddle(NeutralSaddle),
+    /// A special point that could be bracketed but whose defining system Newton's method could not solve: it is degenerate.
+    Degenerate {
+        /// What changes sign there.
+        of: SpecialKind,
+        /// Value of the parameter.
+        parameter: f64,
+        /// Half of the length of the bracket.
+        location_error: f64,
+    },
+}
+
+impl SpecialPoint {
+    /// Its kind.
+    pub fn kind(&self) -> SpecialKind {
+        match self {
+            Self::Fold(_) => SpecialKind::Fold,
+            Self::BranchPoint(_) => SpecialKind::BranchPoint,
+            Self::Hopf(_) => SpecialKind::Hopf,
+            Self::NeutralSaddle(_) => SpecialKind::NeutralSaddle,
+            Self::Degenerate { of, .. } => *of,
+        }
+    }
+
+    /// Value of the parameter.
+    pub fn parameter(&self) -> f64 {
+        match self {
+            Self::Fold(point) => point.parameter,
+            Self::BranchPoint(point) => point.parameter,
+            Self::Hopf(point) => point.parameter,
+            Self::NeutralSaddle(point) => point.parameter,
+            Self::Degenerate { parameter, .. } => *parameter,
+        }
+    }
+
+    /// Error estimate of that value.
+    pub fn location_error(&self) -> f64 {
+        match self {
+            Self::Fold(point) => point.location_error,
+            Self::BranchPoint(point) => point.location_error,
+            Self::Hopf(point) => point.location_error,
+            Self::NeutralSaddle(point) => point.location_error,
+            Self::Degenerate { location_error, .. } => *location_error,
+        }
+    }
+}

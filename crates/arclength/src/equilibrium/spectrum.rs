@@ -1,0 +1,84 @@
+//! What the eigenvalues of an equilibrium say: stability and the test function of Hopf points.
+
+use crate::branch::Stability;
+use crate::error::Error;
+use crate::linear::eigenvalues::EigenvalueWorkspace;
+use num_complex::Complex64;
+
+/// A real part smaller than this part of the largest modulus is rounding error.
+const UNDECIDED: f64 = 1e-13;
+/// A sum of two eigenvalues smaller than this part of their moduli may be rounding error.
+const UNDECIDED_SUM: f64 = 1e-11;
+/// Ratio of the sum of two eigenvalues to their moduli above which the test function saturates.
+const SATURATION: f64 = 0.1;
+
+/// Eigenvalues of an equilibrium.
+#[derive(Clone, Debug)]
+pub(crate) struct Spectrum {
+    pub eigenvalues: Vec<Complex64>,
+    pub stability: Stability,
+    /// Number with positive real part, decided or not.
+    pub unstable: usize,
+    /// Product over all pairs of `(a + b)/(|a| + |b|)`, each saturating at +-1: changes sign where two eigenvalues have
+    /// the sum zero. Continuous, independent of the unit of time.
+    pub hopf_test: f64,
+    /// Whether no sum is so small that its sign is rounding error.
+    pub hopf_decided: bool,
+}
+
+impl Spectrum {
+    /// Of the column-major Jacobian `matrix`.
+    pub fn of(matrix: &[f64], workspace: &mut EigenvalueWorkspace) -> Result<Self, Error> {
+        let eigenvalues = workspace
+            .eigenvalues(matrix)
+            .map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?
+            .to_vec();
+        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let unstable = eigenvalues.iter().filter(|value| value.re > 0.0).count();
+        let stability = if eigenvalues.iter().any(|value| value.re.abs() <= UNDECIDED * largest) {
+            Stability::Undecided
+        } else if unstable > 0 {
+            Stability::Unstable { dimension: unstable }
+        } else {
+            Stability::Stable
+        };
+        let (mut hopf_test, mut hopf_decided) = (1.0, true);
+        for_each_pair(&eigenvalues, |one, other| {
+            let ratio = sum_ratio(one, other);
+            hopf_test *= ratio / ratio.hypot(SATURATION);
+            hopf_decided &= ratio.abs() > UNDECIDED_SUM;
+        });
+        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_decided })
+    }
+
+    /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
+    pub fn critical_pair(&self) -> Option<[Complex64; 2]> {
+        let mut smallest = None;
+        for_each_pair(&self.eigenvalues, |one, other| {
+            let ratio = sum_ratio(one, other).abs();
+            let candidate = one.im == -other.im;
+            if candidate && smallest.as_ref().is_none_or(|(least, _)| ratio < *least) {
+                smallest = Some((ratio, [one, other]));
+            }
+        });
+        smallest.map(|(_, pair)| pair)
+    }
+}
+
+/// `(a + b)/(|a| + |b|)` where that is real, the modulus otherwise; zero for a double zero.
+fn sum_ratio(one: Complex64, other: Complex64) -> f64 {
+    let size = one.norm() + other.norm();
+    if size == 0.0 {
+        return 0.0;
+    }
+    let sum = one + other;
+    if one.im == -other.im { sum.re / size } else { sum.norm() / size }
+}
+
+fn for_each_pair(eigenvalues: &[Complex64], mut visit: impl FnMut(Complex64, Complex64)) {
+    for (index, &one) in eigenvalues.iter().enumerate() {
+        for &other in &eigenvalues[index + 1..] {
+            visit(one, other);
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Limit cycles of the rolling wheel along a parameter.
+
+use super::{Along, HopfPoint};
+use crate::{KingpinError, Wheel};
+use arclength::continuation::{Settings, Stop};
+use arclength::cycle::{CyclePoint, CycleStart, Cycles, Orbit, Resolution};
+use std::ops::ControlFlow;
+
+/// How a branch of cycles is computed.
+#[derive(Clone, Debug, Default)]
+pub struct CycleOptions {
+    /// Parameter values at which cycles are wanted exactly.
+    pub at: Vec<f64>,
+    /// Resolution of the cycles.
+    pub resolution: Resolution,
+    /// Settings of the continuation.
+    pub settings: Settings,
+}
+
+/// A branch of limit cycles of the wheel.
+#[derive(Debug)]
+pub struct WheelCycles {
+    /// The wheel at the start.
+    pub wheel: Wheel,
+    /// The parameter and its interval.
+    pub along: Along,
+    /// The cycles, with `value` a value of the key; states are `u q psi V Omega`.
+    pub points: Vec<CyclePoint>,
+    /// Why the branch ends, at its first and at its last point; the first is `None` at a Hopf point.
+    pub stops: (Option<Stop>, Stop),
+}
+
+impl HopfPoint {
+    /// The branch of limit cycles that is born here, followed over the interval.
+    ///
+    /// `observer` is told value and period of every cycle found and may end the run.
+    ///
+    /// # Errors
+    /// [`KingpinError::Continuation`].
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel, branches::{Along, CycleOptions}};
+    /// use std::ops::ControlFlow;
+    /// let along = Along::new(Key::V, 1.0, 12.0)?;
+    /// let hopf = Wheel::default().hopf_points(along)?.points.remove(0);
+    /// let options = CycleOptions { at: vec![4.0], ..CycleOptions::default() };
+    /// let branch = hopf.cycles(along, &options, |_, _| ControlFlow::Continue(()))?;
+    /// let cycle = branch.points.iter().find(|cycle| cycle.value == 4.0).unwrap();
+    /// assert!((cycle.period - 0.15274192836).abs() < 1e-9);
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn cycles(
+        &self,
+        along: Along,
+        options: &CycleOptions,
+        observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+    ) -> Result<WheelCycles, KingpinError> {
+        self.wheel.follow_cycles(CycleStart::from(&self.detail), along, options, observer)
+    }
+}
+
+impl Wheel {
+    /// The branch of limit cycles through a cycle of this wheel, followed both ways over the interval.
+    ///
+    /// The wheel's own value of the parameter has to lie in the interval.
+    ///
+    /// # Errors
+    /// [`KingpinError::OutsideInterval`], [`KingpinError::Continuation`].
+    pub fn cycles_through(
+        &self,
+        orbit: &Orbit,
+        along: Along,
+        options: &CycleOptions,
+        observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+    ) -> Result<WheelCycles, KingpinError> {
+        self.follow_cycles(CycleStart::Orbit(orbit.clone()), along, options, observer)
+    }
+
+    fn follow_cycles(
+        &self,
+        start: CycleStart,
+        along: Along,
+        options: &CycleOptions,
+        mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+    ) -> Result<WheelCycles, KingpinError> {
+        let value = self.get(along.key());
+        if !along.contains(value) {
+            let (start, end) = along.ends();
+            return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end });
+        }
+        let key = along.followed();
+        let field = self.rolling(&[key])?;
+        let at: Vec<f64> = options.at.iter().map(|value| along.convert(*value)).collect();
+        let mut branch = Cycles::of(&field, start)
+            .parameters(&[along.convert(value)])
+            .along(0, along.range())
+            .at(&at)
+            .resolution(options.resolution)
+            .settings(options.settings)
+            .observer(|value, period| observer(along.convert(value), period))
+            .run()?;
+        for point in &mut branch.points {
+            point.value = along.convert(point.value);
+        }
+        Ok(WheelCycles { wheel: *self, along, points: branch.points, stops: branch.stops })
+    }
+}

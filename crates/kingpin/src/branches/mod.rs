@@ -1,0 +1,90 @@
+//! Branches of the wheel along one of its parameters: Hopf points of the uniform motion and the limit cycles
+//! that are born there.
+//!
+//! The turning radius may be followed to infinity: behind the scenes `r` is then replaced by `1/r`.
+
+mod cycles;
+mod hopf;
+
+pub use cycles::{CycleOptions, WheelCycles};
+pub use hopf::{HopfPoint, HopfSearch};
+
+use crate::{Key, KingpinError, Wheel};
+
+/// A parameter and the interval in which it varies.
+///
+/// ```
+/// use kingpin::{Key, branches::Along};
+/// let along = Along::new(Key::V, 0.5, 9.0)?;
+/// assert_eq!(along.key(), Key::V);
+/// assert!(Along::new(Key::V, 9.0, 9.0).is_err());
+/// # Ok::<(), kingpin::KingpinError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Along {
+    key: Key,
+    start: f64,
+    end: f64,
+}
+
+impl Along {
+    /// An interval of a parameter; `r` may end at infinity.
+    ///
+    /// # Errors
+    /// [`KingpinError::EmptyInterval`] unless `start < end`, [`KingpinError::OutOfRange`] for values that the
+    /// parameter may not take.
+    pub fn new(key: Key, start: f64, end: f64) -> Result<Self, KingpinError> {
+        for value in [start, end] {
+            if !key.allowed().contains(value) {
+                return Err(KingpinError::OutOfRange { key, value, position: None });
+            }
+        }
+        if start < end {
+            Ok(Self { key, start, end })
+        } else {
+            Err(KingpinError::EmptyInterval { key, start, end })
+        }
+    }
+
+    /// The parameter.
+    pub fn key(&self) -> Key {
+        self.key
+    }
+
+    /// Both ends, in ascending order.
+    pub fn ends(&self) -> (f64, f64) {
+        (self.start, self.end)
+    }
+
+    /// Whether the value is inside, ends included.
+    pub fn contains(&self, value: f64) -> bool {
+        (self.start..=self.end).contains(&value)
+    }
+
+    /// The parameter that is followed in place of the key.
+    fn followed(&self) -> Key {
+        if self.key == Key::TurningRadius { Key::Curvature } else { self.key }
+    }
+
+    /// A value of the key as a value of the parameter that is followed, and back: both are the same map.
+    fn convert(&self, value: f64) -> f64 {
+        if self.key == Key::TurningRadius { value.recip() } else { value }
+    }
+
+    /// The interval of the parameter that is followed.
+    fn range(&self) -> std::ops::RangeInclusive<f64> {
+        let (a, b) = (self.convert(self.start), self.convert(self.end));
+        a.min(b)..=a.max(b)
+    }
+
+    /// The wheel's own value where it is inside, then values spread over the interval.
+    fn candidates(&self, wheel: &Wheel) -> Vec<f64> {
+        const SPREAD: usize = 32;
+        let own = wheel.get(self.key);
+        let range = self.range();
+        let (lower, upper) = (*range.start(), *range.end());
+        let spread = (0..=SPREAD).map(|index| lower + (upper - lower) * index as f64 / SPREAD as f64);
+        let own = self.contains(own).then(|| self.convert(own));
+        own.into_iter().chain(spread).collect()
+    }
+}
