@@ -144,7 +144,8 @@ fn extreme_magnitudes() {
 
 #[test]
 fn graded_matrix_keeps_small_eigenvalues() {
-    // Diagonal 1, 1e-8, 1e-16 with couplings of the geometric mean: a diagonal similarity of nothing worse than one.
+    // Diagonal 1, 1e-8, 1e-16 with couplings of the geometric mean: a diagonal similarity of nothing worse
+    // than one.
     let matrix = from_rows(&[&[1.0, 1e-5, 1e-9], &[1e-5, 1e-8, 1e-13], &[1e-9, 1e-13, 1e-16]]);
     let product: f64 = eigenvalues(&matrix, 3).unwrap().iter().map(|value| value.re).product();
     // Determinant in exact rational arithmetic: 1e-24 - 1e-26 + 2e-27 - 1e-26 - 1e-26.

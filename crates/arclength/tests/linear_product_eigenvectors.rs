@@ -93,8 +93,9 @@ fn one_factor_agrees_with_eigenvectors_of_a_matrix() {
 
 #[test]
 fn vectors_of_the_smallest_multiplier_survive_growth_and_decay() {
-    // Diagonal factors seen in rotated coordinates, 60 times: multipliers from 2^60 to 2^-60. Decaying vectors cannot be
-    // found from the product, whose rounding errors exceed the small multipliers by twenty orders of magnitude.
+    // Diagonal factors seen in rotated coordinates, 60 times: multipliers from 2^60 to 2^-60. Decaying
+    // vectors cannot be found from the product, whose rounding errors exceed the small multipliers by twenty
+    // orders of magnitude.
     let (n, count) = (3, 60);
     let q = |j: usize| {
         let (s, c) = (0.7 + 0.3 * (j % count) as f64).sin_cos();

@@ -1,9 +1,10 @@
-//! Balancing: similarity transformations by permutations and powers of two that make rows and columns alike in norm.
+//! Balancing: similarity transformations by permutations and powers of two that make rows and columns alike
+//! in norm.
 //!
-//! Units mix in the Jacobians of mechanical models, and an unbalanced eigenvalue solver then loses digits. The
-//! permutations of Parlett and Reinsch (1969) isolate eigenvalues that stand on the diagonal of a block triangular
-//! matrix; the scaling compares Euclidean norms that include the diagonal (James, Langou and Lowery 2014), because the
-//! older choice can ruin a matrix with tiny off-diagonal noise.
+//! Units mix in the Jacobians of mechanical models, and an unbalanced eigenvalue solver then loses digits.
+//! The permutations of Parlett and Reinsch (1969) isolate eigenvalues that stand on the diagonal of a block
+//! triangular matrix; the scaling compares Euclidean norms that include the diagonal (James, Langou and
+//! Lowery 2014), because the older choice can ruin a matrix with tiny off-diagonal noise.
 
 /// A row is rescaled only if that lowers the sum of row and column norm to less than this part.
 const WORTHWHILE: f64 = 0.95;
@@ -13,7 +14,8 @@ const LARGEST_SCALE: f64 = 1e120;
 /// Sweeps after which scaling stops; two or three are usual, and stopping early costs accuracy only.
 const MAXIMUM_SWEEPS: usize = 100;
 
-/// Permutes the matrix so that the rows and columns outside `low..high` are upper triangular, and returns `(low, high)`.
+/// Permutes the matrix so that the rows and columns outside `low..high` are upper triangular, and returns
+/// `(low, high)`.
 pub(super) fn isolate(matrix: &mut [f64], n: usize) -> (usize, usize) {
     let (mut low, mut high) = (0, n);
     // Rows without off-diagonal entries go to the bottom.

@@ -1,8 +1,8 @@
 //! LU factorisation of complex matrices that are singular on purpose, as inverse iteration needs it.
 //!
-//! Inverse iteration solves with `A - lambda I` where `lambda` is an eigenvalue: a vanishing pivot is expected and is
-//! replaced by one of the size of the rounding errors (Wilkinson 1965, chapter 9), so that the solution grows along the
-//! eigenvector and stays finite.
+//! Inverse iteration solves with `A - lambda I` where `lambda` is an eigenvalue: a vanishing pivot is
+//! expected and is replaced by one of the size of the rounding errors (Wilkinson 1965, chapter 9), so that
+//! the solution grows along the eigenvector and stays finite.
 
 use num_complex::Complex64;
 

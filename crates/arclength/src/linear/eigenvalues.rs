@@ -1,8 +1,10 @@
-//! Eigenvalues of a real matrix: balancing, Hessenberg reduction, Francis's implicit double-shift QR iteration.
+//! Eigenvalues of a real matrix: balancing, Hessenberg reduction, Francis's implicit double-shift QR
+//! iteration.
 //!
-//! The deflation criterion is that of Ahues and Tisseur (1997), which keeps small eigenvalues of graded matrices; the
-//! exceptional shifts and the test for two consecutive small subdiagonal entries follow Wilkinson (1971) and LAPACK's
-//! `dlahqr`. The number of iterations is bounded: the iteration ends with eigenvalues or with an error.
+//! The deflation criterion is that of Ahues and Tisseur (1997), which keeps small eigenvalues of graded
+//! matrices; the exceptional shifts and the test for two consecutive small subdiagonal entries follow
+//! Wilkinson (1971) and LAPACK's `dlahqr`. The number of iterations is bounded: the iteration ends with
+//! eigenvalues or with an error.
 
 use num_complex::Complex64;
 
@@ -51,7 +53,8 @@ pub enum EigenvalueError {
         /// Imaginary part.
         im: f64,
     },
-    /// The QR iteration did not separate the eigenvalues of rows `first..=last` within the allowed number of sweeps.
+    /// The QR iteration did not separate the eigenvalues of rows `first..=last` within the allowed number of
+    /// sweeps.
     #[error("no convergence of the QR iteration in rows {first} to {last} after {sweeps} sweeps")]
     NotConverged {
         /// First row of the remaining window.
@@ -81,7 +84,8 @@ pub(super) fn check(matrices: &[f64], n: usize, count: usize) -> Result<(), Eige
     }
 }
 
-/// Eigenvalues of the column-major n-by-n `matrix`, by descending real part, then by ascending imaginary part.
+/// Eigenvalues of the column-major n-by-n `matrix`, by descending real part, then by ascending imaginary
+/// part.
 ///
 /// Complex eigenvalues come in exactly conjugate pairs. For repeated use see [`EigenvalueWorkspace`].
 ///

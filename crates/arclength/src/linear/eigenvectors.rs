@@ -1,8 +1,8 @@
 //! Right and left eigenvectors of a real matrix for a known eigenvalue, by inverse iteration.
 //!
-//! The matrix is balanced first, then `A - lambda I` is factorised with tiny pivots replaced (Wilkinson 1965, chapter 9;
-//! Ipsen 1997). Of a few iterates the one with the smallest residual counts: a second step spoils the vector of a
-//! defective eigenvalue, and improves all others.
+//! The matrix is balanced first, then `A - lambda I` is factorised with tiny pivots replaced (Wilkinson 1965,
+//! chapter 9; Ipsen 1997). Of a few iterates the one with the smallest residual counts: a second step spoils
+//! the vector of a defective eigenvalue, and improves all others.
 
 use num_complex::Complex64;
 
@@ -10,7 +10,8 @@ use super::balancing::{largest_exponent, power_of_two, scale};
 use super::complex_lu::ComplexLu;
 use super::eigenvalues::{EigenvalueError, check};
 
-/// Steps of inverse iteration from one starting vector; two suffice for a simple eigenvalue accurate to rounding.
+/// Steps of inverse iteration from one starting vector; two suffice for a simple eigenvalue accurate to
+/// rounding.
 const MAXIMUM_STEPS: usize = 5;
 /// Starting vectors tried, for one may be nearly orthogonal to what is sought.
 const MAXIMUM_STARTS: usize = 4;
@@ -18,7 +19,8 @@ const MAXIMUM_STARTS: usize = 4;
 const SMALL_RESIDUAL: f64 = f64::EPSILON;
 /// With a relative residual below this no further starting vector is tried.
 const ACCEPTABLE_RESIDUAL: f64 = 1e-14;
-/// Components whose modulus is within this part of the largest count as largest; the first of them becomes real.
+/// Components whose modulus is within this part of the largest count as largest; the first of them becomes
+/// real.
 const TIE: f64 = 1e-6;
 
 /// An eigenvector `q` with `<q, q> = 1` whose largest component is real and positive.
@@ -33,9 +35,9 @@ pub struct Eigenvector {
 
 /// The vector `q` with `A q = lambda q` for the column-major n-by-n `matrix`.
 ///
-/// `eigenvalue` should be accurate to rounding, as from [`eigenvalues`](super::eigenvalues::eigenvalues). Of a multiple
-/// eigenvalue one vector is found. A real eigenvalue gives an exactly real vector. That `eigenvalue` is no eigenvalue
-/// shows in the residual.
+/// `eigenvalue` should be accurate to rounding, as from [`eigenvalues`](super::eigenvalues::eigenvalues). Of
+/// a multiple eigenvalue one vector is found. A real eigenvalue gives an exactly real vector. That
+/// `eigenvalue` is no eigenvalue shows in the residual.
 ///
 /// # Errors
 /// [`EigenvalueError`] when the shape is wrong or a number is not finite.
@@ -87,7 +89,8 @@ pub fn right_eigenvector(
 
 /// The vector `p` with `p^H A = lambda p^H`, that is `A^T p = conj(lambda) p`, normalised as the right one.
 ///
-/// Kuznetsov's adjoint eigenvector (`<p, q> = sum of conj(p_i) q_i = 1`) is this one divided by `conj(<p, q>)`.
+/// Kuznetsov's adjoint eigenvector (`<p, q> = sum of conj(p_i) q_i = 1`) is this one divided by `conj(<p,
+/// q>)`.
 ///
 /// # Errors
 /// As [`right_eigenvector`].
@@ -109,7 +112,8 @@ pub(super) fn check_eigenvalue(eigenvalue: Complex64) -> Result<(), EigenvalueEr
     }
 }
 
-/// Solves repeatedly from one or more starting vectors; returns the iterate of smallest residual, and the residual.
+/// Solves repeatedly from one or more starting vectors; returns the iterate of smallest residual, and the
+/// residual.
 pub(super) fn inverse_iteration(
     length: usize,
     solve: impl Fn(&mut [Complex64]),
@@ -158,7 +162,8 @@ pub(super) fn normalize(vector: &mut [Complex64]) {
     vector.iter_mut().for_each(|x| *x /= norm);
 }
 
-/// Makes the largest component real and positive; returns the number of modulus one by which the vector was multiplied.
+/// Makes the largest component real and positive; returns the number of modulus one by which the vector was
+/// multiplied.
 pub(super) fn fix_phase(vector: &mut [Complex64]) -> Complex64 {
     let largest = vector.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
     let Some(at) = vector.iter().position(|x| x.norm() >= (1.0 - TIE) * largest && largest > 0.0) else {

@@ -1,8 +1,9 @@
 //! Eigenvalues of a product of 2-by-2 matrices by a complex single-shift periodic QR iteration.
 //!
-//! A real double-shift iteration ends with 2-by-2 blocks. Forming the product of a block would lose the smaller of two
-//! real multipliers and the accuracy of a pair behind ill-conditioned factors; iterating on the factors in complex
-//! arithmetic loses neither (Kressner 2005, chapter 4). All stays exactly real when the eigenvalues are.
+//! A real double-shift iteration ends with 2-by-2 blocks. Forming the product of a block would lose the
+//! smaller of two real multipliers and the accuracy of a pair behind ill-conditioned factors; iterating on
+//! the factors in complex arithmetic loses neither (Kressner 2005, chapter 4). All stays exactly real when
+//! the eigenvalues are.
 
 use num_complex::Complex64;
 
@@ -77,8 +78,8 @@ impl Rotation {
     }
 }
 
-/// The two eigenvalues of `blocks[0] * blocks[1] * ... * 2^exponent`, where all blocks but the first are upper
-/// triangular with non-zero diagonals; `None` if the iteration does not converge.
+/// The two eigenvalues of `blocks[0] * blocks[1] * ... * 2^exponent`, where all blocks but the first are
+/// upper triangular with non-zero diagonals; `None` if the iteration does not converge.
 pub(super) fn multipliers(blocks: &mut [Block], exponent: i64) -> Option<[Multiplier; 2]> {
     for sweep in 1..=MAXIMUM_SWEEPS {
         let (first, triangular) = blocks.split_first_mut()?;
@@ -100,7 +101,8 @@ pub(super) fn multipliers(blocks: &mut [Block], exponent: i64) -> Option<[Multip
     None
 }
 
-/// The first column of the shifted product up to a factor; the shift is the eigenvalue next to the last diagonal entry.
+/// The first column of the shifted product up to a factor; the shift is the eigenvalue next to the last
+/// diagonal entry.
 fn first_column(first: &Block, triangular: &[Block], unshifted: bool) -> (Complex64, Complex64) {
     if unshifted {
         return (first.a, first.c);
@@ -127,7 +129,8 @@ fn first_column(first: &Block, triangular: &[Block], unshifted: bool) -> (Comple
     if y.norm() <= HOPELESS_SHIFT * x.norm() { (first.a, first.c) } else { (x, y) }
 }
 
-/// Reads off the eigenvalues of a triangular product and restores what is known about them: both real or conjugate.
+/// Reads off the eigenvalues of a triangular product and restores what is known about them: both real or
+/// conjugate.
 fn classify(blocks: &[Block], exponent: i64) -> [Multiplier; 2] {
     let product = |entry: fn(&Block) -> Complex64| {
         blocks.iter().fold(WideRange::new(Complex64::ONE), |product, block| product * entry(block))

@@ -1,13 +1,14 @@
 //! Floquet multipliers: eigenvalues of a product of matrices without forming the product.
 //!
-//! The product `R_N ... R_2 R_1` of transition matrices mixes multipliers of very different size, and the small ones drown
-//! in the rounding errors of the large ones. Here orthogonal transformations at every factor bring all factors to
-//! triangular form at once: periodic Hessenberg reduction and implicit double-shift periodic QR iteration (Bojanczyk,
-//! Golub and Van Dooren 1992; Lust 2001; Kressner 2005). Each multiplier is then a product of diagonal entries.
+//! The product `R_N ... R_2 R_1` of transition matrices mixes multipliers of very different size, and the
+//! small ones drown in the rounding errors of the large ones. Here orthogonal transformations at every factor
+//! bring all factors to triangular form at once: periodic Hessenberg reduction and implicit double-shift
+//! periodic QR iteration (Bojanczyk, Golub and Van Dooren 1992; Lust 2001; Kressner 2005). Each multiplier is
+//! then a product of diagonal entries.
 //!
-//! The Hessenberg factor is not one of the given factors but an identity matrix put in front of them. It stays
-//! orthogonal throughout, so an entry below its diagonal is negligible when it is small against one, and every given
-//! factor becomes triangular, so that a singular factor shows as a zero on its diagonal.
+//! The Hessenberg factor is not one of the given factors but an identity matrix put in front of them. It
+//! stays orthogonal throughout, so an entry below its diagonal is negligible when it is small against one,
+//! and every given factor becomes triangular, so that a singular factor shows as a zero on its diagonal.
 
 use num_complex::Complex64;
 
@@ -21,17 +22,17 @@ use super::wide_range::WideRange;
 
 /// Sweeps allowed for one window before it is given up.
 const MAXIMUM_SWEEPS: usize = 300;
-/// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they may have
-/// grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
+/// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they
+/// may have grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
 const LARGEST_AMPLIFICATION: f64 = 256.0;
 /// Shifts that turn the first column by less than this would underflow on their way through the factors.
 pub(super) const HOPELESS_SHIFT: f64 = 1e-100;
 
 /// Eigenvalues of the product `R_count ... R_2 R_1` of n-by-n matrices, by descending modulus.
 ///
-/// `factors` holds `R_1`, `R_2`, ... one after the other, each column-major. Complex multipliers come in conjugate pairs,
-/// the one with negative argument first. A multiplier is exactly zero when a factor is singular to rounding. For
-/// repeated use see [`PeriodicSchur`].
+/// `factors` holds `R_1`, `R_2`, ... one after the other, each column-major. Complex multipliers come in
+/// conjugate pairs, the one with negative argument first. A multiplier is exactly zero when a factor is
+/// singular to rounding. For repeated use see [`PeriodicSchur`].
 ///
 /// # Errors
 /// [`EigenvalueError`] when the shape is wrong, an entry is not finite, or the iteration does not converge.
@@ -52,7 +53,8 @@ pub fn multipliers(factors: &[f64], n: usize, count: usize) -> Result<Vec<Multip
     Ok(workspace.multipliers)
 }
 
-/// Memory for the multipliers of products of `count` n-by-n matrices, so that repeated computations allocate nothing.
+/// Memory for the multipliers of products of `count` n-by-n matrices, so that repeated computations allocate
+/// nothing.
 #[derive(Clone, Debug)]
 pub struct PeriodicSchur {
     n: usize,
@@ -265,8 +267,8 @@ impl PeriodicSchur {
     }
 }
 
-/// Finds the diagonal scaling, by powers of two, that balances the sum of the moduli of the factors, each scaled to
-/// order one; returns the exponent that these scalings take out.
+/// Finds the diagonal scaling, by powers of two, that balances the sum of the moduli of the factors, each
+/// scaled to order one; returns the exponent that these scalings take out.
 ///
 /// The coordinates have the same units at every factor, so one scaling serves all.
 pub(super) fn common_scales(given: &[f64], n: usize, magnitudes: &mut [f64], scales: &mut [f64]) -> i64 {

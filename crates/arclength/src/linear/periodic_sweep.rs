@@ -1,13 +1,16 @@
-//! The two sweeps of the periodic QR iteration: the double-shift sweep and the deflation of a singular factor.
+//! The two sweeps of the periodic QR iteration: the double-shift sweep and the deflation of a singular
+//! factor.
 //!
-//! `factors` holds an upper Hessenberg matrix and upper triangular ones, n-by-n, column-major, one after the other. Only
-//! the window of rows and columns `first..=last` is transformed, because only eigenvalues are wanted.
+//! `factors` holds an upper Hessenberg matrix and upper triangular ones, n-by-n, column-major, one after the
+//! other. Only the window of rows and columns `first..=last` is transformed, because only eigenvalues are
+//! wanted.
 
 use super::periodic_schur::HOPELESS_SHIFT;
 use super::reflector::SmallReflector;
 use super::wide_range::WideRange;
 
-/// After this many sweeps without deflation an exceptional shift is tried, after twice as many an unshifted sweep.
+/// After this many sweeps without deflation an exceptional shift is tried, after twice as many an unshifted
+/// sweep.
 const EXCEPTIONAL_SHIFT_INTERVAL: usize = 10;
 
 type Wide = WideRange<f64>;
@@ -213,9 +216,9 @@ fn rotate_columns(
 
 /// Splits the window at row `zero`, where the diagonal of triangular factor number `singular` is zero.
 ///
-/// An unshifted QR sweep from the top stops at the zero and leaves a zero left of row `zero` of the Hessenberg factor; an
-/// unshifted RQ sweep from the bottom stops there too and leaves a zero below it (Bojanczyk, Golub and Van Dooren 1992;
-/// Kressner 2005, section 4.1.4).
+/// An unshifted QR sweep from the top stops at the zero and leaves a zero left of row `zero` of the
+/// Hessenberg factor; an unshifted RQ sweep from the bottom stops there too and leaves a zero below it
+/// (Bojanczyk, Golub and Van Dooren 1992; Kressner 2005, section 4.1.4).
 pub(super) fn deflate_zero(
     factors: &mut [f64],
     n: usize,
@@ -241,7 +244,8 @@ pub(super) fn deflate_zero(
         }
         rotations[k] = carried;
     }
-    // Columns of the Hessenberg factor change only now: a rotation must not refill what the next one annihilates.
+    // Columns of the Hessenberg factor change only now: a rotation must not refill what the next one
+    // annihilates.
     for (k, carried) in rotations.iter().enumerate().take(zero).skip(first) {
         rotate_columns(hessenberg, n, k, first..=k + 1, *carried);
     }

@@ -1,9 +1,9 @@
 //! Eigenvectors of a product of matrices by inverse iteration on the cyclic system, not on the product.
 //!
-//! With `P = R_N ... R_1` and `P z_0 = mu z_0` the vectors `z_j = R_j z_(j-1)` solve a block bidiagonal system with a
-//! corner. It is condensed to `z_0` by Householder reflectors, which stay stable where the product mixes growing and
-//! decaying directions (Wright 1992; Lust 2001). Each equation is scaled by its share of the multiplier, so that modulus
-//! 1e-300 is as good as one.
+//! With `P = R_N ... R_1` and `P z_0 = mu z_0` the vectors `z_j = R_j z_(j-1)` solve a block bidiagonal
+//! system with a corner. It is condensed to `z_0` by Householder reflectors, which stay stable where the
+//! product mixes growing and decaying directions (Wright 1992; Lust 2001). Each equation is scaled by its
+//! share of the multiplier, so that modulus 1e-300 is as good as one.
 
 use num_complex::Complex64;
 use std::f64::consts::LN_2;
@@ -16,25 +16,26 @@ use super::multiplier::Multiplier;
 use super::periodic_schur::{common_scales, scale_factor};
 use super::wide_range::WideRange;
 
-/// Logarithm of the largest share of the multiplier in one equation. No multiplier of factors of order one comes near it;
-/// a number that is no multiplier then shows in the residual instead of overflowing.
+/// Logarithm of the largest share of the multiplier in one equation. No multiplier of factors of order one
+/// comes near it; a number that is no multiplier then shows in the residual instead of overflowing.
 const LARGEST_SHARE: f64 = 200.0;
 
 /// An eigenvector of a product of `count` matrices, followed through the factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProductEigenvector {
-    /// `z_0`, `z_1`, ..., one after the other, `count` times `n` numbers; `z_0` has norm one and its largest component is
-    /// real and positive. Vectors outside the range of `f64` are zero or infinite.
+    /// `z_0`, `z_1`, ..., one after the other, `count` times `n` numbers; `z_0` has norm one and its largest
+    /// component is real and positive. Vectors outside the range of `f64` are zero or infinite.
     pub vectors: Vec<Complex64>,
     /// Largest residual of an equation of the cyclic system, scaled to factors and vectors of order one.
     pub residual: f64,
 }
 
-/// The vectors with `R_1 z_0 = z_1`, `R_2 z_1 = z_2`, ..., `R_count z_(count-1) = mu z_0` for a simple multiplier `mu`.
+/// The vectors with `R_1 z_0 = z_1`, `R_2 z_1 = z_2`, ..., `R_count z_(count-1) = mu z_0` for a simple
+/// multiplier `mu`.
 ///
-/// `factors` holds `R_1`, `R_2`, ... one after the other, each n-by-n and column-major. The multiplier should be accurate
-/// to rounding, as from [`multipliers`](super::periodic_schur::multipliers); one that is none shows in the residual. For
-/// a real multiplier the vectors are exactly real.
+/// `factors` holds `R_1`, `R_2`, ... one after the other, each n-by-n and column-major. The multiplier should
+/// be accurate to rounding, as from [`multipliers`](super::periodic_schur::multipliers); one that is none
+/// shows in the residual. For a real multiplier the vectors are exactly real.
 ///
 /// # Errors
 /// [`EigenvalueError`] when the shape is wrong or a number is not finite.
@@ -76,10 +77,12 @@ pub fn product_eigenvector(
     Ok(ProductEigenvector { vectors, residual })
 }
 
-/// The left eigenvectors: `w_0^H R_count ... R_1 = mu w_0^H`, with `w_j` belonging to the same place as `z_j`.
+/// The left eigenvectors: `w_0^H R_count ... R_1 = mu w_0^H`, with `w_j` belonging to the same place as
+/// `z_j`.
 ///
 /// The vectors run backwards: `R_count^T w_0 = w_(count-1)`, then `R_j^T w_j = w_(j-1)` down to `w_1`, and
-/// `R_1^T w_1 = conj(mu) w_0`. So `<w_j, z_j>` is the same for all `j` but zero, where it is smaller by the factor `mu`.
+/// `R_1^T w_1 = conj(mu) w_0`. So `<w_j, z_j>` is the same for all `j` but zero, where it is smaller by the
+/// factor `mu`.
 ///
 /// # Errors
 /// As [`product_eigenvector`].
@@ -128,7 +131,8 @@ impl CyclicSystem {
             factor.iter_mut().for_each(|x| *x = *x * a * b);
             exponents.push(i64::from(exponent) + scale_factor(factor, n, &scales));
         }
-        // Equal shares of the modulus; the argument goes to the last equation, so that a real multiplier stays real.
+        // Equal shares of the modulus; the argument goes to the last equation, so that a real multiplier
+        // stays real.
         let total: i64 = exponents.iter().sum();
         let mut shifts = vec![Complex64::ONE; count];
         if multiplier.log_modulus > f64::NEG_INFINITY {
@@ -162,7 +166,8 @@ impl CyclicSystem {
         largest
     }
 
-    /// Normalises by `z_0` and undoes the scaling of the equations: `z_(j+1)` gains the share of the first `j` ones.
+    /// Normalises by `z_0` and undoes the scaling of the equations: `z_(j+1)` gains the share of the first
+    /// `j` ones.
     fn follow(&self, vectors: &mut [Complex64], exponents: &[i64]) {
         let n = self.n;
         let (start, rest) = vectors.split_at_mut(n);
@@ -206,7 +211,8 @@ impl CyclicSystem {
     }
 }
 
-/// The elimination of one `z_j` from two block rows: columns of `z_j`, of `z_0` and of `z_(j+1)`, each `2 n` long.
+/// The elimination of one `z_j` from two block rows: columns of `z_j`, of `z_0` and of `z_(j+1)`, each `2 n`
+/// long.
 struct Step {
     n: usize,
     columns: Vec<Complex64>,

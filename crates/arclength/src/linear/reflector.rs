@@ -1,8 +1,8 @@
 //! Householder reflectors, the building block of every reduction in this folder.
 //!
-//! A reflector is `I - tau v v^T` with `v = (1, ...)`, chosen so that it maps a given vector onto a multiple of the first
-//! unit vector (Golub and Van Loan 2013, section 5.1). Squares of tiny components underflow and would spoil the
-//! orthogonality of the reflector, so tiny vectors are scaled up first.
+//! A reflector is `I - tau v v^T` with `v = (1, ...)`, chosen so that it maps a given vector onto a multiple
+//! of the first unit vector (Golub and Van Loan 2013, section 5.1). Squares of tiny components underflow and
+//! would spoil the orthogonality of the reflector, so tiny vectors are scaled up first.
 
 /// Below this square of a norm a vector is scaled up before its norm is taken.
 const TINY_SQUARE: f64 = 1e-200;
@@ -68,8 +68,9 @@ impl SmallReflector {
     }
 }
 
-/// Turns `vector` into the tail of the reflector that annihilates all but its first component, in place: on return
-/// `vector[0]` is `beta` and `vector[1..]` is `v[1..]`. Returns `tau`, zero when there is nothing to annihilate.
+/// Turns `vector` into the tail of the reflector that annihilates all but its first component, in place: on
+/// return `vector[0]` is `beta` and `vector[1..]` is `v[1..]`. Returns `tau`, zero when there is nothing to
+/// annihilate.
 pub(super) fn householder(vector: &mut [f64]) -> f64 {
     let Some((first, tail)) = vector.split_first_mut() else { return 0.0 };
     if tail.iter().all(|x| *x == 0.0) {

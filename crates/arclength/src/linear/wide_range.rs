@@ -1,8 +1,9 @@
 //! Numbers with an exponent of their own, for products of hundreds of matrices.
 //!
-//! A product of a thousand factors of modest size leaves the range of `f64` although every ratio that the periodic QR
-//! iteration asks for is harmless. A number is `significand * 2^(512 exponent)` with a significand between `2^-256` and
-//! `2^256`, so that multiplication rarely renormalises and no product of two significands overflows.
+//! A product of a thousand factors of modest size leaves the range of `f64` although every ratio that the
+//! periodic QR iteration asks for is harmless. A number is `significand * 2^(512 exponent)` with a
+//! significand between `2^-256` and `2^256`, so that multiplication rarely renormalises and no product of two
+//! significands overflows.
 
 use std::ops::{Add, Div, Mul, Sub};
 
