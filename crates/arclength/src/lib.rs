@@ -3,7 +3,7 @@
 //! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
 //! from forward-mode automatic differentiation ([`Dual`]).
 
-pub mod algebraic;
+mod algebraic;
 pub mod branch;
 pub mod continuation;
 pub mod cycle;

@@ -7,8 +7,8 @@
 mod jacobian;
 mod newton;
 mod scaled_lu;
-mod system;
 pub(crate) mod scales;
+mod system;
 
 pub(crate) use jacobian::Differentiator;
 pub(crate) use newton::{Solved, solve_square};

@@ -14,6 +14,8 @@ pub(crate) struct Solved {
 const MOST_UPDATES: usize = 25;
 /// Updates (relative to the scales) below which convergence has happened and only rounding is left.
 const CONVERGED: f64 = 1e-9;
+/// Slow updates (no quadratic convergence although close) after which the solution counts as singular.
+const MOST_SLOW_UPDATES: usize = 4;
 /// An update below this cannot be improved on.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -37,6 +39,7 @@ pub(crate) fn solve_square<P: AlgebraicProblem>(
     let mut unknown = start.to_vec();
     let mut best: Option<(f64, Solved)> = None;
     let mut previous = f64::INFINITY;
+    let mut slow = 0;
     for _ in 0..MOST_UPDATES {
         differentiator.jacobian(problem, &unknown, &mut update, &mut matrix, n);
         if update.iter().chain(&matrix).any(|entry| !entry.is_finite()) {
@@ -46,13 +49,21 @@ pub(crate) fn solve_square<P: AlgebraicProblem>(
             return best.map(|(_, solved)| solved).ok_or(CorrectionFailure::Singular);
         }
         lu.solve(&mut update);
-        let size =
-            update.iter().zip(scales).fold(0.0_f64, |largest, (step, scale)| largest.max((step / scale).abs()));
+        let size = update
+            .iter()
+            .zip(scales)
+            .fold(0.0_f64, |largest, (step, scale)| largest.max((step / scale).abs()));
         if !size.is_finite() {
             return best.map(|(_, solved)| solved).ok_or(CorrectionFailure::NotFinite);
         }
         for (entry, step) in unknown.iter_mut().zip(&update) {
             *entry -= step;
+        }
+        if previous < 1e-2 && size > 0.2 * previous && size > CONVERGED {
+            slow += 1;
+            if slow > MOST_SLOW_UPDATES {
+                return Err(CorrectionFailure::Diverged);
+            }
         }
         if size < CONVERGED {
             if best.as_ref().is_none_or(|(smallest, _)| size < *smallest) {

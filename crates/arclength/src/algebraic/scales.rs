@@ -10,8 +10,10 @@ use crate::field::VectorField;
 
 /// A variable is at least this part of what the others, in its units, are.
 const COUPLED_SHARE: f64 = 1e-2;
-/// A variable is at least this part of the distance over which the field is nonlinear.
+/// States smaller than this part of the distance over which the field is nonlinear count as zero,
 const NONLINEAR_SHARE: f64 = 1e-3;
+/// and their sizes are this part of it.
+const AT_ZERO: f64 = 0.1;
 /// Sweeps of balancing.
 const SWEEPS: usize = 30;
 
@@ -34,9 +36,10 @@ pub(crate) fn natural_scales<F: VectorField>(
             let own = |k: usize| state[k].abs().min(nonlinear[k]);
             let coupled = members().map(|k| own(k) / units[k]).fold(0.0, f64::max);
             let nonlinear = members().map(|k| nonlinear[k] / units[k]).fold(f64::INFINITY, f64::min);
-            let mut common = coupled;
-            if nonlinear.is_finite() {
-                common = common.max(NONLINEAR_SHARE * nonlinear);
+            let (mut common, mut share) = (coupled, COUPLED_SHARE);
+            if nonlinear.is_finite() && coupled < NONLINEAR_SHARE * nonlinear {
+                // The states are next to zero and say nothing about their sizes.
+                (common, share) = (AT_ZERO * nonlinear, 1.0);
             }
             if common == 0.0 {
                 let rate = (0..n * n)
@@ -44,12 +47,12 @@ pub(crate) fn natural_scales<F: VectorField>(
                     .map(|entry| (jacobian[entry] * units[entry / n] / units[entry % n]).abs())
                     .fold(0.0, f64::max);
                 let driven = members().map(|k| speed[k].abs() / units[k]).fold(0.0, f64::max);
-                common = driven / rate;
+                (common, share) = (driven / rate, 1.0);
             }
             if !(common.is_finite() && common > 0.0) {
-                common = 1.0;
+                (common, share) = (1.0, 1.0);
             }
-            let scale = own(index).max(COUPLED_SHARE * common * units[index]);
+            let scale = own(index).max(share * common * units[index]);
             if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
         })
         .collect()
@@ -136,7 +139,8 @@ fn nonlinear_lengths(
 
 /// Numbers the groups of states that influence each other, directly or through others.
 fn strongly_coupled(jacobian: &[f64], n: usize) -> Vec<usize> {
-    let mut reaches: Vec<bool> = (0..n * n).map(|entry| jacobian[entry] != 0.0 || entry / n == entry % n).collect();
+    let mut reaches: Vec<bool> =
+        (0..n * n).map(|entry| jacobian[entry] != 0.0 || entry / n == entry % n).collect();
     for middle in 0..n {
         for column in 0..n {
             if reaches[middle + n * column] {

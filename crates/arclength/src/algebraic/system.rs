@@ -74,7 +74,8 @@ impl<P: AlgebraicProblem> DenseSystem<P> {
 
     /// The scales of the first `count` unknowns grow to the ranges that the curve has covered.
     pub fn grow_scales(&mut self, unknown: &[f64], count: usize) {
-        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.scales).take(count) {
+        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.scales).take(count)
+        {
             *range = [range[0].min(*value), range[1].max(*value)];
             *scale = scale.max(range[1] - range[0]);
         }
@@ -125,7 +126,12 @@ pub(crate) fn position<P>(origin: &Solution<P>, unknown: &[f64], scales: &[f64])
 }
 
 /// The cubic through two solutions with their tangents, at a fraction of the way; `distance` is that between them.
-pub(crate) fn interpolate<P>(before: &Solution<P>, after: &Solution<P>, distance: f64, fraction: f64) -> Vec<f64> {
+pub(crate) fn interpolate<P>(
+    before: &Solution<P>,
+    after: &Solution<P>,
+    distance: f64,
+    fraction: f64,
+) -> Vec<f64> {
     let s = fraction;
     let step = s * s * (3.0 - 2.0 * s);
     let (departure, arrival) = (s * (1.0 - s) * (1.0 - s) * distance, s * s * (s - 1.0) * distance);

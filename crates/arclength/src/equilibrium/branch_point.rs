@@ -116,14 +116,16 @@ impl BranchPoint {
         };
         let null_size = length(&null_vector, &scales[..n]);
         let range = scales[n];
-        let (a, b, c) = (quadratic / (null_size * null_size), mixed * range / null_size, parametric * range * range);
+        let (a, b, c) =
+            (quadratic / (null_size * null_size), mixed * range / null_size, parametric * range * range);
         let discriminant = b * b - a * c;
         if !(discriminant > 0.0 && discriminant.is_finite()) {
             return Ok(None);
         }
         // Roots (alpha : beta) of a alpha^2 + 2 b alpha beta + c beta^2 without cancellation.
         let stable = -(b + discriminant.sqrt().copysign(b));
-        let roots = [(stable, a), (c, stable)].map(|(alpha, beta)| direction(alpha / null_size, beta * range));
+        let roots =
+            [(stable, a), (c, stable)].map(|(alpha, beta)| direction(alpha / null_size, beta * range));
         let along = |vector: &[f64]| {
             vector.iter().zip(tangent).zip(scales).map(|((x, y), s)| x / s * (y / s)).sum::<f64>()
         };
@@ -134,7 +136,8 @@ impl BranchPoint {
         if along(&own) < 0.0 {
             own.iter_mut().for_each(|entry| *entry = -*entry);
         }
-        let crossing = if a.abs() < PITCHFORK * b.abs() { Crossing::Pitchfork } else { Crossing::Transcritical };
+        let crossing =
+            if a.abs() < PITCHFORK * b.abs() { Crossing::Pitchfork } else { Crossing::Transcritical };
         let cubic = (crossing == Crossing::Pitchfork).then(|| {
             let correction = solve(&square.iter().map(|entry| -entry).collect::<Vec<_>>());
             let cubes = forms.real(&[&null_vector, &null_vector, &null_vector]);

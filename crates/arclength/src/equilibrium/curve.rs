@@ -72,7 +72,11 @@ impl<'a, F: VectorField> EquilibriumCurve<'a, F> {
 
     /// A branch point as a solution of the curve: the bordered Jacobian is singular there, the tangent that of the normal
     /// form.
-    pub fn at_branch_point(&mut self, unknown: Vec<f64>, point: BranchPoint) -> Result<Solution<Inspection>, Error> {
+    pub fn at_branch_point(
+        &mut self,
+        unknown: Vec<f64>,
+        point: BranchPoint,
+    ) -> Result<Solution<Inspection>, Error> {
         let matrix = self.jacobian(&unknown);
         let spectrum = Spectrum::of(&matrix, &mut self.workspace)?;
         let tangent = point.tangents[0].clone();
@@ -152,6 +156,11 @@ impl<F: VectorField> Curve for EquilibriumCurve<'_, F> {
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<f64> {
-        unknown.iter().zip(&self.first_scales).take(self.dimension()).map(|(value, scale)| value / scale).collect()
+        unknown
+            .iter()
+            .zip(&self.first_scales)
+            .take(self.dimension())
+            .map(|(value, scale)| value / scale)
+            .collect()
     }
 }

@@ -21,6 +21,8 @@ const SMALLEST_PART: f64 = 1e-7;
 const COINCIDENT_PART: f64 = 0.02;
 /// A test function that a cubic says shrinks to this part of the smaller of its end values is looked at.
 const SUSPICIOUS: f64 = 0.3;
+/// A rate of change of the parameter along the curve that may be rounding error.
+const UNDECIDED_FOLD: f64 = 1e-13;
 /// Rate of change of the parameter at a branch point, relative to its values around, below which the branch is tangential
 /// there: a pitchfork met on the branch that turns.
 const TANGENTIAL: f64 = 1e-3;
@@ -43,7 +45,8 @@ impl Changes {
     fn between(before: &Node, after: &Node) -> Self {
         let (one, other) = (&before.point, &after.point);
         Self {
-            fold: opposite(one.tests.fold, other.tests.fold),
+            fold: opposite(one.tests.fold, other.tests.fold)
+                && one.tests.fold.abs().max(other.tests.fold.abs()) > UNDECIDED_FOLD,
             branch_point: before.orientation * after.orientation < 0.0,
             hopf: opposite(one.tests.hopf, other.tests.hopf)
                 && one.spectrum.hopf_decided
@@ -137,7 +140,9 @@ pub(super) fn special_points<F: VectorField>(
     scan.part(before, after, 1.0)?;
     let mut found = scan.found;
     let scales = &curve.system.scales;
-    found.sort_by(|a, b| position(before, &a.unknown, scales).total_cmp(&position(before, &b.unknown, scales)));
+    found.sort_by(|a, b| {
+        position(before, &a.unknown, scales).total_cmp(&position(before, &b.unknown, scales))
+    });
     Ok(found)
 }
 

@@ -118,7 +118,16 @@ impl<'a, F: VectorField> CriticalPair<'a, F> {
         let product = inner(&left, &right);
         left.iter_mut().for_each(|entry| *entry /= product.conj());
         let scales = scales[..n].to_vec();
-        Ok(Self { field, state: state.to_vec(), parameters: parameters.to_vec(), frequency, scales, matrix, right, left })
+        Ok(Self {
+            field,
+            state: state.to_vec(),
+            parameters: parameters.to_vec(),
+            frequency,
+            scales,
+            matrix,
+            right,
+            left,
+        })
     }
 
     pub fn forms(&self) -> MultilinearForms<'_, F> {
@@ -147,7 +156,8 @@ impl<'a, F: VectorField> CriticalPair<'a, F> {
         if lu.factorize(m, &matrix, &columns) == 0.0 {
             return None;
         }
-        let parts = right_hand_side.iter().map(|entry| entry.re).chain(right_hand_side.iter().map(|entry| entry.im));
+        let parts =
+            right_hand_side.iter().map(|entry| entry.re).chain(right_hand_side.iter().map(|entry| entry.im));
         let mut vector: Vec<f64> = parts.collect();
         lu.solve(&mut vector);
         if vector.iter().any(|entry| !entry.is_finite()) {

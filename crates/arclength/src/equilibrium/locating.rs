@@ -34,7 +34,8 @@ fn near_zero<F: VectorField>(
     test: fn(&Tests) -> f64,
 ) -> Node {
     let settings = curve.settings;
-    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point.tests))) {
+    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point.tests)))
+    {
         Ok(Some(near)) => near,
         // Next to a branch point corrections fail, but the ends are good starts.
         _ if test(&before.point.tests).abs() < test(&after.point.tests).abs() => before.clone(),
@@ -209,7 +210,8 @@ pub(crate) fn normals(first: &[f64], second: &[f64], scales: &[f64]) -> Option<(
     let dual = |vector: &[f64]| -> Vec<f64> {
         vector.iter().zip(scales).map(|(entry, scale)| entry / (scale * scale)).collect()
     };
-    let against = |covector: &[f64], vector: &[f64]| -> f64 { covector.iter().zip(vector).map(|(a, b)| a * b).sum() };
+    let against =
+        |covector: &[f64], vector: &[f64]| -> f64 { covector.iter().zip(vector).map(|(a, b)| a * b).sum() };
     let mut normal = dual(first);
     let square = against(&normal, first);
     normal.iter_mut().for_each(|entry| *entry /= square);
@@ -258,7 +260,8 @@ pub(super) fn branch_point<F: VectorField>(
         if !inside(&scales, before, distance, &unknown) || solved.unknown[2 * n].abs() > UNPERTURBED * rate {
             continue;
         }
-        let tangent: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
+        let tangent: Vec<f64> =
+            before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
         let error = location_error(&solved);
         let Some(point) = BranchPoint::at(&curve.system.problem, &unknown, &tangent, &scales, error)? else {
             continue;

@@ -67,7 +67,8 @@ impl<F: VectorField> MultilinearForms<'_, F> {
         };
         let n = self.state.len();
         let state: Vec<T> = self.state.iter().enumerate().map(|(i, &value)| lift(i, value)).collect();
-        let parameters: Vec<T> = self.parameters.iter().enumerate().map(|(i, &value)| lift(n + i, value)).collect();
+        let parameters: Vec<T> =
+            self.parameters.iter().enumerate().map(|(i, &value)| lift(n + i, value)).collect();
         let mut image = vec![T::zero(); n];
         self.field.evaluate(&state, &parameters, &mut image);
         image.iter().map(Nested::mixed_derivative).collect()
@@ -79,7 +80,10 @@ impl<F: VectorField> MultilinearForms<'_, F> {
         let parts: Vec<[Vec<f64>; 2]> = directions
             .iter()
             .map(|direction| {
-                [direction.iter().map(|entry| entry.re).collect(), direction.iter().map(|entry| entry.im).collect()]
+                [
+                    direction.iter().map(|entry| entry.re).collect(),
+                    direction.iter().map(|entry| entry.im).collect(),
+                ]
             })
             .collect();
         let mut sum = vec![Complex64::ZERO; self.state.len()];

@@ -26,12 +26,7 @@ impl<F> Clone for EquilibriumProblem<'_, F> {
 
 impl<'a, F: VectorField> EquilibriumProblem<'a, F> {
     pub fn new(field: &'a F, parameters: &[f64], active: &[usize]) -> Self {
-        Self {
-            field,
-            parameters: parameters.to_vec(),
-            active: active.to_vec(),
-            dimension: field.dimension(),
-        }
+        Self { field, parameters: parameters.to_vec(), active: active.to_vec(), dimension: field.dimension() }
     }
 
     /// The full list of parameters at `values` of the active ones.
@@ -54,7 +49,13 @@ impl<'a, F: VectorField> EquilibriumProblem<'a, F> {
 
     /// Writes `f` into `value` and its derivative along `direction` into `image`; `direction` lies in the space of
     /// the unknowns and may stop after the states.
-    pub fn derivative_along<T: Scalar>(&self, unknown: &[T], direction: &[T], value: &mut [T], image: &mut [T]) {
+    pub fn derivative_along<T: Scalar>(
+        &self,
+        unknown: &[T],
+        direction: &[T],
+        value: &mut [T],
+        image: &mut [T],
+    ) {
         let lifted: Vec<Dual<T, 1>> = unknown
             .iter()
             .enumerate()

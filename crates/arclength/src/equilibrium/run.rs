@@ -127,8 +127,10 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
         observer: &mut dyn FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<EquilibriumBranch, Error> {
         let names = self.field.parameter_names();
-        let (name, range) = self.along.clone().ok_or_else(|| missing("along", "a parameter and its range"))?;
-        let parameters = self.parameters.clone().ok_or_else(|| missing("parameters", "a value for each parameter"))?;
+        let (name, range) =
+            self.along.clone().ok_or_else(|| missing("along", "a parameter and its range"))?;
+        let parameters =
+            self.parameters.clone().ok_or_else(|| missing("parameters", "a value for each parameter"))?;
         check_length("parameters", &parameters, names.len(), "the number of parameters")?;
         let active = names.iter().position(|candidate| *candidate == name).ok_or_else(|| Error::Invalid {
             name: "along".into(),
@@ -177,15 +179,19 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
         let sign = if lead.is_some_and(|entry| *entry < 0.0) { -1.0 } else { 1.0 } / size;
         tangent.iter_mut().for_each(|entry| *entry *= sign);
 
-        let mut observe = |solution: &Solution<Inspection>| observer(solution.unknown[n], &solution.unknown[..n]);
-        let mut run = |curve: &mut EquilibriumCurve<'_, F>, sign: f64| -> Result<Followed<Inspection>, Error> {
+        let mut observe =
+            |solution: &Solution<Inspection>| observer(solution.unknown[n], &solution.unknown[..n]);
+        let mut run = |curve: &mut EquilibriumCurve<'_, F>,
+                       sign: f64|
+         -> Result<Followed<Inspection>, Error> {
             let tangent: Vec<f64> = tangent.iter().map(|entry| sign * entry).collect();
             let leaves = |end: f64| (unknown[n] - end).abs() <= f64::EPSILON * end.abs() && departure == 0.0;
             if !vertical && leaves(if sign > 0.0 { bound.upper } else { bound.lower }) {
                 let value = unknown[n];
                 return Ok(Followed { solutions: Vec::new(), stop: Stop::RangeEnd { bound: 0, value } });
             }
-            let start = unknown.iter().zip(&tangent).map(|(value, slope)| value + departure * slope).collect();
+            let start =
+                unknown.iter().zip(&tangent).map(|(value, slope)| value + departure * slope).collect();
             follow(curve, start, tangent, &request, &mut observe)
         };
         let forward = run(&mut curve, 1.0)?;
@@ -201,10 +207,8 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
             }
             _ => None,
         };
-        let directions = [backward, forward].map(|followed| BranchDirection {
-            solutions: followed.solutions,
-            stop: followed.stop,
-        });
+        let directions = [backward, forward]
+            .map(|followed| BranchDirection { solutions: followed.solutions, stop: followed.stop });
         Ok(EquilibriumBranch::assemble(self.field, active, parameters, directions, middle))
     }
 }
