@@ -59,12 +59,27 @@ impl Wheel {
         let force_across = right_hand_side(&body, true, true, towing, state, &mut derivative);
         let [.., forward_speed, yaw_rate] = *state;
         let [.., forward_acceleration, yaw_acceleration] = derivative;
+        self.ground_force(
+            forward_acceleration,
+            forward_speed * yaw_rate,
+            body.static_moment * yaw_acceleration - force_across,
+        )
+    }
+
+    /// `centripetal_acceleration` is `V Omega`; `remaining` is `m Omega' - F2`.
+    #[inline]
+    pub(crate) fn ground_force(
+        &self,
+        forward_acceleration: f64,
+        centripetal_acceleration: f64,
+        remaining: f64,
+    ) -> ContactForce {
         let mass = self.get(Key::MW) + self.get(Key::MC);
         let wheel_radius = self.get(Key::WheelRadius);
         let normal = self.normal_force();
         ContactForce {
             longitudinal: -(self.get(Key::JWxi) / (wheel_radius * wheel_radius)) * forward_acceleration,
-            lateral: mass * forward_speed * yaw_rate + body.static_moment * yaw_acceleration - force_across,
+            lateral: mass * centripetal_acceleration + remaining,
             normal,
             limit: self.get(Key::MuS) * normal,
         }

@@ -15,6 +15,7 @@
 //! the king pin, `F_x = -k_u u - c_u u'` and `F_y = -k_q q - c_q q'`, has the components `F1` along the caster, from
 //! wheel to king pin, and `F2` across it.
 
+use crate::active::ActiveParameters;
 use crate::error::KingpinError;
 use crate::lanes::Arithmetic;
 use crate::parameters::Key;
@@ -118,17 +119,6 @@ where
     force_across
 }
 
-/// Where a quantity of the towing comes from.
-#[derive(Clone, Copy, Debug)]
-enum Towing {
-    /// Neither `r` nor `curvature` is active: the curvature is this number.
-    Fixed(f64),
-    /// `curvature` is the active parameter at this index.
-    Curvature(usize),
-    /// `r` is the active parameter at this index.
-    Radius(usize),
-}
-
 /// A rolling wheel with some of its parameters active: a vector field over the states [`STATE_NAMES`].
 ///
 /// ```
@@ -143,13 +133,7 @@ enum Towing {
 /// ```
 #[derive(Clone, Debug)]
 pub struct RollingWheel {
-    wheel: Wheel,
-    active: Vec<Key>,
-    /// Index of `v` among the active parameters.
-    speed: Option<usize>,
-    towing: Towing,
-    /// The body, where no active parameter changes it.
-    fixed_body: Option<Body<f64>>,
+    active: ActiveParameters,
     damped: bool,
     about_king_pin: bool,
 }
@@ -162,43 +146,15 @@ impl Wheel {
     /// [`AmbiguousStiffness`](KingpinError::AmbiguousStiffness) and, where `k_u = inf`,
     /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
     pub fn rolling(&self, active: &[Key]) -> Result<RollingWheel, KingpinError> {
-        self.check_active(active)?;
-        if self.get(Key::KU).is_infinite() && !active.contains(&Key::K) {
+        if self.get(Key::KU).is_infinite() {
             return Err(KingpinError::LateralElasticityOnly);
         }
-        let index = |key: Key| active.iter().position(|&candidate| candidate == key);
-        let towing = match (index(Key::Curvature), index(Key::TurningRadius)) {
-            (Some(curvature), _) => Towing::Curvature(curvature),
-            (None, Some(radius)) => Towing::Radius(radius),
-            (None, None) => Towing::Fixed(self.get(Key::Curvature)),
-        };
-        // These act on the towing, or on the ground only.
-        let beside_the_body =
-            [Key::V, Key::TurningRadius, Key::Curvature, Key::G, Key::MuS, Key::MuD, Key::FAz];
-        let fixed = active.iter().all(|key| beside_the_body.contains(key));
-        let acts = |key: Key| self.get(key) != 0.0 || active.contains(&key);
+        let active = ActiveParameters::new(self, active)?;
         Ok(RollingWheel {
-            wheel: *self,
-            active: active.to_vec(),
-            speed: index(Key::V),
-            towing,
-            fixed_body: fixed.then(|| self.body()),
-            damped: acts(Key::CU) || acts(Key::CQ),
-            about_king_pin: acts(Key::CPsi) || acts(Key::KPsi),
+            damped: active.matters(Key::CU) || active.matters(Key::CQ),
+            about_king_pin: active.matters(Key::CPsi) || active.matters(Key::KPsi),
+            active,
         })
-    }
-
-    /// That these keys may vary together, starting from this wheel.
-    pub(crate) fn check_active(&self, active: &[Key]) -> Result<(), KingpinError> {
-        Key::check_independent(active)?;
-        let (longitudinal, lateral) = (self.get(Key::KU), self.get(Key::KQ));
-        if active.contains(&Key::K) && longitudinal != lateral {
-            return Err(KingpinError::AmbiguousStiffness { longitudinal, lateral });
-        }
-        if active.contains(&Key::TurningRadius) && self.get(Key::TurningRadius).is_infinite() {
-            return Err(KingpinError::InfiniteRadius);
-        }
-        Ok(())
     }
 
     #[inline]
@@ -210,17 +166,17 @@ impl Wheel {
 impl RollingWheel {
     /// The wheel with the values that it was made with.
     pub fn wheel(&self) -> &Wheel {
-        &self.wheel
+        self.active.wheel()
     }
 
     /// The active keys, in the order of the parameters.
     pub fn active(&self) -> &[Key] {
-        &self.active
+        self.active.keys()
     }
 
     /// The values of the active keys in [`wheel`](Self::wheel): the parameters to start from.
     pub fn parameters(&self) -> Vec<f64> {
-        self.active.iter().map(|&key| self.wheel.get(key)).collect()
+        self.active.values()
     }
 
     /// The wheel at other values of the active keys.
@@ -228,19 +184,7 @@ impl RollingWheel {
     /// # Errors
     /// [`OutOfRange`](KingpinError::OutOfRange).
     pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
-        self.active
-            .iter()
-            .zip(parameters)
-            .try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, value))
-    }
-
-    /// The value of a key where the parameters are these.
-    fn value<T: Scalar>(&self, key: Key, parameters: &[T]) -> T {
-        let sets = |active: &Key| *active == key || active.sets().contains(&key);
-        match self.active.iter().position(sets) {
-            Some(index) => parameters[index],
-            None => T::from(self.wheel.get(key)),
-        }
+        self.active.wheel_at(parameters)
     }
 }
 
@@ -250,7 +194,7 @@ impl VectorField for RollingWheel {
     }
 
     fn parameter_names(&self) -> Vec<String> {
-        self.active.iter().map(Key::to_string).collect()
+        self.active.names()
     }
 
     fn dimension(&self) -> usize {
@@ -259,21 +203,13 @@ impl VectorField for RollingWheel {
 
     #[inline]
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        let v = match self.speed {
-            Some(index) => parameters[index],
-            None => T::from(self.wheel.get(Key::V)),
-        };
-        let omega = match self.towing {
-            Towing::Fixed(curvature) => v * curvature,
-            Towing::Curvature(index) => v * parameters[index],
-            Towing::Radius(index) => v / parameters[index],
-        };
+        let towing = self.active.towing(parameters);
         let (damped, about_king_pin) = (self.damped, self.about_king_pin);
-        match &self.fixed_body {
-            Some(body) => right_hand_side(body, damped, about_king_pin, (v, omega), state, derivative),
+        match self.active.fixed_body() {
+            Some(body) => right_hand_side(body, damped, about_king_pin, towing, state, derivative),
             None => {
-                let body = Body::new(|key| self.value(key, parameters));
-                right_hand_side(&body, damped, about_king_pin, (v, omega), state, derivative)
+                let body = self.active.body(parameters);
+                right_hand_side(&body, damped, about_king_pin, towing, state, derivative)
             }
         };
     }

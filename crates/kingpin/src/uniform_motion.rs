@@ -122,7 +122,7 @@ impl Wheel {
         UniformMotion { wheel: *self, state, residual: largest(&derivative(self, &state)) }
     }
 
-    fn no_uniform_motion(&self, reason: NoUniformMotion) -> KingpinError {
+    pub(crate) fn no_uniform_motion(&self, reason: NoUniformMotion) -> KingpinError {
         let [v, l, r] = [Key::V, Key::L, Key::TurningRadius].map(|key| self.get(key));
         KingpinError::NoUniformMotion { v, l, r, reason }
     }
@@ -154,7 +154,7 @@ impl Wheel {
     }
 
     /// The closed form, for the wheel in which `k_u` is replaced by `k_q`.
-    fn isotropic_uniform_state(&self, body: &Body<f64>) -> Result<[f64; 5], NoUniformMotion> {
+    pub(crate) fn isotropic_uniform_state(&self, body: &Body<f64>) -> Result<[f64; 5], NoUniformMotion> {
         let v = self.get(Key::V);
         if v == 0.0 {
             return Err(NoUniformMotion::Standstill);

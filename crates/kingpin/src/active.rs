@@ -1,0 +1,124 @@
+//! Which parameters of a wheel a vector field takes as its arguments.
+//!
+//! Everything that no active parameter changes is computed once, in `f64`, so that derivatives are not carried through it.
+
+use crate::error::KingpinError;
+use crate::parameters::Key;
+use crate::rolling::Body;
+use crate::wheel::Wheel;
+use arclength::Scalar;
+
+/// Parameters that act on the towing or on the ground, not on the body.
+const BESIDE_THE_BODY: [Key; 7] =
+    [Key::V, Key::TurningRadius, Key::Curvature, Key::G, Key::MuS, Key::MuD, Key::FAz];
+
+/// Where the curvature of the towing path comes from.
+#[derive(Clone, Copy, Debug)]
+enum Path {
+    /// It is this number.
+    Fixed(f64),
+    /// It is the active parameter at this index.
+    Curvature(usize),
+    /// Its reciprocal is the active parameter at this index.
+    Radius(usize),
+}
+
+/// A wheel of which some parameters are active.
+#[derive(Clone, Debug)]
+pub(crate) struct ActiveParameters {
+    wheel: Wheel,
+    keys: Vec<Key>,
+    /// Index of `v` among the active parameters.
+    speed: Option<usize>,
+    path: Path,
+    fixed_body: Option<Body<f64>>,
+}
+
+impl ActiveParameters {
+    /// # Errors
+    /// That these keys cannot vary together, or not from this wheel.
+    pub fn new(wheel: &Wheel, keys: &[Key]) -> Result<Self, KingpinError> {
+        Key::check_independent(keys)?;
+        let (longitudinal, lateral) = (wheel.get(Key::KU), wheel.get(Key::KQ));
+        if keys.contains(&Key::K) && longitudinal != lateral {
+            return Err(KingpinError::AmbiguousStiffness { longitudinal, lateral });
+        }
+        if keys.contains(&Key::TurningRadius) && wheel.get(Key::TurningRadius).is_infinite() {
+            return Err(KingpinError::InfiniteRadius);
+        }
+        let index = |key: Key| keys.iter().position(|&candidate| candidate == key);
+        let path = match (index(Key::Curvature), index(Key::TurningRadius)) {
+            (Some(curvature), _) => Path::Curvature(curvature),
+            (None, Some(radius)) => Path::Radius(radius),
+            (None, None) => Path::Fixed(wheel.get(Key::Curvature)),
+        };
+        let fixed = keys.iter().all(|key| BESIDE_THE_BODY.contains(key));
+        Ok(Self {
+            wheel: *wheel,
+            keys: keys.to_vec(),
+            speed: index(Key::V),
+            path,
+            fixed_body: fixed.then(|| wheel.body()),
+        })
+    }
+
+    pub fn wheel(&self) -> &Wheel {
+        &self.wheel
+    }
+
+    pub fn keys(&self) -> &[Key] {
+        &self.keys
+    }
+
+    pub fn names(&self) -> Vec<String> {
+        self.keys.iter().map(Key::to_string).collect()
+    }
+
+    /// The values of the active keys in the wheel.
+    pub fn values(&self) -> Vec<f64> {
+        self.keys.iter().map(|&key| self.wheel.get(key)).collect()
+    }
+
+    /// The wheel at other values of the active keys.
+    pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+        self.keys.iter().zip(parameters).try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, value))
+    }
+
+    /// Whether the parameter is active or not zero.
+    pub fn matters(&self, key: Key) -> bool {
+        self.wheel.get(key) != 0.0 || self.keys.contains(&key)
+    }
+
+    /// Towing speed and yaw rate.
+    #[inline(always)]
+    pub fn towing<T: Scalar>(&self, parameters: &[T]) -> (T, T) {
+        let v = match self.speed {
+            Some(index) => parameters[index],
+            None => T::from(self.wheel.get(Key::V)),
+        };
+        let omega = match self.path {
+            Path::Fixed(curvature) => v * curvature,
+            Path::Curvature(index) => v * parameters[index],
+            Path::Radius(index) => v / parameters[index],
+        };
+        (v, omega)
+    }
+
+    /// The body, where no active parameter changes it.
+    #[inline(always)]
+    pub fn fixed_body(&self) -> Option<&Body<f64>> {
+        self.fixed_body.as_ref()
+    }
+
+    /// The body at these values of the active parameters.
+    #[inline]
+    pub fn body<T: Scalar>(&self, parameters: &[T]) -> Body<T> {
+        Body::new(|key| {
+            let sets = |active: &Key| *active == key || active.sets().contains(&key);
+            match self.keys.iter().position(sets) {
+                Some(index) => parameters[index],
+                None => T::from(self.wheel.get(key)),
+            }
+        })
+    }
+}

@@ -1,0 +1,294 @@
+//! The rolling wheel with lateral elasticity only, `k_u = inf`.
+//!
+//! The king pin cannot move along the towing direction: `u = 0`. Three states are left, and the forward speed follows
+//! from them (Takács, Stépán and Hogan, "Isolated large amplitude periodic motions of towed rigid wheels", 2008):
+//!
+//! ```text
+//! V cos psi = v - omega q - l Omega sin psi
+//! q'        = -V sin psi + l Omega cos psi
+//! psi'      = omega - Omega
+//! (J Omega' + m V Omega) - l tan psi (M V' - m Omega^2) = l F_y/cos psi - c_psi (Omega - omega) + k_psi psi
+//! ```
+//!
+//! with `F_y = -k_q q - c_q q'`. `V'` contains `Omega'`; the equation is solved for the latter. At `psi = pi/2` the
+//! constraints leave `V` free and the field is not defined.
+
+use crate::active::ActiveParameters;
+use crate::characteristic::roots;
+use crate::contact::ContactForce;
+use crate::error::{KingpinError, NoUniformMotion};
+use crate::hurwitz::is_stable_cubic;
+use crate::parameters::Key;
+use crate::rolling::Body;
+use crate::wheel::Wheel;
+use arclength::{Dual, Scalar, VectorField};
+use num_complex::Complex64;
+use std::ops::Mul;
+
+/// Names of the states: lateral displacement of the king pin in m, caster angle in rad, absolute yaw rate of the caster
+/// in rad/s.
+pub const LATERAL_STATE_NAMES: [&str; 3] = ["q", "psi", "Omega"];
+
+/// Newton's method for the caster angle stops when the step is below this, in rad.
+const NEWTON_TOLERANCE: f64 = 1e-15;
+/// Newton's method gives up after this many steps.
+const NEWTON_STEPS: usize = 50;
+
+/// What follows from the constraints at a state.
+struct Kinematics<T> {
+    forward_speed: T,
+    forward_acceleration: T,
+}
+
+/// The equations, once for all scalars.
+#[inline(always)]
+fn right_hand_side<T, C>(
+    body: &Body<C>,
+    (v, omega): (T, T),
+    state: &[T],
+    derivative: &mut [T],
+) -> Kinematics<T>
+where
+    T: Scalar + Mul<C, Output = T>,
+    C: Copy,
+{
+    let (q, psi, yaw_rate) = (state[0], state[1], state[2]);
+    let (sine, cosine) = psi.sin_cos();
+    let tangent = sine / cosine;
+    let lateral_speed = yaw_rate * body.caster_length;
+    let forward_speed = (v - omega * q - lateral_speed * sine) / cosine;
+    let q_rate = lateral_speed * cosine - forward_speed * sine;
+    let psi_rate = omega - yaw_rate;
+    // V' = free - l tan psi Omega'
+    let free = (tangent * forward_speed - lateral_speed) * psi_rate - omega * q_rate / cosine;
+
+    let force_y = -(q * body.lateral_stiffness + q_rate * body.lateral_damping);
+    let moving_static_moment = yaw_rate * body.static_moment;
+    let about_king_pin = psi * body.rotational_stiffness + psi_rate * body.rotational_damping;
+    let along = free * body.rolling_mass - moving_static_moment * yaw_rate;
+    let moment =
+        force_y * body.caster_length / cosine + about_king_pin + (tangent * along) * body.caster_length
+            - moving_static_moment * forward_speed;
+    let arm = tangent * body.caster_length;
+    let inertia = arm * arm * body.rolling_mass + T::one() * body.yaw_inertia;
+
+    derivative[0] = q_rate;
+    derivative[1] = psi_rate;
+    derivative[2] = moment / inertia;
+    Kinematics { forward_speed, forward_acceleration: free - arm * derivative[2] }
+}
+
+/// A rolling wheel with lateral elasticity only, some of its parameters active: a vector field over the states
+/// [`LATERAL_STATE_NAMES`].
+#[derive(Clone, Debug)]
+pub struct LateralWheel {
+    active: ActiveParameters,
+}
+
+/// The uniform motion of a wheel with lateral elasticity only.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LateralUniformMotion {
+    wheel: Wheel,
+    state: [f64; 3],
+}
+
+impl Wheel {
+    /// The wheel with lateral elasticity only, as a vector field in which the given keys are the parameters.
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel};
+    /// let wheel = Wheel::from_toml("k_u = inf\nc_q = 0.05\nr = inf\nl = 0.04")?;
+    /// assert_eq!(wheel.lateral(&[Key::V])?.parameters(), [4.0]);
+    /// assert!(!wheel.lateral_uniform_motion()?.is_stable());
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`LongitudinalElasticity`](KingpinError::LongitudinalElasticity) unless `k_u = inf`, and those of
+    /// [`rolling`](Self::rolling) for keys that cannot vary.
+    pub fn lateral(&self, active: &[Key]) -> Result<LateralWheel, KingpinError> {
+        self.check_lateral()?;
+        if [Key::K, Key::KU, Key::CU].iter().any(|key| active.contains(key)) {
+            return Err(KingpinError::LongitudinalElasticity { longitudinal: self.get(Key::KU) });
+        }
+        Ok(LateralWheel { active: ActiveParameters::new(self, active)? })
+    }
+
+    /// The uniform motion of the wheel with lateral elasticity only.
+    ///
+    /// # Errors
+    /// [`LongitudinalElasticity`](KingpinError::LongitudinalElasticity) unless `k_u = inf`;
+    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails.
+    pub fn lateral_uniform_motion(&self) -> Result<LateralUniformMotion, KingpinError> {
+        self.check_lateral()?;
+        let state = self.lateral_uniform_state().map_err(|reason| self.no_uniform_motion(reason))?;
+        Ok(LateralUniformMotion { wheel: *self, state })
+    }
+
+    fn check_lateral(&self) -> Result<(), KingpinError> {
+        let longitudinal = self.get(Key::KU);
+        if longitudinal.is_infinite() {
+            Ok(())
+        } else {
+            Err(KingpinError::LongitudinalElasticity { longitudinal })
+        }
+    }
+
+    /// Without a spring about the king pin the closed form. With it one equation is left,
+    /// `sin psi (1 - k_psi psi cos psi/(k l r)) = (l - a0)/r`.
+    fn lateral_uniform_state(&self) -> Result<[f64; 3], NoUniformMotion> {
+        let body = self.body();
+        let [_, q, angle, _, omega] = self.isotropic_uniform_state(&body)?;
+        if body.rotational_stiffness == 0.0 || omega == 0.0 {
+            return Ok([q, angle, omega]);
+        }
+        let (v, curvature) = (self.get(Key::V), self.get(Key::Curvature));
+        let elastic = body.lateral_stiffness * body.caster_length;
+        let weight = curvature * body.rotational_stiffness / elastic;
+        let equation = |psi: Dual<f64, 1>| psi.sin() * (-(psi * psi.cos() * weight) + 1.0) - angle.sin();
+        let mut psi = angle;
+        for _ in 0..NEWTON_STEPS {
+            let Dual { value, derivatives: [slope] } = equation(Dual::variable(psi, 0));
+            let step = value / slope;
+            psi -= step;
+            if step.abs() < NEWTON_TOLERANCE {
+                // q = (k_psi psi cos psi - m omega^2 l/sin psi)/(k l), in which omega/sin psi stays finite.
+                let moment = body.rotational_stiffness * psi * psi.cos();
+                let centripetal = body.static_moment * omega * v * body.caster_length * curvature / psi.sin();
+                return Ok([(moment - centripetal) / elastic, psi, omega]);
+            }
+        }
+        Err(NoUniformMotion::NotFound { residual: equation(Dual::constant(psi)).value.abs() })
+    }
+}
+
+impl LateralWheel {
+    /// The wheel with the values that it was made with.
+    pub fn wheel(&self) -> &Wheel {
+        self.active.wheel()
+    }
+
+    /// The active keys, in the order of the parameters.
+    pub fn active(&self) -> &[Key] {
+        self.active.keys()
+    }
+
+    /// The values of the active keys in [`wheel`](Self::wheel): the parameters to start from.
+    pub fn parameters(&self) -> Vec<f64> {
+        self.active.values()
+    }
+
+    /// The wheel at other values of the active keys.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](KingpinError::OutOfRange).
+    pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+        self.active.wheel_at(parameters)
+    }
+
+    /// Forward speed `V` of the wheel in m/s at a state `(q, psi, Omega)`.
+    pub fn forward_speed(&self, state: &[f64; 3]) -> f64 {
+        let wheel = self.wheel();
+        let towing = (wheel.get(Key::V), wheel.towing_yaw_rate());
+        right_hand_side(&wheel.body(), towing, state, &mut [0.0; 3]).forward_speed
+    }
+
+    /// The force of the ground on the wheel at a state `(q, psi, Omega)`. The longitudinal force on the king pin, which
+    /// holds it at `u = 0`, is on the way: `M V' - m Omega^2 = F1`.
+    pub fn contact_force(&self, state: &[f64; 3]) -> ContactForce {
+        let wheel = self.wheel();
+        let body = wheel.body();
+        let mut derivative = [0.0; 3];
+        let towing = (wheel.get(Key::V), wheel.towing_yaw_rate());
+        let Kinematics { forward_speed, forward_acceleration } =
+            right_hand_side(&body, towing, state, &mut derivative);
+        let [q, psi, yaw_rate] = *state;
+        let [q_rate, _, yaw_acceleration] = derivative;
+        let force_y = -body.lateral_stiffness * q - body.lateral_damping * q_rate;
+        let force_along = body.rolling_mass * forward_acceleration - body.static_moment * yaw_rate * yaw_rate;
+        let force_x = (force_along + force_y * psi.sin()) / psi.cos();
+        let force_across = force_x * psi.sin() + force_y * psi.cos();
+        wheel.ground_force(
+            forward_acceleration,
+            forward_speed * yaw_rate,
+            body.static_moment * yaw_acceleration - force_across,
+        )
+    }
+}
+
+impl VectorField for LateralWheel {
+    fn state_names(&self) -> Vec<String> {
+        LATERAL_STATE_NAMES.map(str::to_owned).into()
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        self.active.names()
+    }
+
+    fn dimension(&self) -> usize {
+        LATERAL_STATE_NAMES.len()
+    }
+
+    #[inline]
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let towing = self.active.towing(parameters);
+        match self.active.fixed_body() {
+            Some(body) => right_hand_side(body, towing, state, derivative),
+            None => right_hand_side(&self.active.body(parameters), towing, state, derivative),
+        };
+    }
+}
+
+impl LateralUniformMotion {
+    /// The wheel that moves.
+    pub fn wheel(&self) -> &Wheel {
+        &self.wheel
+    }
+
+    /// The state `(q, psi, Omega)`.
+    pub fn state(&self) -> [f64; 3] {
+        self.state
+    }
+
+    /// Largest component of the vector field at the state; zero but for rounding.
+    pub fn residual(&self) -> f64 {
+        self.linearisation().map(|component| component.value.abs()).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The Jacobian of the vector field, row by row.
+    pub fn jacobian(&self) -> [[f64; 3]; 3] {
+        self.linearisation().map(|component| component.derivatives)
+    }
+
+    fn linearisation(&self) -> [Dual<f64, 3>; 3] {
+        let state: [Dual<f64, 3>; 3] = std::array::from_fn(|index| Dual::variable(self.state[index], index));
+        let towing = [self.wheel.get(Key::V), self.wheel.towing_yaw_rate()].map(Dual::constant);
+        let mut derivative = [Dual::constant(0.0); 3];
+        right_hand_side(&self.wheel.body(), towing.into(), &state, &mut derivative);
+        derivative
+    }
+
+    /// The coefficients of the characteristic polynomial `s^3 + c1 s^2 + c2 s + c3`.
+    pub fn characteristic_polynomial(&self) -> [f64; 3] {
+        let a = self.jacobian();
+        let minor = |i: usize, j: usize| a[i][i] * a[j][j] - a[i][j] * a[j][i];
+        let cofactor = |i: usize, j: usize| a[1][i] * a[2][j] - a[1][j] * a[2][i];
+        let determinant = a[0][0] * cofactor(1, 2) - a[0][1] * cofactor(0, 2) + a[0][2] * cofactor(0, 1);
+        [-(a[0][0] + a[1][1] + a[2][2]), minor(0, 1) + minor(0, 2) + minor(1, 2), -determinant]
+    }
+
+    /// The eigenvalues in 1/s, largest real part first.
+    pub fn eigenvalues(&self) -> [Complex64; 3] {
+        roots(&self.characteristic_polynomial())
+    }
+
+    /// The largest real part of the eigenvalues, in 1/s.
+    pub fn growth_rate(&self) -> f64 {
+        self.eigenvalues()[0].re
+    }
+
+    /// Whether the uniform motion is linearly stable, by the Routh-Hurwitz conditions.
+    pub fn is_stable(&self) -> bool {
+        is_stable_cubic(&self.characteristic_polynomial())
+    }
+}
