@@ -173,9 +173,9 @@ impl OdeError {
     }
 
     /// Fills in the text of the source line, which the parser does not carry along.
-    pub(crate) fn with_source(mut self, source: &str) -> Self {
+    pub(crate) fn with_source(mut self, lines: &[&str]) -> Self {
         if let Some(place) = self.place_mut() {
-            place.fill(source);
+            place.fill(lines);
         }
         self
     }
@@ -203,8 +203,8 @@ impl Warning {
         Self { place: span.into(), message: message.into() }
     }
 
-    pub(crate) fn with_source(mut self, source: &str) -> Self {
-        self.place.fill(source);
+    pub(crate) fn with_source(mut self, lines: &[&str]) -> Self {
+        self.place.fill(lines);
         self
     }
 }
@@ -216,8 +216,8 @@ impl fmt::Display for Warning {
 }
 
 impl Place {
-    pub(crate) fn fill(&mut self, source: &str) {
-        self.source_line = crate::source::physical_lines(source).nth(self.line - 1).unwrap_or("").to_owned();
+    pub(crate) fn fill(&mut self, lines: &[&str]) {
+        self.source_line = lines.get(self.line - 1).copied().unwrap_or_default().to_owned();
     }
 }
 
@@ -242,12 +242,20 @@ impl From<Span> for Place {
 
 /// The candidate spelled most like `name`, if any is close enough to be a slip of the finger.
 pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    /// Jaro-Winkler similarity below which a suggestion would confuse more than help.
-    const CLOSE: f64 = 0.75;
+    /// Similarity (one minus the edits per letter) below which a suggestion would mislead.
+    const CLOSE: f64 = 0.6;
+    /// Longest names that are compared: the work grows as the product of the lengths.
+    const LONGEST: usize = 40;
     let name = name.to_lowercase();
+    if name.len() > LONGEST {
+        return None;
+    }
     candidates
         .into_iter()
-        .map(|candidate| (strsim::jaro_winkler(&name, &candidate.to_lowercase()), candidate))
+        .filter(|candidate| candidate.len() <= LONGEST)
+        .map(|candidate| {
+            (strsim::normalized_damerau_levenshtein(&name, &candidate.to_lowercase()), candidate)
+        })
         .filter(|(similarity, _)| *similarity >= CLOSE)
         .max_by(|a, b| a.0.total_cmp(&b.0).then_with(|| b.1.cmp(a.1)))
         .map(|(_, candidate)| candidate.to_owned())

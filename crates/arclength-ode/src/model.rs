@@ -6,7 +6,7 @@ use crate::error::{OdeError, Place, Warning};
 use crate::expand::expanded_lines;
 use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
-use crate::source::decode;
+use crate::source::{decode, physical_lines};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
 use arclength::{Scalar, VectorField};
 
@@ -55,7 +55,8 @@ impl Model {
     /// differential equations.
     pub fn parse(source: &str) -> Result<Self, OdeError> {
         let source = source.strip_prefix('\u{feff}').unwrap_or(source);
-        read(source).map_err(|error| error.with_source(source))
+        let lines: Vec<&str> = physical_lines(source).collect();
+        read(source, &lines).map_err(|error| error.with_source(&lines))
     }
 
     /// Reads a model from the bytes of a file, in UTF-8 or else in Latin-1.
@@ -204,9 +205,8 @@ fn position(names: &[String], name: &str) -> Option<usize> {
     names.iter().position(|candidate| candidate.eq_ignore_ascii_case(name))
 }
 
-fn read(source: &str) -> Result<Model, OdeError> {
-    let lines = expanded_lines(source)?;
-    let mut declarations = Declarations::read(&lines)?;
+fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
+    let mut declarations = Declarations::read(&expanded_lines(source)?)?;
     if declarations.equations.is_empty() {
         return Err(OdeError::NoEquations);
     }
@@ -251,7 +251,8 @@ fn read(source: &str) -> Result<Model, OdeError> {
         })
     };
     let field = compile(&field, states)?;
-    let time = if field.uses_time() { lowering.time.map(|span| filled(span.into(), source)) } else { None };
+    let time =
+        if field.uses_time() { lowering.time.map(|span| filled(span.into(), source_lines)) } else { None };
     let auxiliary = compile(&auxiliary, states)?;
     let derivation = compile(&derivation, 0)?;
     let initial = compile(&initial, 0)?;
@@ -261,14 +262,14 @@ fn read(source: &str) -> Result<Model, OdeError> {
     drop(lowering);
     let sets = std::mem::take(&mut declarations.sets)
         .iter()
-        .map(|set| named_set(set, &declarations, source))
+        .map(|set| named_set(set, &declarations, source_lines))
         .collect::<Result<_, _>>()?;
     let mut options = declarations.options;
     for entry in &mut options.entries {
-        entry.place = filled(entry.place.clone(), source);
+        entry.place = filled(entry.place.clone(), source_lines);
     }
     let mut warnings: Vec<Warning> =
-        warnings.into_iter().map(|warning| warning.with_source(source)).collect();
+        warnings.into_iter().map(|warning| warning.with_source(source_lines)).collect();
     warnings.sort_by_key(|warning| (warning.place.line, warning.place.column));
     warnings.dedup();
 
@@ -301,15 +302,15 @@ fn read(source: &str) -> Result<Model, OdeError> {
     })
 }
 
-fn filled(mut place: Place, source: &str) -> Place {
-    place.fill(source);
+fn filled(mut place: Place, source_lines: &[&str]) -> Place {
+    place.fill(source_lines);
     place
 }
 
 fn named_set(
     definition: &SetDefinition,
     declarations: &Declarations,
-    source: &str,
+    source_lines: &[&str],
 ) -> Result<NamedSet, OdeError> {
     let mut set = NamedSet {
         name: definition.name.text.clone(),
@@ -328,7 +329,7 @@ fn named_set(
             _ => set.options.push(OptionEntry {
                 name: name.key(),
                 value: value.clone(),
-                place: filled(name.span.into(), source),
+                place: filled(name.span.into(), source_lines),
             }),
         }
     }

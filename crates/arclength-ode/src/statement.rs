@@ -53,6 +53,9 @@ pub(crate) enum Statement {
 /// Directives as XPPAUT knows them, for suggestions.
 const DIRECTIVES: [&str; 9] = ["par", "number", "init", "aux", "set", "options", "bdry", "only", "done"];
 
+/// Largest number of arguments of a function.
+const MAXIMUM_ARGUMENTS: usize = 100;
+
 /// Spellings of the directive that gives a boundary condition.
 const BOUNDARY: [&str; 4] = ["b", "bdry", "bndry", "boundary"];
 
@@ -154,6 +157,10 @@ fn with_parentheses(line: &Text, name: Name, open: usize) -> Result<Statement, O
             return Err(OdeError::syntax(line.span(start, start + 1), message));
         }
         arguments.push(Name { text: line.string(start, end), span: line.span(start, end) });
+        if arguments.len() > MAXIMUM_ARGUMENTS {
+            let what = "a function with too many arguments".into();
+            return Err(OdeError::TooLarge { place: name.span.into(), what, limit: MAXIMUM_ARGUMENTS });
+        }
         position = line.skip_blanks(end);
         match line.at(position) {
             ',' => position += 1,

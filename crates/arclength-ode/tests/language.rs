@@ -1,0 +1,268 @@
+//! The language, statement by statement.
+
+use arclength::VectorField;
+use arclength_ode::Model;
+use std::f64::consts::{E, PI};
+
+fn read(source: &str) -> Model {
+    Model::parse(source).unwrap_or_else(|error| panic!("{}", error.snippet()))
+}
+
+/// The value of an expression at x = 0.1, a = 2, b = 3, t = 0.
+fn value(expression: &str) -> f64 {
+    let model = read(&format!("x'=0\npar a=2,b=3\ninit x=.1\naux k={expression}\n"));
+    let mut values = [f64::NAN];
+    model.evaluate_auxiliary(0.0, &[0.1], &[2.0, 3.0], &mut values);
+    values[0]
+}
+
+fn field(model: &Model) -> Vec<f64> {
+    let parameters = model.default_parameters();
+    let mut derivative = vec![f64::NAN; model.dimension()];
+    model.evaluate(&model.initial_state(parameters), parameters, &mut derivative);
+    derivative
+}
+
+#[test]
+fn operators_have_the_precedence_of_xppaut() {
+    // What XPPAUT 6.11 prints for these.
+    for (expression, expected) in [
+        ("2^3^2", 64.0),
+        ("2**3", 8.0),
+        ("-2^2", -4.0),
+        ("-a*b^2", -18.0),
+        ("-a^2*b", -12.0),
+        ("8/2/2", 2.0),
+        ("2-3-4", -5.0),
+        ("a+b>3", 2.0),
+        ("a*b>3", 0.0),
+        ("-a>1", -1.0),
+        ("a>1&b<4", 1.0),
+        ("a>1|b>4", 1.0),
+        ("a>b>3", 0.0),
+        ("not(a>3)", 1.0),
+        ("a&b", 1.0),
+        ("a==2", 1.0),
+        ("if(a+b>3)then(1)else(2)", 1.0),
+        ("if(x>1)then(2)else(3)+1", 4.0),
+        ("sum(1,3)of(i'*i')", 14.0),
+        ("mod(-1,3)", 2.0),
+        ("heav(0)", 1.0),
+        ("flr(-1.5)", -2.0),
+        ("sign(-3)", -1.0),
+        ("1e-3+.5+2.", 2.501),
+        ("-(-1)", 1.0),
+        ("sin (x)", 0.1_f64.sin()),
+    ] {
+        assert!((value(expression) - expected).abs() < 1e-12, "{expression} is {}", value(expression));
+    }
+}
+
+#[test]
+fn what_xppaut_cannot_read_is_read_as_it_is_meant() {
+    for (expression, expected) in [
+        ("a*-1", -2.0),
+        ("x>-1", 1.0),
+        ("2^-1", 0.5),
+        ("2*-a^2", -8.0),
+        ("--1", 1.0),
+        ("+1", 1.0),
+        ("a != 3 && b <> 4", 1.0),
+        ("ceil(1.5)", 2.0),
+        ("log2(8)", 3.0),
+    ] {
+        assert!((value(expression) - expected).abs() < 1e-12, "{expression} is {}", value(expression));
+    }
+}
+
+#[test]
+fn functions() {
+    for (expression, expected) in [
+        ("exp(1)", E),
+        ("ln(b)+log(b)", 2.0 * 3.0_f64.ln()),
+        ("log10(1000)", 3.0),
+        ("sqrt(a)", 2.0_f64.sqrt()),
+        ("tan(x)+sinh(x)+cosh(x)+tanh(x)", 0.1_f64.tan() + 0.1_f64.exp() + 0.1_f64.tanh()),
+        ("asin(x)+acos(x)", PI / 2.0),
+        ("atan2(a,-b)", 2.0_f64.atan2(-3.0)),
+        ("abs(a-b)+max(a,b)+min(a,b)", 6.0),
+        ("erf(x)+erfc(x)", 1.0),
+        ("besselj(0,1)", 0.765_197_686_557_966_6),
+        ("cos(pi)+t", -1.0),
+        ("a^x*(-a)^3", -8.0 * 2.0_f64.powf(0.1)),
+        ("mod(7.5,b)", 1.5),
+    ] {
+        assert!((value(expression) - expected).abs() < 1e-12, "{expression} is {}", value(expression));
+    }
+}
+
+#[test]
+fn equations_in_all_spellings() {
+    let model = read("x'=1\ndy/dt = 2\n  z ' = 3\nDW/DT=4\n");
+    assert_eq!(model.states(), ["x", "y", "z", "W"]);
+    assert_eq!(field(&model), [1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn initial_data_in_all_spellings() {
+    let model = read(
+        "x'=0\ny'=0\nz'=0\nw'=0\nu'=0\nv'=0\npar a=3\ninit x=1, y = -2\ni z=.5 w=1e-3\nu(0)=a^2\nv (0) = -4\n",
+    );
+    assert_eq!(model.initial_state(&[3.0]), [1.0, -2.0, 0.5, 1e-3, 9.0, -4.0]);
+    assert_eq!(model.initial_state(&[1.0])[4], 1.0);
+}
+
+#[test]
+fn parameters_in_all_spellings() {
+    let model = read("x'=k\npar a=1,b=2 c=3\nparam d = 4 , e=-5.\nP f=1e3\nparams g=2;h=3\nnumber k=7\n");
+    assert_eq!(model.parameters(), ["a", "b", "c", "d", "e", "f", "g", "h"]);
+    assert_eq!(model.default_parameters(), [1.0, 2.0, 3.0, 4.0, -5.0, 1e3, 2.0, 3.0]);
+    assert_eq!(model.numbers(), [("k".to_owned(), 7.0)]);
+    assert_eq!(field(&model), [7.0]);
+}
+
+#[test]
+fn a_formula_as_a_value_is_computed_with_a_warning() {
+    let model = read("x'=a+b\npar a=1/4, b\n");
+    assert_eq!(model.default_parameters(), [0.25, 0.0]);
+    assert_eq!(model.warnings().len(), 2);
+    assert_eq!((model.warnings()[0].place.line, model.warnings()[0].place.column), (2, 7));
+}
+
+#[test]
+fn names_do_not_tell_upper_from_lower_case() {
+    let model = read("V' = -GK*n + Phi(v)\nN'=0\npar gK=2\nphi(U)=u^2\ninit V=3,N=1\n");
+    assert_eq!(field(&model)[0], -2.0 + 9.0);
+    assert_eq!(model.states(), ["V", "N"]);
+    assert_eq!(model.state_index("n"), Some(1));
+    assert_eq!(model.parameter_index("GK"), Some(0));
+}
+
+#[test]
+fn functions_see_parameters_quantities_and_their_arguments_first() {
+    let model = read("x'=f(2,x)\nf(a,y)=a*y+k*g(y)\ng(z)=z+b\nk=10*b\npar a=100,b=3\ninit x=1\n");
+    assert_eq!(field(&model), [2.0 + 30.0 * 4.0]);
+    assert_eq!(model.functions(), ["f(a,y)", "g(z)"]);
+}
+
+#[test]
+fn derived_parameters_follow_the_parameters() {
+    let model = read("x'=c*x\npar a=2\n!b=a^2\n!c=b+1\ninit x=1\n");
+    assert_eq!(model.derived_names(), ["b", "c"]);
+    let mut derivative = [0.0];
+    model.evaluate(&[1.0], &[3.0], &mut derivative);
+    assert_eq!(derivative, [10.0]);
+    let mut values = [0.0; 2];
+    model.evaluate_derived(&[3.0], &mut values);
+    assert_eq!(values, [9.0, 10.0]);
+}
+
+#[test]
+fn quantities_used_before_their_definition_earn_a_warning() {
+    let ordered = read("b=2*x\na=b+1\nx'=a\ninit x=5\n");
+    let reversed = read("a=b+1\nb=2*x\nx'=a\ninit x=5\n");
+    assert_eq!(field(&ordered), [11.0]);
+    assert_eq!(field(&reversed), [11.0]);
+    assert!(ordered.warnings().is_empty());
+    assert_eq!((reversed.warnings()[0].place.line, reversed.warnings()[0].place.column), (1, 3));
+}
+
+#[test]
+fn arrays_expand_as_text() {
+    let model = read(
+        "x0'=0\nx[1..3]'=-x[j]+[j]*k[j]+x[j-1]\npar k[1..3]=.5\ninit x[0..3]=[j]\ny[3..1]'=[j*2]\naux s[1..2]=x[j+1]\n",
+    );
+    assert_eq!(model.states(), ["x0", "x1", "x2", "x3", "y3", "y2", "y1"]);
+    assert_eq!(model.parameters(), ["k1", "k2", "k3"]);
+    assert_eq!(field(&model), [0.0, -0.5, 0.0, 0.5, 6.0, 4.0, 2.0]);
+    assert_eq!(model.auxiliary_names(), ["s1", "s2"]);
+}
+
+#[test]
+fn blocks_expand_line_by_line() {
+    let model = read("%[1..2]\nx[j]'=y[j]\ny[j]'=-[j]*x[j]\nx[j](0)=[j]\n%\nz'=x[2]\n");
+    assert_eq!(model.states(), ["x1", "y1", "x2", "y2", "z"]);
+    assert_eq!(field(&model), [0.0, -1.0, 0.0, -4.0, 2.0]);
+}
+
+#[test]
+fn sums_and_shifts_are_unrolled() {
+    let model = read(
+        "u[0..4]'=sum(0,4)of(shift(u0,i')*([j]+1))-shift(p0,[j])\npar p[0..4]=[j]\ninit u[0..4]=[j]\n\
+         v'=sum(0,3)of(if(i'<3)then(shift(u2,i'))else(100))\n",
+    );
+    assert_eq!(field(&model), [10.0, 19.0, 28.0, 37.0, 46.0, 2.0 + 3.0 + 4.0 + 100.0]);
+}
+
+#[test]
+fn named_sets_and_options() {
+    let model = read(
+        "x'=a\npar a=1\nset fast {a=3, x = 2, total=50}\n@ total=100,dt=.1 DSMAX=.5, parmin=-1 xplot=x\n\
+         @ meth=cvode,ntst=60,maxstor=10000,autoxmin=0 wibble=3\ndone\n",
+    );
+    let set = model.set("FAST").expect("declared");
+    assert_eq!((set.parameters.as_slice(), set.states.as_slice()), (&[(0, 3.0)][..], &[(0, 2.0)][..]));
+    assert_eq!((set.options[0].name.as_str(), set.options[0].value.as_str()), ("total", "50"));
+    let options = model.options();
+    assert_eq!(
+        (options.total, options.dt, options.dsmax, options.parmin),
+        (Some(100.0), Some(0.1), Some(0.5), Some(-1.0))
+    );
+    assert_eq!((options.ntst, options.autoxmin), (Some(60.0), Some(0.0)));
+    assert_eq!((options.xp.as_deref(), options.method.as_deref()), (Some("x"), Some("cvode")));
+    assert_eq!(options.get("MaxStor"), Some("10000"));
+    assert_eq!(model.warnings().len(), 1, "{:?}", model.warnings());
+    assert!(model.warnings()[0].message.contains("wibble"));
+}
+
+#[test]
+fn time_makes_a_model_nonautonomous_only_where_it_matters() {
+    let forced = read("x'=-x+a*cos(w*t)\npar a=1,w=2\n");
+    assert!(!forced.is_autonomous());
+    let place = forced.time_dependence().expect("t is used");
+    assert_eq!((place.line, place.column), (1, 15));
+    let mut derivative = [0.0];
+    forced.evaluate_at(0.5, &[0.25], &[1.0, 2.0], &mut derivative);
+    assert_eq!(derivative, [-0.25 + 1.0_f64.cos()]);
+    forced.evaluate(&[0.25], &[1.0, 2.0], &mut derivative);
+    assert_eq!(derivative, [0.75]);
+    // A function that names its argument t, and a quantity that only an output uses.
+    assert!(read("f(t)=t^2\ns=sin(t)\nx'=-f(x)\naux s=s\n").is_autonomous());
+}
+
+#[test]
+fn text_of_any_origin() {
+    let plain = "par a=2\nx'=-a*x+\\\n  y\ny'=1\ndone\nanything ' at all\n";
+    let expected = field(&read(plain));
+    assert_eq!(field(&read(&plain.replace('\n', "\r\n"))), expected);
+    assert_eq!(field(&read(&plain.replace('\n', "\r"))), expected);
+    assert_eq!(field(&read(&plain.replace(' ', "\t"))), expected);
+    assert_eq!(field(&read(&format!("\u{feff}{plain}"))), expected);
+    let latin = [b"# mod\xe8le d'Erment\xdfrout\n".as_slice(), plain.as_bytes()].concat();
+    let model = Model::parse_bytes(&latin).expect("Latin-1 is read");
+    assert_eq!(field(&model), expected);
+    assert_eq!(field(&read(model.source())), expected);
+}
+
+#[test]
+fn what_has_no_meaning_here_is_ignored_with_a_warning() {
+    let model = read("x'=y # a remark\ny'=-x\n\" {x=1} a note\nb x-1\nbdry (x'-y)\nonly x\noption file\nd\n");
+    assert_eq!(model.states(), ["x", "y"]);
+    assert_eq!(model.warnings().len(), 4, "{:?}", model.warnings());
+}
+
+#[test]
+fn comparisons_inside_arithmetic_earn_a_warning() {
+    assert!(read("x'=if(x>1&x<2)then(x)else((x>1)*2)\n").warnings().is_empty());
+    assert_eq!(read("x'=if(x+1>2)then(1)else(0)\n").warnings().len(), 1);
+    assert_eq!(read("x'=-x>1\n").warnings().len(), 1);
+}
+
+#[test]
+fn large_models_run_from_the_heap() {
+    let source = "u[0..299]'=-u[j]+sum(0,299)of(shift(u0,i')*cos(i'*[j]))\ninit u[0..299]=1\n";
+    let model = read(source);
+    assert!(model.register_count() > 256);
+    let expected: f64 = (0..300).map(|i| (f64::from(i) * 7.0).cos()).sum();
+    assert!((field(&model)[7] - (expected - 1.0)).abs() < 1e-9);
+}
