@@ -402,7 +402,8 @@ impl<'a> Lowering<'a> {
     ) -> Result<NodeId, OdeError> {
         let low = self.constant(low, span, "the lower limit of `sum`")?.trunc();
         let high = self.constant(high, span, "the upper limit of `sum`")?.trunc();
-        if !(high - low < MAXIMUM_WORK as f64) {
+        // Neither limit may be infinite or no number.
+        if (high - low).is_nan() || high - low >= MAXIMUM_WORK as f64 {
             let what = "the sum has too many terms".into();
             return Err(OdeError::TooLarge { place: span.into(), what, limit: MAXIMUM_WORK });
         }
