@@ -16,6 +16,7 @@
 //! ```
 
 mod active;
+pub mod basin;
 pub mod boundary;
 pub mod branches;
 pub mod characteristic;

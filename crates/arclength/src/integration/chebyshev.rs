@@ -11,6 +11,11 @@ const DEGREE: usize = 16;
 const RESOLUTION: f64 = 1e-10;
 /// Number of trailing coefficients that must be small.
 const TAIL: usize = 3;
+/// Trailing coefficients this small beside the largest that do not fall when an interval is halved are noise: the
+/// function is not known better.
+const LARGEST_NOISE: f64 = 1e-4;
+/// Factor by which halving must reduce what is no noise; a smooth function that is nearly resolved gives 1e-4.
+const NOISE_RATIO: f64 = 0.1;
 /// Points between the nodes where the interpolant is compared with the function.
 const PROBES: [f64; 2] = [-0.535_898_384_862_245, 0.267_949_192_431_123];
 /// Tolerance at the probes, relative to the largest coefficient.
@@ -25,7 +30,8 @@ const NARROWEST_PIECE: f64 = 1e-9;
 pub(super) struct ChebyshevPartition {
     nodes: [f64; DEGREE + 1],
     matrix: [[f64; DEGREE + 1]; DEGREE + 1],
-    pieces: Vec<(f64, f64)>,
+    /// Intervals to visit, with the size of the trailing coefficients on the interval of which each is a half.
+    pieces: Vec<(f64, f64, f64)>,
 }
 
 impl ChebyshevPartition {
@@ -52,8 +58,8 @@ impl ChebyshevPartition {
         mut visit: impl FnMut(f64, f64) -> bool,
     ) {
         self.pieces.clear();
-        self.pieces.push((0.0, 1.0));
-        while let Some((left, right)) = self.pieces.pop() {
+        self.pieces.push((0.0, 1.0, f64::INFINITY));
+        while let Some((left, right, tail_before)) = self.pieces.pop() {
             let half = 0.5 * (right - left);
             let fraction = |x: f64| left + (x + 1.0) * half;
             let values: [f64; DEGREE + 1] = self.nodes.map(|x| function(fraction(x)));
@@ -64,10 +70,13 @@ impl ChebyshevPartition {
             let largest = coefficients.iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
             let tail =
                 coefficients[DEGREE + 1 - TAIL..].iter().fold(0.0_f64, |largest, c| largest.max(c.abs()));
-            let resolved = tail <= RESOLUTION * largest
-                && PROBES.iter().all(|&x| {
-                    (evaluate(&coefficients, x) - function(fraction(x))).abs() <= PROBE_TOLERANCE * largest
-                });
+            let is_noise = tail <= LARGEST_NOISE * largest && tail > NOISE_RATIO * tail_before;
+            let resolved = is_noise
+                || tail <= RESOLUTION * largest
+                    && PROBES.iter().all(|&x| {
+                        (evaluate(&coefficients, x) - function(fraction(x))).abs()
+                            <= PROBE_TOLERANCE * largest
+                    });
             if resolved {
                 let keep_on = visit_pieces_of(&coefficients, -1.0, 1.0, &mut |x| {
                     visit(fraction(x), function(fraction(x)))
@@ -76,8 +85,8 @@ impl ChebyshevPartition {
                     return;
                 }
             } else if half > 0.5f64.powi(DEEPEST_HALVING as i32 + 1) {
-                self.pieces.push((left + half, right));
-                self.pieces.push((left, left + half));
+                self.pieces.push((left + half, right, tail));
+                self.pieces.push((left, left + half, tail));
             } else {
                 for (x, value) in self.nodes.iter().zip(&values).skip(1) {
                     if !visit(fraction(*x), *value) {
@@ -178,6 +187,18 @@ mod tests {
             let found = count_sign_changes(|x| (std::f64::consts::PI * (f64::from(count) * x + 0.25)).sin());
             assert_eq!(found, count as usize);
         }
+    }
+
+    #[test]
+    fn noise_is_not_resolved_further() {
+        let mut evaluations = 0;
+        let noisy = |x: f64| {
+            evaluations += 1;
+            let noise = (x.to_bits().wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / (1u64 << 53) as f64;
+            x - 0.37 + 1e-7 * noise
+        };
+        ChebyshevPartition::new().visit_pieces(noisy, |_, _| true);
+        assert!(evaluations < 300, "{evaluations}");
     }
 
     #[test]

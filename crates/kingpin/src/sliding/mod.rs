@@ -39,7 +39,7 @@ pub use history::SlidingHistory;
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
-use arclength::integration::{Event, Integrator, Solution, autonomous, from_fn};
+use arclength::integration::{Event, Integrator, Solution, Stepper, autonomous, from_fn};
 use model::{Equations, S1, S2, SlipState};
 
 /// Names of the states: as those of the rolling wheel, with `V1` and `V2` the velocity of the wheel centre along and across the
@@ -286,13 +286,32 @@ impl SlidingWheel {
             equations.derivative(state, equations.sliding_force(state), derivative);
         });
         let slip_squared = |x: &[f64]| x[S1] * x[S1] + x[S2] * x[S2];
-        let mut events =
-            [Event::new(|_, x| slip_squared(x) - VANISHING_SLIP * VANISHING_SLIP).falling().terminal()];
         // Without friction there is nothing special about zero slip.
-        let events = if equations.static_limit == 0.0 { &mut [] } else { &mut events[..] };
-        let mut solution = self.while_sliding.with_events(system, start, state, end, times, events)?;
+        let vanishing = if equations.static_limit == 0.0 { 0.0 } else { VANISHING_SLIP * VANISHING_SLIP };
+        // The direction of vanishing slip turns ever faster, so the steps shrink with the slip and cannot jump over zero:
+        // looking at the end of each step is enough.
+        let mut stepper = Stepper::new(system, &self.while_sliding, start, state, end)?;
+        let mut solution = Solution::default();
+        let mut vanished = false;
+        loop {
+            let reached = stepper.time();
+            for &time in times[solution.times.len()..].iter().take_while(|&&time| time <= reached) {
+                let from = solution.states.len();
+                solution.states.resize(from + state.len(), 0.0);
+                stepper.prepare_dense_output();
+                stepper.interpolate(time, &mut solution.states[from..]);
+                solution.times.push(time);
+            }
+            if stepper.is_finished() || vanished {
+                break;
+            }
+            stepper.advance()?;
+            vanished = slip_squared(stepper.state()) < vanishing;
+        }
+        solution.time = stepper.time();
+        solution.state = stepper.state().to_vec();
         let mut state = as_slip_state(&solution.state);
-        if solution.ended_by.is_none() {
+        if !vanished {
             return Ok((solution, HybridState { contact: Contact::Sliding, state }));
         }
         // The rest of the way to zero slip is a straight line.

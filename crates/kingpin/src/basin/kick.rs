@@ -1,0 +1,154 @@
+//! The smallest disturbance from which the wheel does not return.
+
+use super::{ClassificationSettings, ContactModel, Destinations, Fate};
+use crate::parameters::Key;
+use crate::simulation::SimulationError;
+use crate::wheel::Wheel;
+use rayon::prelude::*;
+
+/// Magnitudes that are tried, at equal distances, before the first failure is narrowed down.
+const SCAN: usize = 64;
+/// The magnitude is narrowed down to this, relative to the largest one.
+const RESOLUTION: f64 = 1e-9;
+
+/// A kind of disturbance of the uniform motion. Magnitudes may be negative: the other direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Disturbance {
+    /// A sideways blow of so many N s across the caster, on the rim of the wheel, `R` ahead of its centre. In ideal rolling the ground
+    /// takes the sideways momentum and the moment turns the caster; a wheel that may slide also moves sideways.
+    Impulse,
+    /// The caster is released at an angle of so many rad from the uniform motion, not turning in the towing frame.
+    ReleaseAngle,
+    /// The towing speed rises by so many m/s at once, to that of the wheel.
+    Jolt,
+    /// From straight towing the curvature of the path becomes so many 1/m at once, in place of that of the wheel.
+    StepSteer,
+}
+
+impl Disturbance {
+    /// Unit of the magnitude.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Disturbance::Impulse => "N s",
+            Disturbance::ReleaseAngle => "rad",
+            Disturbance::Jolt => "m/s",
+            Disturbance::StepSteer => "1/m",
+        }
+    }
+
+    /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W).
+    fn apply(
+        self,
+        wheel: &Wheel,
+        model: ContactModel,
+        magnitude: f64,
+    ) -> Result<(Wheel, [f64; 7]), SimulationError> {
+        let rolling = |[u, q, psi, speed, yaw]: [f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
+        let start = |wheel: &Wheel| Ok::<_, SimulationError>(rolling(wheel.uniform_motion()?.state()));
+        match self {
+            Disturbance::Impulse => {
+                let mut state = start(wheel)?;
+                let body = wheel.body();
+                let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
+                // Ahead is along +e1; the yaw rate counts from e2 to e1.
+                let moment = magnitude * wheel.get(Key::WheelRadius);
+                match model {
+                    ContactModel::Rolling => state[5] += moment * body.inverse_yaw_inertia,
+                    ContactModel::Sliding => {
+                        let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
+                        state[4] +=
+                            (body.yaw_inertia * magnitude - body.static_moment * moment) / determinant;
+                        state[5] += (mass * moment - body.static_moment * magnitude) / determinant;
+                    }
+                }
+                Ok((*wheel, state))
+            }
+            Disturbance::ReleaseAngle => {
+                let mut state = start(wheel)?;
+                state[2] += magnitude;
+                Ok((*wheel, state))
+            }
+            Disturbance::Jolt => Ok((*wheel, start(&wheel.with(Key::V, wheel.get(Key::V) - magnitude)?)?)),
+            Disturbance::StepSteer => {
+                let state = start(&wheel.with(Key::Curvature, 0.0)?)?;
+                Ok((wheel.with(Key::Curvature, magnitude)?, state))
+            }
+        }
+    }
+}
+
+/// The edge of what the wheel returns from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SafeKick {
+    /// Largest magnitude, below the first failure, from which it was seen to return.
+    pub returns: f64,
+    /// Smallest magnitude, next to that, from which it does not.
+    pub fails: f64,
+    /// What becomes of it from there.
+    pub fate: Fate,
+    /// The wheel after the disturbance that fails: at the edge its motion lingers where the basin ends.
+    pub wheel: Wheel,
+    /// State (u, q, psi, V1, V2, Omega, W) after the disturbance that fails.
+    pub state: [f64; 7],
+}
+
+impl SafeKick {
+    /// Finds the smallest disturbance up to `largest` from which the uniform motion does not return: the first
+    /// failure among equidistant magnitudes, narrowed down by bisection. `None` if there is no failure.
+    ///
+    /// Not to have returned within the duration counts as failure, and near the edge of a basin motions linger: the duration
+    /// must be long beside the time in which they leave the edge (the unstable cycle).
+    ///
+    /// # Errors
+    /// A largest magnitude that is zero or not finite, or a magnitude on the way at which there is no uniform motion.
+    pub fn find(
+        wheel: &Wheel,
+        model: ContactModel,
+        settings: ClassificationSettings,
+        disturbance: Disturbance,
+        largest: f64,
+    ) -> Result<Option<Self>, SimulationError> {
+        if !largest.is_finite() || largest == 0.0 {
+            return Err(SimulationError::out_of_range("largest disturbance", largest, "finite and not 0"));
+        }
+        let fate = |magnitude: f64| {
+            let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
+            Destinations::new(&wheel, model, settings)?.of_sliding_state(&state)
+        };
+        let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
+        let scanned: Vec<Fate> =
+            (0..=SCAN).into_par_iter().map(|index| fate(magnitude(index))).collect::<Result<_, _>>()?;
+        let Some(first) = scanned.iter().position(|&fate| fate != Fate::UniformMotion) else {
+            return Ok(None);
+        };
+        let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
+        let mut beyond = scanned[first];
+        while (fails - returns).abs() > RESOLUTION * largest.abs() {
+            let middle = 0.5 * (returns + fails);
+            match fate(middle)? {
+                Fate::UniformMotion => returns = middle,
+                other => (fails, beyond) = (middle, other),
+            }
+        }
+        let (wheel, state) = disturbance.apply(wheel, model, fails)?;
+        Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))
+    }
+
+    /// Finds the smallest disturbance at each value of a parameter, as [`find`](Self::find) does: the margin of safety.
+    ///
+    /// # Errors
+    /// A value that is not allowed, and as [`find`](Self::find).
+    pub fn along(
+        wheel: &Wheel,
+        model: ContactModel,
+        settings: ClassificationSettings,
+        disturbance: Disturbance,
+        largest: f64,
+        (key, values): (Key, &[f64]),
+    ) -> Result<Vec<Option<Self>>, SimulationError> {
+        values
+            .par_iter()
+            .map(|&value| Self::find(&wheel.with(key, value)?, model, settings, disturbance, largest))
+            .collect()
+    }
+}

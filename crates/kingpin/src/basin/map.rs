@@ -1,0 +1,228 @@
+//! Fates over grids and random samples of initial states, in tiles.
+
+use super::{Destinations, Fate};
+use crate::rolling::STATE_NAMES;
+use crate::simulation::SimulationError;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Initial states in one tile.
+const TILE: usize = 64;
+
+/// A state that is varied between two values; the states that are not varied are those of the uniform motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    state: usize,
+    from: f64,
+    to: f64,
+}
+
+impl Axis {
+    /// The state with this name from one value to another, as an amount by which it differs from the uniform motion.
+    ///
+    /// # Errors
+    /// An unknown name or a value that is not finite.
+    pub fn new(name: &str, from: f64, to: f64) -> Result<Self, SimulationError> {
+        let state = STATE_NAMES.iter().position(|&candidate| candidate == name).ok_or_else(|| {
+            SimulationError::UnknownState { given: name.to_owned(), allowed: STATE_NAMES.join(", ") }
+        })?;
+        for value in [from, to] {
+            if !value.is_finite() {
+                return Err(SimulationError::out_of_range(name, value, "a finite range"));
+            }
+        }
+        Ok(Self { state, from, to })
+    }
+
+    /// Name of the state.
+    pub fn name(&self) -> &'static str {
+        STATE_NAMES[self.state]
+    }
+
+    /// The value at a fraction of the way.
+    pub fn value(&self, fraction: f64) -> f64 {
+        self.from + fraction * (self.to - self.from)
+    }
+}
+
+/// Fates of the states of one tile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tile {
+    /// Index of the tile.
+    pub index: usize,
+    /// Index of its first state.
+    pub first: usize,
+    /// Fates of its states.
+    pub fates: Vec<Fate>,
+}
+
+/// How many of a sample had a fate, with an interval for the share in the population.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fraction {
+    /// The fate.
+    pub fate: Fate,
+    /// How many had it.
+    pub count: usize,
+    /// Their share.
+    pub share: f64,
+    /// Wilson's interval of confidence 95 % for the share.
+    pub interval: (f64, f64),
+}
+
+/// Initial states whose fates are to be found, divided into tiles.
+///
+/// A tile depends on nothing but its states, so tiles can be computed in any order, in several runs.
+///
+/// ```
+/// use kingpin::Wheel;
+/// use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
+/// use std::sync::atomic::AtomicBool;
+///
+/// let settings = ClassificationSettings { duration: 20.0 };
+/// let destinations = Destinations::new(&Wheel::default(), ContactModel::Rolling, settings)?;
+/// let axes = [Axis::new("psi", -0.2, 0.2)?, Axis::new("Omega", -5.0, 5.0)?];
+/// let map = BasinMap::grid(&destinations, &axes, [6, 4])?;
+/// let fates = map.run(&AtomicBool::new(false), |_| false, |_tile| {})?;
+/// assert_eq!(fates.len(), 1);
+/// assert_eq!(fates[0].fates, vec![Fate::UniformMotion; 24]);
+/// # Ok::<(), kingpin::simulation::SimulationError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct BasinMap<'a> {
+    destinations: &'a Destinations,
+    initial: Vec<[f64; 5]>,
+}
+
+impl<'a> BasinMap<'a> {
+    /// A grid with `counts` points on each of two axes, ends included; the second axis is the outer one.
+    ///
+    /// # Errors
+    /// Fewer than two points on an axis, or no uniform motion.
+    pub fn grid(
+        destinations: &'a Destinations,
+        axes: &[Axis; 2],
+        counts: [usize; 2],
+    ) -> Result<Self, SimulationError> {
+        for count in counts {
+            if count < 2 {
+                return Err(SimulationError::out_of_range("number of points", count as f64, "at least 2"));
+            }
+        }
+        let origin = destinations.wheel().uniform_motion()?.state();
+        let fraction = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        let mut initial = Vec::with_capacity(counts[0] * counts[1]);
+        for outer in 0..counts[1] {
+            for inner in 0..counts[0] {
+                let mut state = origin;
+                state[axes[0].state] += axes[0].value(fraction(inner, counts[0]));
+                state[axes[1].state] += axes[1].value(fraction(outer, counts[1]));
+                initial.push(state);
+            }
+        }
+        Ok(Self { destinations, initial })
+    }
+
+    /// Independent states, uniformly distributed in the box of the axes. The same seed gives the same states.
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn samples(
+        destinations: &'a Destinations,
+        axes: &[Axis],
+        count: usize,
+        seed: u64,
+    ) -> Result<Self, SimulationError> {
+        let origin = destinations.wheel().uniform_motion()?.state();
+        let initial = (0..count)
+            .map(|index| {
+                let mut state = origin;
+                for (dimension, axis) in axes.iter().enumerate() {
+                    let counter = (index * axes.len() + dimension) as u64;
+                    state[axis.state] += axis.value(uniform_number(seed, counter));
+                }
+                state
+            })
+            .collect();
+        Ok(Self { destinations, initial })
+    }
+
+    /// The initial states, in order.
+    pub fn initial_states(&self) -> &[[f64; 5]] {
+        &self.initial
+    }
+
+    /// Number of tiles.
+    pub fn tiles(&self) -> usize {
+        self.initial.len().div_ceil(TILE)
+    }
+
+    /// Computes the tiles that are not `finished` on all cores, until all are done or `cancelled` is set. Every new tile is
+    /// handed to `on_tile` as soon as it is known, for progress and for keeping; all new tiles are returned in order.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed.
+    pub fn run(
+        &self,
+        cancelled: &AtomicBool,
+        finished: impl Fn(usize) -> bool + Sync,
+        on_tile: impl Fn(&Tile) + Sync,
+    ) -> Result<Vec<Tile>, SimulationError> {
+        let compute = |index: usize| {
+            if cancelled.load(Ordering::Relaxed) {
+                return None;
+            }
+            let first = index * TILE;
+            let states = &self.initial[first..self.initial.len().min(first + TILE)];
+            let tile = self.destinations.of(states).map(|fates| Tile { index, first, fates });
+            if let Ok(tile) = &tile {
+                on_tile(tile);
+            }
+            Some(tile)
+        };
+        (0..self.tiles()).into_par_iter().filter(|&index| !finished(index)).filter_map(compute).collect()
+    }
+}
+
+/// The share of every fate.
+impl Fraction {
+    /// Shares of all fates in the tiles of a random sample.
+    pub fn of(tiles: &[Tile]) -> Vec<Fraction> {
+        let total: usize = tiles.iter().map(|tile| tile.fates.len()).sum();
+        Fate::ALL
+            .into_iter()
+            .map(|fate| {
+                let count =
+                    tiles.iter().flat_map(|tile| &tile.fates).filter(|&&candidate| candidate == fate).count();
+                Fraction {
+                    fate,
+                    count,
+                    share: if total == 0 { 0.0 } else { count as f64 / total as f64 },
+                    interval: wilson_interval(count, total),
+                }
+            })
+            .collect()
+    }
+}
+
+/// Wilson's score interval of confidence 95 % for a share of which `count` in `total` was seen (Wilson, Journal of the
+/// American Statistical Association 22, 1927).
+pub fn wilson_interval(count: usize, total: usize) -> (f64, f64) {
+    /// Quantile of the normal distribution at 97.5 %.
+    const QUANTILE: f64 = 1.959_963_984_540_054;
+    if total == 0 {
+        return (0.0, 1.0);
+    }
+    let (n, square) = (total as f64, QUANTILE * QUANTILE);
+    let share = count as f64 / n;
+    let centre = (share + square / (2.0 * n)) / (1.0 + square / n);
+    let half = QUANTILE / (1.0 + square / n) * (share * (1.0 - share) / n + square / (4.0 * n * n)).sqrt();
+    ((centre - half).max(0.0), (centre + half).min(1.0))
+}
+
+/// A number in [0, 1) from a seed and a counter: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).
+fn uniform_number(seed: u64, counter: u64) -> f64 {
+    let mut bits = seed.wrapping_add(counter.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}

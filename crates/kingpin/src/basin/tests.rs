@@ -1,0 +1,154 @@
+//! Fates and margins against what is known of the limit cycles.
+
+use super::*;
+use proptest::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+fn destinations(wheel: &Wheel, model: ContactModel, duration: f64) -> Destinations {
+    Destinations::new(wheel, model, ClassificationSettings { duration }).unwrap()
+}
+
+#[test]
+fn the_two_sides_of_the_unstable_cycle() {
+    // A point of the unstable cycle at v = 6 m/s and the uniform motion: the segment between them leads inwards.
+    let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
+    let cycle = [
+        0.006_788_672_435_187_8,
+        -0.063_185_309_027_484_7,
+        0.513_078_505_728_634_6,
+        6.416_290_737_262_749,
+        6.0,
+    ];
+    let centre = wheel.uniform_motion().unwrap().state();
+    let at = |part: f64| std::array::from_fn(|i| centre[i] + part * (cycle[i] - centre[i]));
+    let fates =
+        destinations(&wheel, ContactModel::Rolling, 60.0).of(&[at(0.5), at(0.9), at(1.1), at(1.5)]).unwrap();
+    assert_eq!(fates, [Fate::UniformMotion, Fate::UniformMotion, Fate::Tumbling, Fate::Tumbling]);
+}
+
+#[test]
+fn followers_agree() {
+    let wheel = Wheel::default();
+    let initial: Vec<[f64; 5]> = [0.1, 0.4, 80.0]
+        .into_iter()
+        .zip(["psi", "psi", "Omega"])
+        .map(|(amount, name)| wheel.perturbed_uniform_motion(&[(name, amount)]).unwrap())
+        .collect();
+    let ensemble = destinations(&wheel, ContactModel::Rolling, 20.0);
+    let mut stepwise = ensemble.clone();
+    stepwise.follower = Follower::Rolling;
+    let sticky =
+        wheel.with(Key::MuS, 100.0).unwrap().with(Key::MuD, 100.0).unwrap().with(Key::FAz, -1e5).unwrap();
+    let sliding = destinations(&sticky, ContactModel::Sliding, 20.0);
+    let expected = ensemble.of(&initial).unwrap();
+    assert_eq!(expected[0], Fate::UniformMotion);
+    assert_eq!(expected[2], Fate::Tumbling);
+    assert_eq!(stepwise.of(&initial).unwrap(), expected);
+    assert_eq!(sliding.of(&initial[..2]).unwrap(), expected[..2]);
+}
+
+#[test]
+fn a_damped_kick_dies_out_and_a_wild_one_counts_as_escape() {
+    // v = 2 m/s, straight, c = 0.2 N s/m: the caster turns round twice and comes to rest.
+    let wheel = [(Key::V, 2.0), (Key::Curvature, 0.0), (Key::CU, 0.2), (Key::CQ, 0.2)]
+        .into_iter()
+        .try_fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value))
+        .unwrap();
+    let kicked = |rate| wheel.perturbed_uniform_motion(&[("Omega", rate)]).unwrap();
+    let fates = destinations(&wheel, ContactModel::Rolling, 60.0).of(&[kicked(120.0), kicked(1e5)]).unwrap();
+    assert_eq!(fates, [Fate::UniformMotion, Fate::Escape]);
+}
+
+#[test]
+fn tiles_can_be_stopped_and_resumed() {
+    let wheel = Wheel::default();
+    let destinations = destinations(&wheel, ContactModel::Rolling, 10.0);
+    let axes = [Axis::new("psi", -0.5, 0.5).unwrap(), Axis::new("Omega", -60.0, 60.0).unwrap()];
+    let map = BasinMap::grid(&destinations, &axes, [20, 13]).unwrap();
+    let never = AtomicBool::new(false);
+    let whole = map.run(&never, |_| false, |_| {}).unwrap();
+    assert_eq!(whole.len(), 5);
+    assert_eq!(whole.iter().map(|tile| tile.fates.len()).sum::<usize>(), 260);
+    // Stop after the first tile, then do the rest.
+    let stop = AtomicBool::new(false);
+    let kept = Mutex::new(Vec::new());
+    map.run(
+        &stop,
+        |_| false,
+        |tile| {
+            kept.lock().unwrap().push(tile.clone());
+            stop.store(true, Ordering::Relaxed);
+        },
+    )
+    .unwrap();
+    let mut kept = kept.into_inner().unwrap();
+    assert!(!kept.is_empty() && kept.len() < 5);
+    let done: Vec<usize> = kept.iter().map(|tile| tile.index).collect();
+    kept.extend(map.run(&never, |index| done.contains(&index), |_| {}).unwrap());
+    kept.sort_by_key(|tile| tile.index);
+    assert_eq!(kept, whole);
+}
+
+#[test]
+fn samples_are_reproducible_and_counted() {
+    let wheel = Wheel::default();
+    let destinations = destinations(&wheel, ContactModel::Rolling, 10.0);
+    let axes = [Axis::new("psi", -1.0, 1.0).unwrap(), Axis::new("Omega", -60.0, 60.0).unwrap()];
+    let map = BasinMap::samples(&destinations, &axes, 200, 7).unwrap();
+    assert_eq!(
+        map.initial_states(),
+        BasinMap::samples(&destinations, &axes, 200, 7).unwrap().initial_states()
+    );
+    assert_ne!(
+        map.initial_states(),
+        BasinMap::samples(&destinations, &axes, 200, 8).unwrap().initial_states()
+    );
+    let tiles = map.run(&AtomicBool::new(false), |_| false, |_| {}).unwrap();
+    let fractions = Fraction::of(&tiles);
+    assert_eq!(fractions.iter().map(|fraction| fraction.count).sum::<usize>(), 200);
+    assert!(fractions.iter().all(|f| f.interval.0 <= f.share && f.share <= f.interval.1));
+}
+
+#[test]
+fn wilson_interval_of_known_counts() {
+    // Newcombe, Statistics in Medicine 17, 1998, table I, method 3.
+    for ((count, total), (low, high)) in [
+        ((81, 263), (0.2553, 0.3662)),
+        ((15, 148), (0.0624, 0.1605)),
+        ((0, 20), (0.0, 0.1611)),
+        ((1, 29), (0.0061, 0.1718)),
+    ] {
+        let found = wilson_interval(count, total);
+        assert!((found.0 - low).abs() < 5e-5 && (found.1 - high).abs() < 5e-5, "{found:?}");
+    }
+}
+
+#[test]
+fn smallest_kick_lies_between_return_and_failure() {
+    let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
+    let settings = ClassificationSettings { duration: 20.0 };
+    let kick =
+        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 1.0).unwrap().unwrap();
+    assert!(kick.returns < kick.fails && kick.fails - kick.returns < 2e-9);
+    assert_ne!(kick.fate, Fate::UniformMotion);
+    // The blow turns the caster by R I/J.
+    let turned = kick.state[5] - wheel.uniform_motion().unwrap().state()[4];
+    let inertia = 3.48e-6 + 2.38e-5 + 0.0668 * 0.068f64.powi(2);
+    assert!((turned - 0.04 * kick.fails / inertia).abs() < 1e-9);
+    let none =
+        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::ReleaseAngle, 0.05).unwrap();
+    assert!(none.is_none());
+    let bad = SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 0.0);
+    assert!(bad.unwrap_err().to_string().contains("largest disturbance = 0"));
+}
+
+proptest! {
+    #[test]
+    fn wilson_interval_holds_the_share(count in 0usize..100, more in 1usize..100) {
+        let total = count + more;
+        let (low, high) = wilson_interval(count, total);
+        let share = count as f64 / total as f64;
+        prop_assert!(0.0 <= low && low <= share + 1e-15 && share <= high && high <= 1.0);
+    }
+}
