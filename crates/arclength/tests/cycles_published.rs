@@ -3,16 +3,24 @@
 mod common;
 
 use approx::assert_relative_eq;
-use arclength::cycle::{Cycles, Special};
+use arclength::continuation::Stop;
+use arclength::cycle::{CycleStart, Cycles, Orbit, Special};
+use arclength::integration::{Integrator, autonomous};
 use common::{Brusselator, Lorenz, Lure, RadialCycle, VanDerPol, hopf_start};
 
 #[test]
 fn van_der_pol_periods() {
-    // At mu = 0 the equation is linear and every circle is a cycle; the branch bends away at once.
-    let start = hopf_start(&VanDerPol, &[0.0, 0.0], &[0.0]);
-    let branch = Cycles::of(&VanDerPol, start).parameters(&[0.0]).along(0, -0.5..=5.0).at(&[1.0, 5.0]).run().expect("exists");
-    for p in &branch.points { println!("{} {} {:?} N={} {:?} {:e}", p.value, p.period, p.max, p.orbit.mesh.len()-1, p.role, p.error_estimate); }
-    println!("{}", branch.stops.1);
+    // The Hopf point at mu = 0 is degenerate, so the branch starts from a cycle found by integration.
+    let integrator = Integrator::with_tolerance(1e-12);
+    let parameters = [1.0];
+    let settled = integrator.integrate(autonomous(&VanDerPol, &parameters), 0.0, &[2.0, 0.0], 60.0).expect("smooth");
+    let orbit = Orbit::from_time_history(&VanDerPol, &parameters, &settled.state, 20.0).expect("a cycle");
+    let branch = Cycles::of(&VanDerPol, CycleStart::Orbit(orbit))
+        .parameters(&parameters)
+        .along(0, 0.5..=5.0)
+        .at(&[1.0, 5.0])
+        .run()
+        .expect("exists");
     let period = |mu: f64| branch.points.iter().find(|cycle| cycle.value == mu).expect("asked for").period;
     assert_relative_eq!(period(1.0), 6.663286859323, max_relative = 1e-11);
     assert_relative_eq!(period(5.0), 11.612230668, max_relative = 1e-9);
@@ -22,7 +30,6 @@ fn van_der_pol_periods() {
 fn radial_cycle_has_its_exact_multiplier() {
     let start = hopf_start(&RadialCycle, &[0.0, 0.0], &[0.0]);
     let branch = Cycles::of(&RadialCycle, start).parameters(&[0.0]).along(0, 0.0..=2.0).at(&[0.5, 2.0]).run().expect("exists");
-    for p in &branch.points { println!("{} {} {:?} N={} {:?} {:e}", p.value, p.period, p.max, p.orbit.mesh.len()-1, p.multipliers, p.error_estimate); }
     for rho in [0.5, 2.0] {
         let cycle = branch.points.iter().find(|cycle| cycle.value == rho).expect("asked for");
         let exact = (-4.0 * std::f64::consts::PI * rho).exp();
@@ -36,14 +43,15 @@ fn radial_cycle_has_its_exact_multiplier() {
 fn lure_period_doubling() {
     let start = hopf_start(&Lure, &[0.0, 0.0, 0.0], &[1.0, 1.0]);
     let branch = Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along(0, -1.1..=1.1).run().expect("exists");
-    for p in &branch.points { println!("{:.10} {:.10} {:.5?} N={} {:?} {:e} {:.3?}", p.value, p.period, p.max, p.orbit.mesh.len()-1, p.role, p.error_estimate, p.multipliers.iter().map(|m| (m.re, m.im)).collect::<Vec<_>>()); }
-    println!("{}", branch.stops.1);
     let doublings: Vec<_> = branch.special_points().filter(|(special, _)| *special == Special::Doubling).collect();
     assert_eq!(doublings.len(), 2);
     for (_, cycle) in doublings {
         assert_relative_eq!(cycle.value.abs(), 0.6303020062, max_relative = 1e-9);
         assert_relative_eq!(cycle.period, 6.364071339, max_relative = 1e-9);
     }
+    let Stop::HopfPoint { parameter, frequency } = branch.stops.1 else { panic!("{}", branch.stops.1) };
+    assert_relative_eq!(parameter, -1.0, max_relative = 1e-5);
+    assert_relative_eq!(frequency, 1.0, max_relative = 1e-3);
 }
 
 #[test]
@@ -52,16 +60,23 @@ fn lorenz_subcritical_branch_and_homoclinic() {
     let x = (8.0 / 3.0 * (rho - 1.0)).sqrt();
     let start = hopf_start(&Lorenz, &[x, x, rho - 1.0], &[rho]);
     let branch = Cycles::of(&Lorenz, start).parameters(&[rho]).along(0, 5.0..=30.0).run().expect("exists");
-    for p in &branch.points { println!("{:.10} {:.10} {:.5?} N={} {:?} {:e} {:.3?}", p.value, p.period, p.max, p.orbit.mesh.len()-1, p.role, p.error_estimate, p.multipliers.iter().map(|m| (m.re, m.im)).collect::<Vec<_>>()); }
-    println!("{}", branch.stops.1);
+    assert!(matches!(branch.stops.1, Stop::PeriodUnbounded { .. }), "{}", branch.stops.1);
     let last = branch.points.last().expect("points");
     assert_relative_eq!(last.value, 13.926557, max_relative = 1e-5);
 }
 
 #[test]
-fn brusselator_branch() {
+fn brusselator_branch_reaches_its_end() {
     let start = hopf_start(&Brusselator, &[1.0, 2.0], &[1.0, 2.0]);
     let branch = Cycles::of(&Brusselator, start).parameters(&[1.0, 2.0]).along(1, 1.5..=5.0).run().expect("exists");
-    for p in &branch.points { println!("{:.10} {:.10} {:.5?} N={} {:?} {:e} {:.3?}", p.value, p.period, p.max, p.orbit.mesh.len()-1, p.role, p.error_estimate, p.multipliers.iter().map(|m| (m.re, m.im)).collect::<Vec<_>>()); }
-    println!("{}", branch.stops.1);
+    assert!(matches!(branch.stops.1, Stop::RangeEnd { value: 5.0, .. }));
+    assert!(branch.points.iter().all(|cycle| cycle.stable == Some(true) && cycle.error_estimate < 1e-8));
+    // With a = 1, b = 5 integration gives a relaxation oscillation.
+    let last = branch.points.last().expect("points");
+    let field = autonomous(&Brusselator, &[1.0, 5.0]);
+    let initial = last.orbit.state_at(0.0);
+    let end = Integrator::with_tolerance(1e-12).integrate(field, 0.0, &initial, last.period).expect("smooth");
+    for (a, b) in initial.iter().zip(&end.state) {
+        assert_relative_eq!(a, b, max_relative = 1e-6);
+    }
 }

@@ -5,7 +5,7 @@ use super::curve::{CycleCurve, CycleInspection, Resolution};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
-use super::special::Special;
+use super::special::{Special, Unlocated};
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::HopfPoint;
 use crate::error::Error;
@@ -72,6 +72,8 @@ pub struct CycleBranch {
     /// Why the branch ends, at its first and at its last point; the first is `None` where it starts at a
     /// Hopf point.
     pub stops: (Option<Stop>, Stop),
+    /// Changes of test functions behind which no special cycle could be located: look there with smaller steps.
+    pub unlocated: Vec<Unlocated>,
 }
 
 /// What a branch of cycles starts from.
@@ -241,6 +243,7 @@ impl<'a, F: VectorField> Cycles<'a, F> {
             scales: vec![1.0; self.field.dimension()],
         };
         let width = self.range.1 - self.range.0;
+        let mut unlocated = Vec::new();
         let mut run = |tangent: Vec<f64>, settings: Settings| -> Result<_, Error> {
             let collocation = Collocation::new(problem.clone(), mesh.clone(), degree);
             let mut curve = CycleCurve::new(collocation, self.resolution, width, &unknown);
@@ -251,6 +254,7 @@ impl<'a, F: VectorField> Cycles<'a, F> {
                 let end = solution.unknown.len();
                 observer(solution.unknown[end - 1], solution.unknown[end - 2])
             })?;
+            unlocated.append(&mut curve.unlocated);
             Ok(followed)
         };
         let forward = run(tangent.clone(), self.settings)?;
@@ -266,7 +270,7 @@ impl<'a, F: VectorField> Cycles<'a, F> {
             points.extend(points_of(&forward, degree));
             (points, (Some(backward.stop), forward.stop))
         };
-        Ok(CycleBranch { parameter, points, stops })
+        Ok(CycleBranch { parameter, points, stops, unlocated })
     }
 
     fn validate(&self) -> Result<(), Error> {

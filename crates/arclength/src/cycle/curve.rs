@@ -84,6 +84,8 @@ pub struct CycleCurve<'a, F> {
     pub settings: Settings,
     /// Weight of the parameter in the metric: the length of its range.
     pub parameter_scale: f64,
+    /// Changes of test functions behind which nothing could be located.
+    pub unlocated: Vec<special::Unlocated>,
     period_scale: f64,
     /// Sizes that measure the error: amplitudes.
     amplitudes: Vec<f64>,
@@ -109,6 +111,7 @@ impl<'a, F: VectorField> CycleCurve<'a, F> {
             resolution,
             settings: Settings::default(),
             parameter_scale,
+            unlocated: Vec::new(),
             period_scale: 1.0,
             amplitudes: vec![1.0; n],
             largest: vec![0.0; n],

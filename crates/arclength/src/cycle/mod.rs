@@ -23,4 +23,4 @@ pub use gauss::Gauss;
 pub use limit_cycle::LimitCycle;
 pub use orbit::Orbit;
 pub use problem::{PeriodicProblem, Reference};
-pub use special::Special;
+pub use special::{Special, Unlocated};

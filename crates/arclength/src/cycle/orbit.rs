@@ -1,6 +1,9 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
 use super::gauss::Gauss;
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::integration::{Event, Integrator, autonomous};
 use serde::{Deserialize, Serialize};
 
 /// A periodic orbit, piecewise polynomial in the unit time `t / period`.
@@ -18,7 +21,75 @@ pub struct Orbit {
     pub period: f64,
 }
 
+/// Tolerance with which a time history is cut into an orbit.
+const HISTORY_TOLERANCE: f64 = 1e-9;
+/// Intervals and degree of an orbit made from a time history.
+const HISTORY_INTERVALS: usize = 40;
+const HISTORY_DEGREE: usize = 7;
+/// Agreement of the state after one period, relative to the size of the motion.
+const HISTORY_CLOSURE: f64 = 0.05;
+
 impl Orbit {
+    /// An approximate periodic orbit from the time history that starts at `initial`, which should have settled on a
+    /// stable cycle with a period below `longest_period`.
+    ///
+    /// The period is the time after which the state passes, in the same direction, the plane through `initial`
+    /// normal to the flow there, close to `initial`. Good enough to start [`Cycles`](super::Cycles) from.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] when the motion cannot be integrated or does not return in that time.
+    pub fn from_time_history<F: VectorField>(
+        field: &F,
+        parameters: &[f64],
+        initial: &[f64],
+        longest_period: f64,
+    ) -> Result<Self, Error> {
+        let not_periodic = |what: String| Error::Invalid {
+            name: "time history".into(),
+            value: what,
+            allowed: format!("a motion that returns to its start within the time {longest_period}"),
+        };
+        let dimension = initial.len();
+        let mut normal = vec![0.0; dimension];
+        field.evaluate(initial, parameters, &mut normal);
+        let position =
+            |state: &[f64]| normal.iter().zip(state).zip(initial).map(|((n, x), x0)| n * (x - x0)).sum::<f64>();
+        let integrator = Integrator::with_tolerance(HISTORY_TOLERANCE);
+        let mut events = [Event::new(|_, state: &[f64]| position(state)).rising()];
+        let system = autonomous(field, parameters);
+        let history = integrator
+            .with_events(system, 0.0, initial, longest_period, &[], &mut events)
+            .map_err(|error| not_periodic(error.to_string()))?;
+        let distance = |state: &[f64]| state.iter().zip(initial).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let sampling: Vec<f64> = (0..=100).map(|index| longest_period * f64::from(index) / 100.0).collect();
+        let size = integrator
+            .sample(autonomous(field, parameters), initial, &sampling)
+            .map_err(|error| not_periodic(error.to_string()))?
+            .samples()
+            .map(|(_, state)| distance(state))
+            .fold(0.0, f64::max);
+        let period = history
+            .crossings
+            .iter()
+            .find(|crossing| crossing.time > 0.0 && distance(&crossing.state) < HISTORY_CLOSURE * size)
+            .map(|crossing| crossing.time)
+            .ok_or_else(|| not_periodic("no return".into()))?;
+        let gauss = Gauss::new(HISTORY_DEGREE);
+        let mesh: Vec<f64> = (0..=HISTORY_INTERVALS).map(|j| j as f64 / HISTORY_INTERVALS as f64).collect();
+        let times: Vec<f64> = mesh
+            .windows(2)
+            .flat_map(|pair| {
+                std::iter::once(pair[0]).chain(gauss.points.iter().map(|c| pair[0] + c * (pair[1] - pair[0])))
+            })
+            .map(|time| time * period)
+            .collect();
+        let states = integrator
+            .sample(autonomous(field, parameters), initial, &times)
+            .map_err(|error| not_periodic(error.to_string()))?
+            .states;
+        Ok(Self { mesh, degree: HISTORY_DEGREE, dimension, states, period })
+    }
+
     /// States at `count` equidistant times `0, T/count, ...`, with the times.
     pub fn sample(&self, count: usize) -> Vec<(f64, Vec<f64>)> {
         let gauss = Gauss::new(self.degree);

@@ -30,7 +30,7 @@ pub enum Special {
 /// Part of the bracket to which a test function's zero is bracketed before Newton's method takes over.
 const START_TOLERANCE: f64 = 1e-2;
 /// Part of the bracket to which a branch point is located by its test function alone.
-const BRANCH_POINT_TOLERANCE: f64 = 1e-12;
+const BRANCH_POINT_TOLERANCE: f64 = 1e-8;
 
 /// All special cycles between two consecutive solutions, in the order of the branch.
 pub(super) fn between<F: VectorField>(
@@ -47,47 +47,40 @@ pub(super) fn between<F: VectorField>(
     let explained = usize::from(fold) + usize::from(branch_point) + usize::from(doubling);
     let torus = outside_before.abs_diff(outside_after) >= explained + 2;
     let mut found = Vec::new();
-    if fold {
-        let start = locate(curve, before, after, &curve.settings.clone(), START_TOLERANCE, |_, solution| {
-            Some(solution.point.fold_test)
-        })?;
-        if let Some(start) = start {
-            found.extend(converge(curve, before, &start, Kind::Fold)?);
-        }
-    }
-    if doubling {
-        let start = locate(curve, before, after, &curve.settings.clone(), START_TOLERANCE, |_, solution| {
-            Some(solution.point.doubling_test())
-        })?;
-        if let Some(start) = start {
-            found.extend(converge(curve, before, &start, Kind::Doubling)?);
-        }
-    }
-    if torus {
-        let start = locate(curve, before, after, &curve.settings.clone(), START_TOLERANCE, |_, solution| {
-            torus_test(&solution.point, outside_before.min(outside_after))
-        })?;
-        if let Some(start) = start {
-            found.extend(converge(curve, before, &start, Kind::Torus)?);
-        }
-    }
-    if branch_point {
-        let sign = before.orientation;
-        let located =
-            locate(curve, before, after, &curve.settings.clone(), BRANCH_POINT_TOLERANCE, |_, solution| {
-                let nearest = solution
-                    .point
-                    .floquet
-                    .nontrivial
-                    .iter()
-                    .filter(|multiplier| multiplier.argument == 0.0)
-                    .map(|multiplier| multiplier.log_modulus.abs())
-                    .fold(f64::INFINITY, f64::min);
-                (nearest.is_finite()).then_some(if solution.orientation == sign { -nearest } else { nearest })
-            })?;
-        if let Some(mut solution) = located {
-            solution.point.special = Some(Special::BranchPoint);
-            found.push(solution);
+    let sign = before.orientation;
+    let wanted: [(bool, Sought); 4] = [
+        (fold, Sought::Defined(Kind::Fold)),
+        (doubling, Sought::Defined(Kind::Doubling)),
+        (torus, Sought::Defined(Kind::Torus)),
+        (branch_point, Sought::BranchPoint),
+    ];
+    for (_, sought) in wanted.into_iter().filter(|(detected, _)| *detected) {
+        let tolerance = if sought == Sought::BranchPoint { BRANCH_POINT_TOLERANCE } else { START_TOLERANCE };
+        let settings = curve.settings;
+        let start = locate(curve, before, after, &settings, tolerance, |_, solution| {
+            let point = &solution.point;
+            match sought {
+                Sought::Defined(Kind::Fold) => Some(point.fold_test),
+                Sought::Defined(Kind::Doubling) => Some(point.doubling_test()),
+                Sought::Defined(Kind::Torus) => torus_test(point, outside_before.min(outside_after)),
+                Sought::BranchPoint => branch_point_test(solution, sign),
+            }
+        });
+        let located = match (start, sought) {
+            (Ok(Some(start)), Sought::Defined(kind)) => converge(curve, before, &start, kind)?,
+            (Ok(Some(mut start)), Sought::BranchPoint) => {
+                start.point.special = Some(Special::BranchPoint);
+                Some(start)
+            }
+            (Ok(None) | Err(Error::NotFound { .. }), _) => None,
+            (Err(error), _) => return Err(error),
+        };
+        match located {
+            Some(solution) => found.push(solution),
+            None => curve.unlocated.push(Unlocated {
+                test: sought.name(),
+                between: [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]),
+            }),
         }
     }
     let mut image = vec![0.0; before.tangent.len()];
@@ -103,6 +96,43 @@ pub(super) fn between<F: VectorField>(
     };
     found.sort_by(|a, b| position(a).total_cmp(&position(b)));
     Ok(found)
+}
+
+/// What is sought between two solutions.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sought {
+    /// A special cycle with a defining system.
+    Defined(Kind),
+    /// A branch point.
+    BranchPoint,
+}
+
+impl Sought {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Defined(Kind::Fold) => "fold of cycles",
+            Self::Defined(Kind::Doubling) => "period doubling",
+            Self::Defined(Kind::Torus) => "torus bifurcation",
+            Self::BranchPoint => "branch point of cycles",
+        }
+    }
+}
+
+/// A change of a test function behind which no special cycle could be located.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unlocated {
+    /// What the test function stands for.
+    pub test: &'static str,
+    /// Parameter values between which it changed.
+    pub between: [f64; 2],
+}
+
+/// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation.
+fn branch_point_test(solution: &Solution<CycleInspection>, sign: f64) -> Option<f64> {
+    let multipliers = &solution.point.floquet.nontrivial;
+    let positive = multipliers.iter().filter(|multiplier| multiplier.argument == 0.0);
+    let nearest = positive.map(|multiplier| multiplier.log_modulus.abs()).fold(f64::INFINITY, f64::min);
+    nearest.is_finite().then_some(if solution.orientation == sign { -nearest } else { nearest })
 }
 
 /// Logarithm of the modulus of the pair that changes sides when the multipliers are counted from outside: the
@@ -225,12 +255,15 @@ fn converge<F: VectorField>(
     Ok(Some(solution))
 }
 
+/// Real eigenfunctions on the nodes of a cycle.
+type Functions = Vec<Vec<f64>>;
+
 /// Critical eigenfunctions on the nodes of the start, normalised, and the kind's own scalars.
 fn eigenfunctions<F: VectorField>(
     curve: &mut CycleCurve<'_, F>,
     start: &Solution<CycleInspection>,
     kind: Kind,
-) -> Result<Option<(Vec<Vec<f64>>, Vec<f64>)>, Error> {
+) -> Result<Option<(Functions, Vec<f64>)>, Error> {
     let length = start.unknown.len();
     let states = length - 2;
     let (mut functions, own) = match kind {
@@ -290,7 +323,7 @@ fn eigenfunctions<F: VectorField>(
 fn periodic_eigenfunctions<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     multiplier: Complex64,
-) -> Result<Vec<Vec<f64>>, Error> {
+) -> Result<Functions, Error> {
     let n = collocation.problem.dimension();
     let intervals = collocation.intervals();
     let degree = collocation.gauss().degree();
@@ -317,9 +350,9 @@ fn periodic_eigenfunctions<P: PeriodicProblem>(
             } else {
                 Complex64::from_polar(1.0, -angle * (left + position * width))
             };
-            for component in 0..n {
+            for (component, value) in start.iter().enumerate() {
                 let z = if node == 0 {
-                    start[component]
+                    *value
                 } else {
                     let index = (node - 1) * n + component;
                     Complex64::new(parts[0][index], parts[1][index])

@@ -25,13 +25,13 @@ pub fn hopf_start<F: VectorField>(field: &F, state: &[f64], parameters: &[f64]) 
         .filter(|value| value.im > 0.0)
         .min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))
         .expect("a Hopf point has a pair of complex eigenvalues");
-    assert!(critical.re.abs() < 1e-6, "{critical} is not on the imaginary axis");
+    assert!(critical.re.abs() < 1e-5, "{critical} is not on the imaginary axis");
     let eigenvector = right_eigenvector(&jacobian, n, critical).expect("finite").vector;
     CycleStart::Hopf {
         state: state.to_vec(),
         frequency: critical.im,
         eigenvector,
-        crossing_speed: 1.0,
+        crossing_speed: 0.01,
         cubic_coefficient: 1.0,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Along, HopfPoint};
 use crate::{KingpinError, Wheel};
 use arclength::continuation::{Settings, Stop};
-use arclength::cycle::{CyclePoint, CycleStart, Cycles, Orbit, Resolution};
+use arclength::cycle::{CyclePoint, CycleStart, Cycles, Orbit, Resolution, Unlocated};
 use std::ops::ControlFlow;
 
 /// How a branch of cycles is computed.
@@ -28,6 +28,8 @@ pub struct WheelCycles {
     pub points: Vec<CyclePoint>,
     /// Why the branch ends, at its first and at its last point; the first is `None` at a Hopf point.
     pub stops: (Option<Stop>, Stop),
+    /// Changes of test functions behind which no special cycle could be located.
+    pub unlocated: Vec<Unlocated>,
 }
 
 impl HopfPoint {
@@ -102,6 +104,15 @@ impl Wheel {
         for point in &mut branch.points {
             point.value = along.convert(point.value);
         }
-        Ok(WheelCycles { wheel: *self, along, points: branch.points, stops: branch.stops })
+        for missed in &mut branch.unlocated {
+            missed.between = missed.between.map(|value| along.convert(value));
+        }
+        Ok(WheelCycles {
+            wheel: *self,
+            along,
+            points: branch.points,
+            stops: branch.stops,
+            unlocated: branch.unlocated,
+        })
     }
 }

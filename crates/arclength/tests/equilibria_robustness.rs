@@ -1,0 +1,372 @@
+//! Branches of equilibria that are hard to follow: units, close special points, degenerate fields, random fields.
+
+use approx::assert_relative_eq;
+use arclength::branch::Stability;
+use arclength::continuation::Stop;
+use arclength::equilibrium::{Equilibria, EquilibriumBranch, SpecialPoint, find_equilibrium};
+use arclength::linear::eigenvalues::eigenvalues;
+use arclength::{Dual, Error, Scalar, VectorField};
+use proptest::prelude::*;
+
+/// Declares a vector field by its names and its right-hand side.
+macro_rules! field {
+    ($name:ident, [$($state:literal),*], [$($parameter:literal),*], |$x:ident, $p:ident, $d:ident| $body:block) => {
+        struct $name;
+        impl VectorField for $name {
+            fn state_names(&self) -> Vec<String> {
+                vec![$($state.into()),*]
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                vec![$($parameter.into()),*]
+            }
+            fn evaluate<T: Scalar>(&self, $x: &[T], $p: &[T], $d: &mut [T]) $body
+        }
+    };
+}
+
+fn kinds(branch: &EquilibriumBranch) -> Vec<String> {
+    branch.points.iter().filter_map(|point| Some(point.label?.to_string())).collect()
+}
+
+/// The chemical reaction of AUTO's demo `ab` in other units.
+struct Reaction {
+    units: [f64; 2],
+    parameter_unit: f64,
+    time_unit: f64,
+}
+
+impl VectorField for Reaction {
+    fn state_names(&self) -> Vec<String> {
+        vec!["conversion".into(), "temperature".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["D".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        let (conversion, temperature) = (x[0] / self.units[0], x[1] / self.units[1]);
+        let rate = p[0] / self.parameter_unit * (-conversion + 1.0) * temperature.exp();
+        d[0] = (rate - conversion) * (self.units[0] / self.time_unit);
+        d[1] = (rate * 18.0 - temperature * 4.0) * (self.units[1] / self.time_unit);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn units_do_not_matter(exponents in prop::collection::vec(-9.0..9.0f64, 4)) {
+        let run = |exponents: &[f64]| {
+            let field = Reaction {
+                units: [10f64.powf(exponents[0]), 10f64.powf(exponents[1])],
+                parameter_unit: 10f64.powf(exponents[2]),
+                time_unit: 10f64.powf(exponents[3]),
+            };
+            let range = 0.0..=0.4 * field.parameter_unit;
+            Equilibria::of(&field).parameters(&[0.0]).along("D", range).run().unwrap()
+        };
+        let (reference, scaled) = (run(&[0.0; 4]), run(&exponents));
+        prop_assert_eq!(kinds(&reference), ["HB1", "LP1", "LP2", "HB2"]);
+        prop_assert_eq!(kinds(&scaled), kinds(&reference));
+        prop_assert!(scaled.points.len().abs_diff(reference.points.len()) < 3);
+        for (one, other) in reference.special_points().zip(scaled.special_points()) {
+            let ratio = other.parameter() / (one.parameter() * 10f64.powf(exponents[2]));
+            prop_assert!((ratio - 1.0).abs() < 1e-12);
+        }
+    }
+}
+
+/// A focus whose growth rate is `(p - 1/2)^2 - gap^2`: two Hopf points at the distance `2 gap`.
+struct TwoHopfPoints(f64);
+
+impl VectorField for TwoHopfPoints {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into(), "y".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        let growth = (p[0] - 0.5).powi(2) - self.0 * self.0 - x[0] * x[0] - x[1] * x[1];
+        d[0] = growth * x[0] - x[1];
+        d[1] = x[0] + growth * x[1];
+    }
+}
+
+/// `x' = p + gap x - x^3`: two folds at `x = +-sqrt(gap/3)`.
+struct TwoFolds(f64);
+
+impl VectorField for TwoFolds {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        d[0] = p[0] + x[0] * self.0 - x[0].powi(3);
+    }
+}
+
+/// A branch point at 0.5 and a Hopf point at `0.5 + gap`.
+struct BranchAndHopf(f64);
+
+impl VectorField for BranchAndHopf {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        let growth = p[0] - (0.5 + self.0) - x[0] * x[0] - x[1] * x[1];
+        d[0] = growth * x[0] - x[1] * 2.0;
+        d[1] = x[0] * 2.0 + growth * x[1];
+        d[2] = (p[0] - 0.5 - x[2]) * x[2];
+    }
+}
+
+#[test]
+fn two_special_points_in_one_step_are_both_found() {
+    for gap in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
+        let branch = Equilibria::of(&TwoHopfPoints(gap)).parameters(&[0.0]).along("p", 0.0..=1.0).run().unwrap();
+        let found: Vec<f64> = branch.hopf_points().map(|hopf| hopf.parameter).collect();
+        assert_eq!(kinds(&branch), ["HB1", "HB2"], "{gap}");
+        for (value, expected) in found.iter().zip([0.5 - gap, 0.5 + gap]) {
+            assert!((value - expected).abs() < 1e-14 / gap, "{gap} {value}");
+        }
+
+        let field = TwoFolds(gap);
+        let branch = Equilibria::of(&field).start(&[-1.0]).parameters(&[-1.0]).along("p", -1.0..=1.0);
+        let branch = branch.run().unwrap();
+        assert_eq!(kinds(&branch), ["LP1", "LP2"], "{gap}");
+        let expected = 2.0 * (gap / 3.0).powf(1.5);
+        for (fold, expected) in branch.folds().zip([expected, -expected]) {
+            assert!((fold.parameter - expected).abs() < 1e-14, "{gap}");
+        }
+
+        for sign in [1.0, -1.0] {
+            let field = BranchAndHopf(sign * gap);
+            let branch = Equilibria::of(&field).parameters(&[0.0]).along("p", 0.0..=1.0).run().unwrap();
+            let expected = if sign > 0.0 { ["BP1", "HB1"] } else { ["HB1", "BP1"] };
+            assert_eq!(kinds(&branch), expected, "{gap}");
+            assert_relative_eq!(branch.branch_points().next().unwrap().parameter, 0.5, max_relative = 1e-12);
+            let hopf = branch.hopf_points().next().unwrap();
+            assert_relative_eq!(hopf.parameter, 0.5 + sign * gap, max_relative = 1e-12);
+        }
+    }
+}
+
+field!(ZeroHopf, ["x", "y", "z"], ["p"], |x, p, d| {
+    let growth = p[0] + x[2] * 0.5;
+    d[0] = growth * x[0] - x[1];
+    d[1] = x[0] + growth * x[1];
+    d[2] = p[0] - x[2] * x[2] - x[0] * x[0] - x[1] * x[1];
+});
+
+field!(Pendulum, ["angle", "rate"], ["p"], |x, p, d| {
+    d[0] = x[1];
+    d[1] = p[0] - x[0].sin();
+});
+
+field!(Circle, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0] * p[0] + x[0] * x[0] - 1.0;
+});
+
+field!(Explosion, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0] * p[0] + x[0] * x[0] + 1.0;
+});
+
+field!(Arctangent, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0] - x[0].atan();
+});
+
+field!(Root, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0] - x[0].sqrt();
+});
+
+field!(Pitchfork, ["x", "y"], ["p"], |x, p, d| {
+    d[0] = p[0] * x[0] - x[0].powi(3) + x[1] * x[0];
+    d[1] = -x[1];
+});
+
+#[test]
+fn a_zero_hopf_point_on_the_way_is_survived() {
+    let branch = Equilibria::of(&ZeroHopf).start(&[0.0, 0.0, 1.0]).parameters(&[1.0]).along("p", -1.0..=1.0);
+    let branch = branch.run().unwrap();
+    assert!(branch.folds().any(|fold| fold.parameter.abs() < 1e-10) || branch.special_points().count() > 0);
+    assert!(branch.points.iter().all(|point| point.state.iter().all(|entry| entry.is_finite())));
+}
+
+#[test]
+fn centres_are_neither_stable_nor_hopf_points() {
+    let branch = Equilibria::of(&Pendulum).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
+    assert!(branch.hopf_points().next().is_none());
+    for point in branch.points.iter().filter(|point| point.state[0].cos() > 0.1) {
+        assert_eq!(point.stability, Stability::Undecided);
+    }
+    let folds: Vec<_> = branch.folds().collect();
+    assert!(folds.iter().all(|fold| (fold.parameter.abs() - 1.0).abs() < 1e-12));
+    assert!(folds.len() > 1);
+}
+
+#[test]
+fn a_closed_branch_ends_after_one_lap() {
+    let branch = Equilibria::of(&Circle).start(&[1.0]).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
+    assert!(matches!(branch.forward_stop, Stop::Closed) && matches!(branch.backward_stop, Stop::Closed));
+    assert_eq!(kinds(&branch), ["LP1", "LP2"]);
+    let length: f64 = branch
+        .points
+        .windows(2)
+        .map(|pair| (pair[1].parameter - pair[0].parameter).hypot(pair[1].state[0] - pair[0].state[0]))
+        .sum();
+    assert!((length - std::f64::consts::TAU).abs() < 0.02, "{length}");
+}
+
+#[test]
+fn both_branches_of_a_pitchfork_are_found_from_either() {
+    let branch = Equilibria::of(&Pitchfork).parameters(&[-1.0]).along("p", -1.0..=0.9).run().unwrap();
+    assert_eq!(kinds(&branch), ["BP1"]);
+    let side = Equilibria::of(&Pitchfork).start(&[1.0, 0.0]).parameters(&[1.0]).along("p", -1.0..=2.0).run().unwrap();
+    assert_eq!(kinds(&side), ["BP1"], "the turning branch has no fold at the pitchfork");
+    let point = side.branch_points().next().unwrap();
+    assert!(point.parameter.abs() < 1e-14);
+    let back = Equilibria::of(&Pitchfork).from_branch_point(point).along("p", -1.0..=2.0).run().unwrap();
+    assert!(back.points.iter().all(|point| point.state[0] == 0.0));
+    assert_eq!((back.points[0].parameter, back.points[back.points.len() - 1].parameter), (-1.0, 2.0));
+}
+
+#[test]
+fn newton_reaches_far_equilibria_and_says_why_it_does_not() {
+    let state = find_equilibrium(&Arctangent, &[50.0], &[0.1]).unwrap();
+    assert_relative_eq!(state[0], 0.1_f64.tan(), max_relative = 1e-14);
+    assert_relative_eq!(find_equilibrium(&Root, &[1e-6], &[3.0]).unwrap()[0], 9.0, max_relative = 1e-14);
+    let error = find_equilibrium(&Explosion, &[1.0], &[0.0]).unwrap_err();
+    assert!(matches!(error, Error::NotFound { sought: "equilibrium", .. }), "{error}");
+    assert!(find_equilibrium(&Root, &[-1.0], &[3.0]).is_err());
+    assert!(find_equilibrium(&Root, &[1.0, 2.0], &[3.0]).is_err());
+    assert!(find_equilibrium(&Root, &[f64::NAN], &[3.0]).is_err());
+}
+
+#[test]
+fn requested_values_are_there_once_wherever_they_are() {
+    let branch = Equilibria::of(&Root).start(&[1.0]).parameters(&[1.0]).along("p", 0.5..=2.0);
+    let branch = branch.at(&[0.5, 0.7, 1.0, 1.25, 2.0]).run().unwrap();
+    let requested: Vec<f64> =
+        branch.points.iter().filter(|point| point.label.is_some()).map(|point| point.parameter).collect();
+    assert_eq!(requested, [0.5, 0.7, 1.0, 1.25, 2.0]);
+    for point in &branch.points {
+        assert_relative_eq!(point.state[0], point.parameter.powi(2), max_relative = 1e-12);
+    }
+}
+
+#[test]
+fn bad_requests_are_refused() {
+    let ask = || Equilibria::of(&Root).start(&[1.0]).parameters(&[1.0]);
+    let message = |asked: Equilibria<'_, Root>| asked.run().unwrap_err().to_string();
+    assert!(message(ask()).contains("along"));
+    assert!(message(ask().along("q", 0.0..=1.0)).contains("one of p"));
+    assert!(message(ask().along("p", 2.0..=1.0)).contains("smaller one first"));
+    assert!(message(ask().along("p", 0.0..=f64::INFINITY)).contains("finite"));
+    assert!(message(ask().along("p", 0.0..=2.0).at(&[3.0])).contains("0 to 2"));
+    assert!(message(ask().along("p", 0.0..=2.0).start(&[1.0, 2.0])).contains("dimension"));
+    assert!(message(ask().along("p", 0.0..=2.0).parameters(&[])).contains("number of parameters"));
+}
+
+/// A random polynomial field of degree three.
+#[derive(Debug)]
+struct Polynomial {
+    dimension: usize,
+    coefficients: Vec<f64>,
+}
+
+impl VectorField for Polynomial {
+    fn state_names(&self) -> Vec<String> {
+        (0..self.dimension).map(|index| format!("x{index}")).collect()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        let n = self.dimension;
+        let mut coefficients = self.coefficients.iter().copied();
+        let mut next = || coefficients.next().unwrap_or(0.0);
+        for row in 0..n {
+            let mut sum = p[0] * next() + next() - x[row] * x[row] * x[row];
+            for i in 0..n {
+                sum += x[i] * next() + x[i] * p[0] * next();
+                for j in 0..n {
+                    sum += x[i] * x[j] * next();
+                }
+            }
+            d[row] = sum;
+        }
+    }
+}
+
+fn spectrum(field: &Polynomial, state: &[f64], parameter: f64) -> Vec<num_complex::Complex64> {
+    let n = field.dimension;
+    let mut matrix = vec![0.0; n * n];
+    for column in 0..n {
+        let mut lifted: Vec<Dual<f64, 1>> = state.iter().map(|&value| Dual::constant(value)).collect();
+        lifted[column] = Dual::variable(state[column], 0);
+        let mut image = vec![Dual::constant(0.0); n];
+        field.evaluate(&lifted, &[Dual::constant(parameter)], &mut image);
+        for (row, value) in image.iter().enumerate() {
+            matrix[row + n * column] = value.derivatives[0];
+        }
+    }
+    eigenvalues(&matrix, n).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn random_fields_lose_no_special_point(
+        dimension in 1usize..5,
+        coefficients in prop::collection::vec(-2.0..2.0f64, 4 * (2 + 4 * 6)),
+    ) {
+        let field = Polynomial { dimension, coefficients };
+        let start = vec![0.3; dimension];
+        let Ok(branch) = Equilibria::of(&field).start(&start).parameters(&[0.0]).along("p", -2.0..=2.0).run() else {
+            return Ok(());
+        };
+        for stop in [&branch.forward_stop, &branch.backward_stop] {
+            prop_assert!(matches!(stop, Stop::RangeEnd { .. } | Stop::Closed), "{:?}", stop);
+        }
+        let mut regular: Option<(usize, usize)> = None;
+        for (index, point) in branch.points.iter().enumerate() {
+            let values = spectrum(&field, &point.state, point.parameter);
+            let largest = values.iter().map(|value| value.norm()).fold(1.0, f64::max);
+            match point.special.as_deref() {
+                Some(SpecialPoint::Fold(_) | SpecialPoint::BranchPoint(_)) => {
+                    let least = values.iter().map(|value| value.norm()).fold(f64::INFINITY, f64::min);
+                    prop_assert!(least < 1e-9 * largest, "{:?} {:?}", point.special, values);
+                }
+                Some(SpecialPoint::Hopf(hopf)) => {
+                    let found = values.iter().any(|value| {
+                        value.re.abs() < 1e-9 * largest && (value.im - hopf.frequency).abs() < 1e-9 * largest
+                    });
+                    prop_assert!(found, "{:?} {:?}", hopf, values);
+                }
+                Some(SpecialPoint::NeutralSaddle(saddle)) => {
+                    let near = |sign: f64| values.iter().any(|value| {
+                        value.im == 0.0 && (value.re - sign * saddle.eigenvalue).abs() < 1e-8 * largest
+                    });
+                    prop_assert!(near(1.0) && near(-1.0), "{:?} {:?}", saddle, values);
+                }
+                Some(SpecialPoint::Degenerate { .. }) => prop_assert!(false, "{:?}", point),
+                None => {
+                    // Between regular neighbours without a special point the number of unstable eigenvalues is the same.
+                    let unstable = point.stability.unstable_dimension();
+                    if let (Some((before, count)), Some(unstable)) = (regular, unstable)
+                        && before + 1 == index
+                    {
+                        prop_assert_eq!(count, unstable, "between points {} and {}", before, index);
+                    }
+                    regular = unstable.map(|unstable| (index, unstable));
+                }
+            }
+        }
+    }
+}
