@@ -98,7 +98,7 @@ fn the_wheel_has_its_hopf_point_at_the_critical_speed() {
     let hopf = branch.hopf_points().next().unwrap();
     assert_relative_eq!(hopf.parameter, 8.43103697014, max_relative = 1e-11);
     // From the closed form of the characteristic polynomial.
-    assert_relative_eq!(hopf.frequency, 43.2553921195862593, max_relative = 1e-12);
+    assert_relative_eq!(hopf.frequency, 43.255_392_119_586_26, max_relative = 1e-12);
     assert_relative_eq!(hopf.first_lyapunov.unwrap(), 6.520929e-5, max_relative = 1e-7);
     assert_relative_eq!(hopf.c1_real.unwrap(), 6.520929e-5 * 43.2553921186, max_relative = 1e-7);
     assert_eq!(hopf.criticality, Criticality::Subcritical);

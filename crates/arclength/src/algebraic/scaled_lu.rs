@@ -56,17 +56,6 @@ impl ScaledLu {
         }
     }
 
-    /// Solves with the transposed matrix, in place.
-    pub fn solve_transposed(&self, vector: &mut [f64]) {
-        for (entry, scale) in vector.iter_mut().zip(&self.columns) {
-            *entry *= scale;
-        }
-        lu::solve_transposed(&self.factors, self.n, &self.pivots, vector);
-        for (entry, factor) in vector.iter_mut().zip(&self.rows) {
-            *entry *= factor;
-        }
-    }
-
     /// Modulus of the determinant of the scaled matrix.
     pub fn determinant_size(&self) -> f64 {
         (0..self.n).map(|index| self.factors[index * (self.n + 1)].abs()).product()

@@ -97,20 +97,26 @@ pub fn follow<C: Curve>(
             Some(Ending::After(stop)) => Some(stop),
             None => None,
         };
-        let mut between = match curve.special_points(&current, &advanced) {
+        let mut between: Vec<(Solution<C::Point>, Origin)> = match curve.special_points(&current, &advanced) {
             Ok(special) => special.into_iter().map(|solution| (solution, Origin::Special)).collect(),
             Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
         };
-        let leaves = first_exit(&advanced.unknown, &request.bounds);
+        let passed = between.iter().map(|(solution, _)| solution);
+        let leaves =
+            passed.chain([&advanced]).find_map(|solution| first_exit(&solution.unknown, &request.bounds));
         match requested_values(curve, &current, &mut between, &advanced, request) {
             Ok(()) => {}
             Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
         }
         if let Some((bound, value)) = leaves {
             let from_end = request.bounds[bound].from_end;
-            between.retain(|(solution, _)| first_exit(&solution.unknown, &request.bounds).is_none());
+            // Past a fold outside the range the curve comes back: the end lies before it.
+            let outside = |solution: &Solution<C::Point>| first_exit(&solution.unknown, &request.bounds).is_some();
+            let first_outside = between.iter().position(|(solution, _)| outside(solution));
+            let beyond = first_outside.map_or(&advanced, |index| &between[index].0).clone();
+            between.truncate(first_outside.unwrap_or(between.len()));
             let near = between.last().map_or(&current, |(solution, _)| solution).clone();
-            match fix(curve, &near, &advanced, from_end, value, settings) {
+            match fix(curve, &near, &beyond, from_end, value, settings) {
                 Ok(end) => between.push((end, Origin::End)),
                 Err(Error::NotFound { cause, .. }) => {
                     solutions.extend(between);

@@ -36,6 +36,11 @@ pub enum Stop {
         /// Parameter value of the last cycle.
         parameter: f64,
     },
+    /// The state grows without bound while the parameter tends to a value.
+    StateUnbounded {
+        /// That value.
+        parameter: f64,
+    },
     /// The observer asked for the end.
     Interrupted,
     /// The problem could not be resolved any further.
@@ -64,6 +69,9 @@ impl std::fmt::Display for Stop {
                 "the period grows without bound ({period} at {parameter}): a homoclinic or heteroclinic \
                  orbit is near"
             ),
+            Self::StateUnbounded { parameter } => {
+                write!(formatter, "the state grows without bound while the parameter tends to {parameter}")
+            }
             Self::Interrupted => write!(formatter, "interrupted"),
             Self::Failed(error) => write!(formatter, "{error}"),
         }

@@ -64,6 +64,7 @@ impl EquilibriumBranch {
         field: &F,
         active: usize,
         parameters: Vec<f64>,
+        requested: &[f64],
         directions: [BranchDirection; 2],
         middle: Option<(Solution<Inspection>, Origin)>,
     ) -> Self {
@@ -86,6 +87,18 @@ impl EquilibriumBranch {
         };
         solutions.extend(middle);
         solutions.extend(forward.solutions);
+        // Values asked for at the start or at an end of the range are there already.
+        for (solution, origin) in &mut solutions {
+            let value = solution.unknown.last();
+            if solution.point.special.is_none() && value.is_some_and(|value| requested.contains(value)) {
+                *origin = Origin::Requested;
+            }
+        }
+        solutions.dedup_by(|next, previous| {
+            next.1 == Origin::Requested
+                && previous.1 == Origin::Requested
+                && next.0.unknown.last() == previous.0.unknown.last()
+        });
         let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
         let points = solutions
             .into_iter()

@@ -6,7 +6,7 @@ use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
 use super::spectrum::Spectrum;
 use crate::algebraic::DenseSystem;
-use crate::continuation::{Adaptation, Curve, Settings, Solution};
+use crate::continuation::{Adaptation, Bound, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
@@ -34,12 +34,22 @@ pub(crate) struct Inspection {
 
 /// Displacement along the tangent for the derivative of the Hopf test. Small enough that curvature does not matter,
 /// large enough that rounding does not.
-const DISPLACEMENT: f64 = 1e-6;
+const DISPLACEMENT: f64 = 1e-7;
+
+/// Rate of change of the parameter, as part of the whole, and growth of a state since the start that together mean that the
+/// state grows without bound.
+const VERTICAL: f64 = 1e-9;
+const UNBOUNDED_GROWTH: f64 = 1e6;
+/// Part of its range by which the parameter has to change in [`MOST_IDLE_STEPS`] steps.
+const IDLE: f64 = 1e-13;
+const MOST_IDLE_STEPS: usize = 20;
 
 /// The curve of equilibria in the space of the states and one parameter.
 pub(crate) struct EquilibriumCurve<'a, F> {
     pub system: DenseSystem<EquilibriumProblem<'a, F>>,
     pub settings: Settings,
+    bound: Bound,
+    idle_steps: usize,
     first_scales: Vec<f64>,
     workspace: EigenvalueWorkspace,
     scratch: Vec<f64>,
@@ -47,15 +57,27 @@ pub(crate) struct EquilibriumCurve<'a, F> {
 
 impl<'a, F: VectorField> EquilibriumCurve<'a, F> {
     /// `scales` are the sizes of the states and the length of the parameter's range.
-    pub fn new(problem: EquilibriumProblem<'a, F>, scales: Vec<f64>, settings: Settings) -> Self {
+    pub fn new(
+        problem: EquilibriumProblem<'a, F>,
+        scales: Vec<f64>,
+        bound: Bound,
+        settings: Settings,
+    ) -> Self {
         let workspace = EigenvalueWorkspace::new(problem.dimension);
         Self {
             system: DenseSystem::new(problem, scales.clone()),
             settings,
+            bound,
+            idle_steps: 0,
             first_scales: scales,
             workspace,
             scratch: Vec::new(),
         }
+    }
+
+    /// Forgets the direction followed before.
+    pub fn restart(&mut self) {
+        self.idle_steps = 0;
     }
 
     pub fn dimension(&self) -> usize {
@@ -153,6 +175,35 @@ impl<F: VectorField> Curve for EquilibriumCurve<'_, F> {
         after: &Solution<Inspection>,
     ) -> Result<Vec<Solution<Inspection>>, Error> {
         events::special_points(self, before, after)
+    }
+
+    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+        let n = self.dimension();
+        let range = self.system.scales[n];
+        let parameter = after.unknown[n];
+        if (parameter - before.unknown[n]).abs() > IDLE * range {
+            self.idle_steps = 0;
+        } else {
+            self.idle_steps += 1;
+        }
+        let grown = self
+            .system
+            .scales
+            .iter()
+            .zip(&self.first_scales)
+            .any(|(now, first)| *now > UNBOUNDED_GROWTH * first);
+        let vertical = after.point.tests.fold.abs() < VERTICAL;
+        if self.idle_steps > MOST_IDLE_STEPS || (vertical && grown) {
+            return Some(Ending::After(Stop::StateUnbounded { parameter }));
+        }
+        // The parameter creeps up to the end of its range and never reaches it.
+        let end = [self.bound.lower, self.bound.upper]
+            .into_iter()
+            .find(|end| (parameter - end).abs() < IDLE * range);
+        match end {
+            Some(value) if vertical => Some(Ending::After(Stop::RangeEnd { bound: 0, value })),
+            _ => None,
+        }
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<f64> {

@@ -16,7 +16,7 @@ fn against<T: Scalar>(fixed: &[f64], vector: &[T]) -> T {
 }
 
 /// Splits `unknown` into the parts of the given lengths and the rest.
-fn parts<'u, T, const N: usize>(mut unknown: &'u [T], lengths: [usize; N]) -> ([&'u [T]; N], &'u [T]) {
+fn parts<T, const N: usize>(mut unknown: &[T], lengths: [usize; N]) -> ([&[T]; N], &[T]) {
     let split = lengths.map(|length| {
         let (part, rest) = unknown.split_at(length);
         unknown = rest;

@@ -21,6 +21,8 @@ const SMALLEST_PART: f64 = 1e-7;
 const COINCIDENT_PART: f64 = 0.02;
 /// A test function that a cubic says shrinks to this part of the smaller of its end values is looked at.
 const SUSPICIOUS: f64 = 0.3;
+/// A step is divided no closer to its ends than this part.
+const SMALLEST_FRACTION: f64 = 0.02;
 /// A rate of change of the parameter along the curve that may be rounding error.
 const UNDECIDED_FOLD: f64 = 1e-13;
 /// Rate of change of the parameter at a branch point, relative to its values around, below which the branch is tangential
@@ -75,24 +77,26 @@ impl Changes {
 
 /// Where a cubic with the given end values and slopes (per unit of the whole) comes close to zero without changing sign.
 fn closest_approach(values: [f64; 2], slopes: [f64; 2]) -> Option<f64> {
-    const SAMPLES: usize = 16;
     if opposite(values[0], values[1]) {
         return None;
     }
-    let sign = if values[0] + values[1] < 0.0 { -1.0 } else { 1.0 };
+    let difference = values[1] - values[0];
+    // Of c1 + 2 c2 s + 3 c3 s^2, the derivative of the cubic.
+    let (c1, c2, c3) =
+        (slopes[0], 3.0 * difference - 2.0 * slopes[0] - slopes[1], slopes[0] + slopes[1] - 2.0 * difference);
+    let discriminant = c2 * c2 - 3.0 * c1 * c3;
+    if discriminant.is_nan() || discriminant < 0.0 {
+        return None;
+    }
+    let root = -(c2 + discriminant.sqrt().copysign(c2));
     let limit = SUSPICIOUS * values[0].abs().min(values[1].abs());
-    (1..SAMPLES)
-        .map(|index| {
-            let s = index as f64 / SAMPLES as f64;
-            let step = s * s * (3.0 - 2.0 * s);
-            let value = values[0] * (1.0 - step)
-                + values[1] * step
-                + s * (1.0 - s) * ((1.0 - s) * slopes[0] - s * slopes[1]);
-            (s, sign * value)
-        })
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .filter(|&(_, least)| least < limit)
-        .map(|(s, _)| s)
+    [root / (3.0 * c3), c1 / root]
+        .into_iter()
+        .filter(|s| *s > 0.0 && *s < 1.0)
+        .map(|s| (s, values[0].signum() * (values[0] + s * (c1 + s * (c2 + s * c3)))))
+        .filter(|&(_, value)| value < limit)
+        .min_by(|one, other| one.1.total_cmp(&other.1))
+        .map(|(s, _)| s.clamp(SMALLEST_FRACTION, 1.0 - SMALLEST_FRACTION))
 }
 
 /// Where a second look is needed although no test function changes sign.
@@ -120,7 +124,7 @@ fn suspicious(before: &Node, after: &Node, distance: f64) -> Option<f64> {
         let extreme = one + s * (linear + s * quadratic);
         let inside = s > 0.0 && s < 1.0;
         let near = extreme * one.signum() < SUSPICIOUS * one.abs().min(other.abs());
-        (inside && near).then_some(s.clamp(0.1, 0.9))
+        (inside && near).then_some(s.clamp(SMALLEST_FRACTION, 1.0 - SMALLEST_FRACTION))
     })
 }
 

@@ -141,10 +141,14 @@ pub(super) fn hopf<F: VectorField>(
         }
         let kappa = solved.unknown[3 * n];
         let eigenvalue = system.rate * kappa.abs().sqrt();
+        let mut node = finish(curve, unknown, &before.tangent)?;
+        if !node.point.spectrum.has_pair(eigenvalue, kappa > 0.0) {
+            continue;
+        }
         let error = location_error(&solved);
-        let problem = &curve.system.problem;
+        let (problem, unknown) = (&curve.system.problem, &node.unknown);
         let special = if kappa > 0.0 {
-            SpecialPoint::Hopf(HopfPoint::at(problem, &unknown, &scales, eigenvalue, error)?)
+            SpecialPoint::Hopf(HopfPoint::at(problem, unknown, &scales, eigenvalue, error)?)
         } else {
             let parameters = problem.parameters_at(&unknown[n..]);
             SpecialPoint::NeutralSaddle(NeutralSaddle {
@@ -156,7 +160,8 @@ pub(super) fn hopf<F: VectorField>(
                 eigenvalue,
             })
         };
-        return complete(curve, before, unknown, special);
+        node.point.special = Some(Box::new(special));
+        return Ok(node);
     }
     Ok(degenerate(curve, before, after, distance, SpecialKind::Hopf, test))
 }

@@ -17,7 +17,13 @@ const DEPARTURE: f64 = 1e-3;
 
 /// The settings that suit equilibria, where steps cost little: short ones, so that nothing is jumped over.
 pub fn equilibrium_settings() -> Settings {
-    Settings { initial_step: 0.005, largest_step: 0.1, predictor_error: 1e-3, ..Settings::default() }
+    Settings {
+        initial_step: 0.005,
+        largest_step: 0.1,
+        predictor_error: 1e-3,
+        corrector_tolerance: 1e-12,
+        ..Settings::default()
+    }
 }
 
 /// Where a branch starts.
@@ -138,7 +144,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
             allowed: format!("one of {}", names.join(", ")),
         })?;
         let bound = check_range(&name, &range)?;
-        for value in self.at.iter().filter(|value| !range.contains(value)) {
+        if let Some(value) = self.at.iter().find(|value| !range.contains(value)) {
             return Err(Error::Invalid {
                 name: "at".into(),
                 value: value.to_string(),
@@ -167,7 +173,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
             }
         };
         let scales = scales(&problem, &unknown, bound.upper - bound.lower);
-        let mut curve = EquilibriumCurve::new(problem, scales, self.settings);
+        let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
         let mut tangent = match tangent {
             Some(tangent) => tangent,
             None => curve.system.tangent(&unknown)?,
@@ -192,6 +198,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
             }
             let start =
                 unknown.iter().zip(&tangent).map(|(value, slope)| value + departure * slope).collect();
+            curve.restart();
             follow(curve, start, tangent, &request, &mut observe)
         };
         let forward = run(&mut curve, 1.0)?;
@@ -209,7 +216,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
         };
         let directions = [backward, forward]
             .map(|followed| BranchDirection { solutions: followed.solutions, stop: followed.stop });
-        Ok(EquilibriumBranch::assemble(self.field, active, parameters, directions, middle))
+        Ok(EquilibriumBranch::assemble(self.field, active, parameters, &self.at, directions, middle))
     }
 }
 

@@ -8,7 +8,10 @@ use num_complex::Complex64;
 /// A real part smaller than this part of the largest modulus is rounding error.
 const UNDECIDED: f64 = 1e-13;
 /// A sum of two eigenvalues smaller than this part of their moduli may be rounding error.
-const UNDECIDED_SUM: f64 = 1e-11;
+const UNDECIDED_SUM: f64 = 1e-12;
+/// Agreement, relative to the largest modulus, of eigenvalues computed in two ways. Defective ones are accurate to the
+/// square root of rounding only.
+const PAIR_TOLERANCE: f64 = 1e-6;
 /// Ratio of the sum of two eigenvalues to their moduli above which the test function saturates.
 const SATURATION: f64 = 0.1;
 
@@ -49,6 +52,17 @@ impl Spectrum {
             hopf_decided &= ratio.abs() > UNDECIDED_SUM;
         });
         Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_decided })
+    }
+
+    /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has
+    /// solutions that consist of one eigenvector only.
+    pub fn has_pair(&self, modulus: f64, imaginary: bool) -> bool {
+        let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let target = if imaginary { Complex64::new(0.0, modulus) } else { Complex64::new(modulus, 0.0) };
+        let near = |target: Complex64| {
+            self.eigenvalues.iter().any(|value| (value - target).norm() <= PAIR_TOLERANCE * largest)
+        };
+        near(target) && near(-target)
     }
 
     /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
