@@ -23,7 +23,8 @@ pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<Pa
             readable_by_all(&file)?;
             Ok(file)
         });
-        complete.push((written.map_err(|source| PaperError::Unwritable { path: path.clone(), source })?, path));
+        complete
+            .push((written.map_err(|source| PaperError::Unwritable { path: path.clone(), source })?, path));
     }
     let named = complete.into_iter().map(|(file, path)| match file.persist(&path) {
         Ok(_) => Ok(path),

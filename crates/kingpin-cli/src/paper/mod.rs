@@ -3,20 +3,36 @@
 //! Each figure has a file here that computes and draws it. The statements are in [`claims`]; what is said of them
 //! follows from numbers computed in the same run. [`run`] does everything and writes the files when all are ready.
 
+mod branches;
+pub mod claims;
 mod data;
+mod diagrams_in_space;
 mod files;
+mod page;
 mod rolling_limit;
 mod stability_chart;
+mod turning_radii;
 mod uniform_motion;
 
+use branches::Branches;
+use claims::{Claim, Computed};
 use data::Data;
 use kingpin::chart::Observer;
+use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Color, Figure, FigureError, palette};
+use page::PageFigure;
 use rayon::prelude::*;
+use rolling_limit::RollingLimits;
 use serde::Serialize;
+use stability_chart::StabilityChart;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use uniform_motion::UniformMotions;
 
+/// The figures of the paper that are computed.
+const FIGURES: [u8; 5] = [2, 3, 4, 5, 6];
 /// Turning radii of figures 3 and 6, in m.
 const RADII: [f64; 5] = [0.5, 1.0, 2.0, 5.0, f64::INFINITY];
 /// Resolution of the PNG files in dots per inch.
@@ -36,17 +52,22 @@ pub struct PaperOptions {
 pub struct Report {
     /// The files.
     pub files: Vec<PathBuf>,
+    /// The statements of the paper; none where one figure only was asked for.
+    pub claims: Vec<Claim>,
 }
 
 /// Why there is no report.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
     /// There is no such figure.
-    #[error("--figure {0}: the paper has no such result; allowed: 2, 3, 4, 5 and 6")]
+    #[error("--figure {0}: not a computed figure of the paper; allowed: 2, 3, 4, 5 or 6")]
     UnknownFigure(u8),
     /// The wheel has no such motion.
     #[error(transparent)]
     Wheel(#[from] KingpinError),
+    /// A motion could not be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
     /// Eigenvalues did not converge.
     #[error(transparent)]
     Eigenvalues(#[from] arclength::linear::eigenvalues::EigenvalueError),
@@ -58,6 +79,17 @@ pub enum PaperError {
         /// Where.
         place: String,
     },
+    /// A branch of cycles could not be followed to the ends of its interval.
+    #[error("the branch of cycles at {place} ends early: {reason}")]
+    BranchEnds {
+        /// Where.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// The observer asked to stop.
+    #[error("cancelled; no file was written")]
+    Cancelled,
     /// A figure could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),
@@ -79,32 +111,124 @@ struct Drawing {
     caption: String,
 }
 
-/// Computes and draws what is asked for, and writes it.
+/// Computes and draws what is asked for, and writes it. `observer` is told the part that is done and may cancel.
 ///
 /// # Errors
 /// [`PaperError`]; then no file was written.
-pub fn run(options: &PaperOptions, _observer: &Observer) -> Result<Report, PaperError> {
+pub fn run(options: &PaperOptions, observer: &Observer) -> Result<Report, PaperError> {
+    if let Some(number) = options.figure.filter(|number| !FIGURES.contains(number)) {
+        return Err(PaperError::UnknownFigure(number));
+    }
     files::prepare(&options.out)?;
+    let (drawings, claims) = match options.figure {
+        Some(number) => (vec![one_figure(number, observer)?], Vec::new()),
+        None => everything(observer)?,
+    };
+    let pictures: Vec<Pictures> = drawings.par_iter().map(Drawing::pictures).collect::<Result<_, _>>()?;
+    let mut contents = Vec::new();
+    if options.figure.is_none() {
+        let figures: Vec<PageFigure> = drawings
+            .iter()
+            .zip(&pictures)
+            .map(|(drawing, pictures)| PageFigure {
+                number: drawing.number,
+                svg: &pictures.svg,
+                caption: &drawing.caption,
+            })
+            .collect();
+        let page = page::page(&figures, &claims, &parameters_of_the_wheel());
+        contents.push(("report.html".to_owned(), page.into_bytes()));
+    }
+    for (drawing, Pictures { svg, png }) in drawings.iter().zip(pictures) {
+        let name = |ending: &str| format!("figure{}.{ending}", drawing.number);
+        contents.push((name("svg"), svg.into_bytes()));
+        contents.push((name("png"), png));
+        contents.push((name("csv"), drawing.data.to_csv().into_bytes()));
+    }
+    Ok(Report { files: files::write(&options.out, &contents)?, claims })
+}
+
+fn one_figure(number: u8, observer: &Observer) -> Result<Drawing, PaperError> {
+    let progress = Progress::new(observer, branches::TASKS);
+    match number {
+        2 => Ok(UniformMotions::compute()?.drawing()),
+        3 => StabilityChart::compute()?.drawing(),
+        4 => Ok(RollingLimits::compute()?.drawing()),
+        5 => diagrams_in_space::drawing(&Branches::compute(&progress)?),
+        _ => turning_radii::drawing(&Branches::compute(&progress)?),
+    }
+}
+
+/// All figures and statements.
+fn everything(observer: &Observer) -> Result<(Vec<Drawing>, Vec<Claim>), PaperError> {
+    let progress = Progress::new(observer, branches::TASKS + claims::GROUPS + 1);
+    let (branches, rest) = rayon::join(
+        || Branches::compute(&progress),
+        || {
+            let rest = (UniformMotions::compute()?, StabilityChart::compute()?, RollingLimits::compute()?);
+            progress.step()?;
+            Ok::<_, PaperError>(rest)
+        },
+    );
+    let (branches, (motions, chart, limits)) = (branches?, rest?);
+    let computed = Computed { motions: &motions, chart: &chart, limits: &limits, branches: &branches };
+    let claims = claims::all(&computed, &progress)?;
     let drawings = vec![
-        uniform_motion::UniformMotions::compute()?.drawing(),
-        stability_chart::StabilityChart::compute()?.drawing()?,
-        rolling_limit::RollingLimits::compute()?.drawing(),
+        motions.drawing(),
+        chart.drawing()?,
+        limits.drawing(),
+        diagrams_in_space::drawing(&branches)?,
+        turning_radii::drawing(&branches)?,
     ];
-    let pictures: Vec<[(String, Vec<u8>); 3]> =
-        drawings.par_iter().map(Drawing::files).collect::<Result<_, _>>()?;
-    let all: Vec<(String, Vec<u8>)> = pictures.into_iter().flatten().collect();
-    Ok(Report { files: files::write(&options.out, &all)? })
+    Ok((drawings, claims))
+}
+
+/// The wheel of the paper, in HTML.
+fn parameters_of_the_wheel() -> String {
+    let wheel = Wheel::default();
+    let shown = [Key::MW, Key::MC, Key::JWxi, Key::JWzeta, Key::JCz, Key::WheelRadius, Key::LC, Key::K];
+    let parameter = |key: Key| {
+        let unit = key.unit().replace("^2", "²");
+        let value = claims::number(wheel.get(key), 6);
+        match key.symbol().split_once('_') {
+            Some((letter, index)) => format!("<i>{letter}</i><sub>{index}</sub> = {value} {unit}"),
+            None => format!("<i>{}</i> = {value} {unit}", key.symbol()),
+        }
+    };
+    shown.map(parameter).join(", ")
+}
+
+/// Counts the tasks that are done and tells the observer.
+struct Progress<'a> {
+    observer: &'a Observer<'a>,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl<'a> Progress<'a> {
+    fn new(observer: &'a Observer<'a>, total: usize) -> Self {
+        Self { observer, done: AtomicUsize::new(0), total }
+    }
+
+    fn step(&self) -> Result<(), PaperError> {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        match (self.observer)(done as f64 / self.total as f64) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(PaperError::Cancelled),
+        }
+    }
+}
+
+/// A figure in both its formats.
+struct Pictures {
+    svg: String,
+    png: Vec<u8>,
 }
 
 impl Drawing {
-    fn files(&self) -> Result<[(String, Vec<u8>); 3], PaperError> {
+    fn pictures(&self) -> Result<Pictures, PaperError> {
         let (svg, png) = rayon::join(|| self.figure.to_svg(), || self.figure.to_png(DPI));
-        let name = |ending: &str| format!("figure{}.{ending}", self.number);
-        Ok([
-            (name("svg"), svg?.into_bytes()),
-            (name("png"), png?),
-            (name("csv"), self.data.to_csv().into_bytes()),
-        ])
+        Ok(Pictures { svg: svg?, png: png? })
     }
 }
 

@@ -12,13 +12,35 @@ const FASTEST: f64 = 13.0;
 /// Shortest caster of the figure in m.
 const SHORTEST: f64 = 0.005;
 /// Vertical forces on the king pin in N; negative ones press down.
-pub(super) const LOADS: [f64; 4] = [0.0, -10.0, -20.0, -50.0];
+const LOADS: [f64; 4] = [0.0, -10.0, -20.0, -50.0];
+/// Where the curves carry their names, as part of their length from below.
+const NAMES_AT: [f64; 4] = [0.45, 0.45, 0.83, 0.45];
 
 /// The rolling limit under one vertical load.
 pub(super) struct RollingLimit {
     pub load: f64,
     /// Curves of speed in m/s and caster length in m.
     pub curves: Vec<Vec<[f64; 2]>>,
+}
+
+/// From the short caster to the long one.
+fn upwards(points: &mut Vec<[f64; 2]>) {
+    if let [first, .., last] = points[..]
+        && first[1] > last[1]
+    {
+        points.reverse();
+    }
+}
+
+impl RollingLimit {
+    /// The speed of the limit at a caster length, between the two points of the curve next to it.
+    pub fn speed_at(&self, caster_length: f64) -> Option<f64> {
+        let segments = self.curves.iter().flat_map(|curve| curve.windows(2));
+        segments
+            .map(|ends| (ends[0], ends[1]))
+            .find(|([_, from], [_, to])| (from - caster_length) * (to - caster_length) <= 0.0 && from != to)
+            .map(|([speed, from], [next, to])| speed + (next - speed) * (caster_length - from) / (to - from))
+    }
 }
 
 /// What figure 4 shows.
@@ -29,13 +51,13 @@ pub(super) struct RollingLimits {
 
 impl RollingLimits {
     pub fn compute() -> Result<Self, PaperError> {
-        let plane = Plane::new(
-            Interval::new(Key::V, 0.0..=FASTEST)?,
-            Interval::new(Key::L, SHORTEST..=LENGTHS[1])?,
-        )?;
+        let plane =
+            Plane::new(Interval::new(Key::V, 0.0..=FASTEST)?, Interval::new(Key::L, SHORTEST..=LENGTHS[1])?)?;
         let limit = |load: f64| {
             let wheel = paper_wheel(FASTEST, LENGTHS[1], SHADED_RADIUS)?.with(Key::FAz, load)?;
-            let curves = wheel.rolling_limit(&plane)?.into_iter().map(|curve| curve.points).collect();
+            let mut curves: Vec<Vec<[f64; 2]>> =
+                wheel.rolling_limit(&plane)?.into_iter().map(|curve| curve.points).collect();
+            curves.iter_mut().for_each(upwards);
             Ok::<_, PaperError>(RollingLimit { load, curves })
         };
         Ok(Self {
@@ -57,10 +79,11 @@ impl RollingLimits {
         .curve(Line::new(stability).color(palette::BLACK).width(1.4).legend("stability boundary"))
         .legend_entry(LegendEntry::patch("linearly stable", shade))
         .legend(Legend::Below);
-        for (RollingLimit { load, curves }, color) in self.limits.iter().zip(colors) {
+        for ((RollingLimit { load, curves }, color), name_at) in self.limits.iter().zip(colors).zip(NAMES_AT)
+        {
             for curve in curves {
                 let line = Line::new(curve.iter().copied().map(<(f64, f64)>::from)).color(color).width(0.8);
-                panel = panel.curve(line.name(format!("$F_{{\\mathrm{{A}}z}}={load}$ N")));
+                panel = panel.curve(line.name_at(name_at, format!("$F_{{\\mathrm{{A}}z}}={load}$ N")));
             }
         }
         let figure = Figure::single_column()

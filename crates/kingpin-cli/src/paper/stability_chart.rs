@@ -8,7 +8,9 @@ use super::data::{Cell, Data};
 use super::{Drawing, PaperError, RADII, paper_wheel, radius_color, radius_label};
 use arclength::linear::eigenvalues::eigenvalues;
 use kingpin::{Axis as Interval, Key, Plane, Wheel};
-use kingpin_figure::{Anchor, Axis, Color, Figure, Line, Marker, MarkerShape, Markers, Note, Panel, Region, palette};
+use kingpin_figure::{
+    Anchor, Axis, Color, Figure, Line, Marker, MarkerShape, Markers, Note, Panel, Region, palette,
+};
 use rayon::prelude::*;
 
 /// The chart of figure 3: largest speed in m/s, and caster lengths in m.
@@ -69,7 +71,8 @@ impl StabilityChart {
             .note(Note::new((1.9, 0.12), "stable"))
             .note(Note::new((9.0, 0.022), "unstable"));
         let mut collapse =
-            Panel::new(Axis::new("$v/r$ (rad/s)").limits(0.0, LARGEST_YAW_RATE), lengths().without_labels()).tag("(b)");
+            Panel::new(Axis::new("$v/r$ (rad/s)").limits(0.0, LARGEST_YAW_RATE), lengths().without_labels())
+                .tag("(b)");
         for boundary in &self.boundaries {
             let color = radius_color(boundary.radius);
             if boundary.radius == SHADED_RADIUS {
@@ -128,8 +131,7 @@ impl StabilityChart {
     }
 
     fn data(&self) -> Data {
-        let mut data =
-            Data::new(&[("curve", ""), ("r", "m"), ("v", "m/s"), ("l", "m"), ("v/r", "rad/s")]);
+        let mut data = Data::new(&[("curve", ""), ("r", "m"), ("v", "m/s"), ("l", "m"), ("v/r", "rad/s")]);
         for Boundary { radius, points } in &self.boundaries {
             for [speed, length] in points {
                 data.push([
@@ -184,10 +186,9 @@ fn collapse_marker(radius: f64) -> Marker {
 
 /// Caster length in m above which straight running is stable at any speed.
 pub(super) fn critical_caster_length() -> Result<f64, PaperError> {
-    paper_wheel(1.0, 0.08, f64::INFINITY)?.critical_caster_length().ok_or(PaperError::NotFound {
-        what: "critical caster length",
-        place: "straight running".to_owned(),
-    })
+    paper_wheel(1.0, 0.08, f64::INFINITY)?
+        .critical_caster_length()
+        .ok_or(PaperError::NotFound { what: "critical caster length", place: "straight running".to_owned() })
 }
 
 /// The boundary at one radius, traced over all its speeds.
