@@ -2,6 +2,7 @@
 
 mod branch;
 mod collocation;
+mod condensation;
 mod curve;
 mod cyclic;
 mod defining;
