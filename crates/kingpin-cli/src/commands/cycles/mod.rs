@@ -1,0 +1,163 @@
+//! `kingpin cycles`: limit cycles from the Hopf points of an interval, or from a labelled point of an earlier result.
+
+mod picture;
+mod report;
+
+use crate::along::{along, as_followed, values_on};
+use crate::commands::hopf;
+use crate::failure::Failure;
+use crate::numbers::readable;
+use crate::options::{OutputOptions, WheelOptions, parameter_help};
+use crate::progress::Progress;
+use crate::range::{Range, Values};
+use crate::stored::{LabelledPoint, PointReference};
+use arclength::continuation::Stop;
+use clap::Args;
+use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
+use kingpin::rolling::STATE_NAMES;
+use kingpin::{KingpinError, Wheel};
+use report::CyclesReport;
+use std::ops::ControlFlow;
+
+const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
+         kingpin cycles --from cycles.json:AT3 --along r=1:inf";
+/// Results that a computation of cycles can start from.
+const SCHEMAS: [&str; 2] = ["kingpin.hopf", "kingpin.cycles"];
+/// Relative distance of parameter values within which two Hopf points are the same.
+const SAME_HOPF_POINT: f64 = 1e-6;
+
+/// Limit cycles along a parameter, from Hopf points or from a labelled point of an earlier result
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Cycles {
+    /// Parameter and its interval; r may reach inf
+    #[arg(long, value_name = "KEY=A:B")]
+    along: Range,
+
+    /// Values of the parameter at which cycles are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Start from a labelled point of a file that `hopf` or `cycles` wrote, with its wheel
+    #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "wheel")]
+    from: Option<PointReference>,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// Where branches of cycles come from.
+enum Start {
+    Hopf(Vec<HopfPoint>),
+    Cycle { origin: String, orbit: arclength::cycle::Orbit },
+}
+
+/// A branch with the label of what it starts from.
+#[derive(Debug)]
+struct Branch {
+    origin: String,
+    /// The Hopf point that it starts from.
+    hopf: Option<HopfPoint>,
+    cycles: WheelCycles,
+}
+
+impl Cycles {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare(true)?;
+        let along = along(&self.along)?;
+        let at = values_on(&along, &self.at)?;
+        let options = CycleOptions { at, ..CycleOptions::default() };
+        let (wheel, start) = self.start(along)?;
+        let progress = Progress::spinner("cycles", output.is_quiet());
+        let mut found = 0;
+        let mut observer = |value: f64, period: f64| {
+            found += 1;
+            let (value, period) = (readable(value), readable(period));
+            progress.message(format!("{found} cycles, {} = {value}, period {period} s", along.key()));
+            ControlFlow::Continue(())
+        };
+        let branches = match start {
+            Start::Cycle { origin, orbit } => {
+                let cycles = wheel.cycles_through(&orbit, along, &options, &mut observer)?;
+                vec![Branch { origin, hopf: None, cycles }]
+            }
+            Start::Hopf(points) => from_hopf_points(points, along, &options, &mut observer)?,
+        };
+        drop(progress);
+        output.deliver(&CyclesReport::new(wheel, along, &branches)?)
+    }
+
+    fn start(&self, along: Along) -> Result<(Wheel, Start), Failure> {
+        let Some(reference) = &self.from else {
+            let wheel = self.wheel.wheel()?;
+            return Ok((wheel, Start::Hopf(hopf::search(&wheel, along)?.points)));
+        };
+        let LabelledPoint { parameters, orbit } = reference.read(&SCHEMAS, STATE_NAMES.len())?;
+        let wheel = stored_wheel(&parameters).map_err(|error| Failure::ResultFile {
+            path: reference.path.clone(),
+            problem: error.to_string(),
+        })?;
+        let wheel = self.wheel.change(wheel)?;
+        let value = wheel.get(along.key());
+        let (start, end) = along.ends();
+        if !along.contains(value) {
+            return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
+        }
+        if let Some(orbit) = orbit {
+            return Ok((wheel, Start::Cycle { origin: reference.label.clone(), orbit }));
+        }
+        // The point of an earlier search is found again along the parameter that now varies, on the way from one end: a
+        // search that starts at the point itself would not see the growth rate change its sign.
+        let mut points = hopf::search(&wheel.with(along.key(), start)?, along)?.points;
+        points.retain(|point| same_value(point.value, value));
+        if points.is_empty() {
+            return Err(Failure::NothingFound(format!(
+                "{} is no Hopf point along {}: the wheel was changed, or the growth rate does not change its sign \
+                 there; without --from all Hopf points of the interval are found",
+                reference.label,
+                along.key()
+            )));
+        }
+        Ok((wheel, Start::Hopf(points)))
+    }
+}
+
+/// Every branch once: one that ends at another of the Hopf points is not followed again from there.
+fn from_hopf_points(
+    points: Vec<HopfPoint>,
+    along: Along,
+    options: &CycleOptions,
+    mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+) -> Result<Vec<Branch>, Failure> {
+    let mut branches: Vec<Branch> = Vec::new();
+    for (index, hopf) in points.into_iter().enumerate() {
+        let reached = branches.iter().any(|branch| match branch.cycles.stops.1 {
+            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, hopf.value), parameter),
+            _ => false,
+        });
+        if !reached {
+            let cycles = hopf.cycles(along, options, &mut observer)?;
+            branches.push(Branch { origin: hopf::label(index), hopf: Some(hopf), cycles });
+        }
+    }
+    Ok(branches)
+}
+
+fn same_value(first: f64, second: f64) -> bool {
+    first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
+}
+
+/// The wheel of a result file.
+fn stored_wheel(parameters: &[(String, f64)]) -> Result<Wheel, KingpinError> {
+    let mut wheel = Wheel::default();
+    for (name, value) in parameters {
+        wheel.set_value(name.parse()?, *value)?;
+    }
+    Ok(wheel)
+}

@@ -1,0 +1,229 @@
+//! `kingpin simulate`: a time history from the uniform motion with some states perturbed.
+
+use crate::columns::Columns;
+use crate::description;
+use crate::document::{NamedNumbers, Schema};
+use crate::failure::Failure;
+use crate::numbers::readable;
+use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
+use crate::range::Assignment;
+use crate::report::Report;
+use crate::table::Table;
+use clap::Args;
+use kingpin::rolling::STATE_NAMES;
+use kingpin::simulation::TimeHistory;
+use kingpin::{Key, Wheel};
+use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
+use serde::Serialize;
+use std::io::{self, Write};
+
+const EXAMPLE: &str = "kingpin simulate --duration 5 --perturb psi=0.1 -s v=8 -o history.svg";
+/// Most samples.
+const MOST_POINTS: u64 = 1_000_000;
+/// A curve of more samples than this is drawn through the smallest and largest of each of half as many groups.
+const DRAWN_POINTS: usize = 4000;
+
+/// Time history from the perturbed uniform motion
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Simulate {
+    /// Time in s
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    duration: f64,
+
+    /// Change a state (u, q, psi, V, Omega) at the start; repeatable
+    #[arg(long, value_name = "KEY=DELTA", allow_hyphen_values = true)]
+    perturb: Vec<Assignment>,
+
+    /// Number of samples, at equal distances from 0 to T
+    #[arg(long, value_name = "N", default_value_t = 1001,
+          value_parser = clap::value_parser!(u64).range(2..=MOST_POINTS))]
+    points: u64,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Simulate {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare(true)?;
+        let wheel = self.wheel.wheel()?;
+        let perturbations: Vec<(&str, f64)> = self.perturb.iter().map(amount).collect::<Result<_, _>>()?;
+        let history = wheel.simulate(self.duration, &perturbations, self.points as usize)?;
+        if let Some(time) = history.rolling_lost_at {
+            output.warn(&format!(
+                "rolling needs more than the static friction from t = {} s on; the history goes on as if it rolled",
+                readable(time)
+            ));
+        }
+        output.deliver(&HistoryReport::new(wheel, &history))
+    }
+}
+
+fn amount(perturbation: &Assignment) -> Result<(&str, f64), Failure> {
+    let failure = || Failure::Option {
+        option: "--perturb",
+        given: format!("{}={}", perturbation.key, perturbation.value),
+        problem: "the change is not a number".to_owned(),
+        allowed: "a finite number in SI units".to_owned(),
+    };
+    let amount = perturbation.value.parse().map_err(|_| failure())?;
+    Ok((&perturbation.key, amount))
+}
+
+/// A time history: a list of the times, one per state, and two of forces.
+#[derive(Debug, Serialize)]
+struct HistoryReport {
+    #[serde(skip)]
+    wheel: Wheel,
+    rolling_lost_at: Option<f64>,
+    t: Vec<f64>,
+    u: Vec<f64>,
+    q: Vec<f64>,
+    psi: Vec<f64>,
+    #[serde(rename = "V")]
+    forward_speed: Vec<f64>,
+    #[serde(rename = "Omega")]
+    yaw_rate: Vec<f64>,
+    friction_force: Vec<f64>,
+    normal_force: Vec<f64>,
+}
+
+impl HistoryReport {
+    fn new(wheel: Wheel, history: &TimeHistory) -> Self {
+        let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
+        Self {
+            wheel,
+            rolling_lost_at: history.rolling_lost_at,
+            t: history.times.clone(),
+            u: state(0),
+            q: state(1),
+            psi: state(2),
+            forward_speed: state(3),
+            yaw_rate: state(4),
+            friction_force: history.friction_force(),
+            normal_force: history.normal_force(),
+        }
+    }
+
+    fn states(&self) -> [(&'static str, &Vec<f64>, &'static str, &'static str); 5] {
+        let [u, q, psi, forward_speed, yaw_rate] = STATE_NAMES;
+        [
+            (u, &self.u, "m", "$u$ (m)"),
+            (q, &self.q, "m", "$q$ (m)"),
+            (psi, &self.psi, "rad", "$\\psi$ (rad)"),
+            (forward_speed, &self.forward_speed, "m/s", "$V$ (m/s)"),
+            (yaw_rate, &self.yaw_rate, "rad/s", "$\\Omega$ (rad/s)"),
+        ]
+    }
+}
+
+impl Report for HistoryReport {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.simulate")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        writeln!(out, "motion at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
+        let mut table = Table::new(["", "start", "end", "smallest", "largest", ""]);
+        let force = ("friction_force", &self.friction_force, "N", "");
+        for (name, values, unit, _) in self.states().into_iter().chain([force]) {
+            let [smallest, largest] = extremes(values);
+            let ends = [values.first(), values.last()].map(|end| end.copied().into());
+            let [start, end] = ends;
+            table.row([name.into(), start, end, smallest.into(), largest.into(), unit.into()]);
+        }
+        table.write(out)?;
+        writeln!(out)?;
+        match self.rolling_lost_at {
+            Some(time) => {
+                writeln!(out, "rolling needs more than the static friction first at {} s", readable(time))
+            }
+            None => writeln!(out, "the static friction suffices for rolling throughout"),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        let times = Columns::new().numbers("t", self.t.iter().copied());
+        let states = self.states().into_iter();
+        states
+            .fold(times, |columns, (name, values, ..)| columns.numbers(name, values.iter().copied()))
+            .numbers("friction_force", self.friction_force.iter().copied())
+            .numbers("normal_force", self.normal_force.iter().copied())
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let limit = self.wheel.get(Key::MuS) * self.wheel.normal_force();
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        let panel = |values: &[f64], label: &str, last: bool| {
+            let time = Axis::new("$t$ (s)").limits(0.0, duration);
+            let time = if last { time } else { time.without_labels() };
+            let mut panel = Panel::new(time, Axis::new(label))
+                .curve(Line::new(drawn(&self.t, values)).color(palette::BLUE));
+            if let Some(lost) = self.rolling_lost_at.filter(|&time| time > 0.0) {
+                let [low, high] = extremes(values);
+                panel =
+                    panel.curve(Line::new([(lost, low), (lost, high)]).dotted().color(palette::VERMILION));
+            }
+            panel
+        };
+        let states = self.states();
+        // Column by column the panels read u, q, psi and V, Omega, force.
+        let mut force = panel(&self.friction_force, "$|T|$ (N)", true);
+        force = force.curve(
+            Line::new([(0.0, limit), (duration, limit)])
+                .dashed()
+                .color(palette::VERMILION)
+                .legend("static friction"),
+        );
+        let mut figure = Figure::double_column().columns(2).height_mm(120.0).description(format!(
+            "Time histories of the states and of the friction force at {}",
+            description::of(&self.wheel, &[])
+        ));
+        for row in 0..2 {
+            for (_, values, _, label) in [states[row], states[row + 3]] {
+                figure = figure.panel(panel(values, label, false));
+            }
+        }
+        let (_, values, _, label) = states[2];
+        Ok(Some(figure.panel(panel(values, label, true)).panel(force)))
+    }
+}
+
+fn extremes(values: &[f64]) -> [f64; 2] {
+    values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
+}
+
+/// The points through which a curve is drawn: all, or the extremes of groups of neighbours.
+fn drawn(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    let all = || times.iter().copied().zip(values.iter().copied());
+    if values.len() <= DRAWN_POINTS {
+        return all().collect();
+    }
+    let group = (2 * values.len()).div_ceil(DRAWN_POINTS);
+    let points: Vec<(f64, f64)> = all().collect();
+    let smaller = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+    points
+        .chunks(group)
+        .flat_map(|neighbours| {
+            let ends = [neighbours.iter().min_by(smaller), neighbours.iter().max_by(smaller)];
+            let mut ends: Vec<(f64, f64)> = ends.into_iter().flatten().copied().collect();
+            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            ends
+        })
+        .collect()
+}

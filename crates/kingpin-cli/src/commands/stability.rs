@@ -1,0 +1,100 @@
+//! `kingpin stability`: eigenvalues of the uniform motion and its critical speed.
+
+use crate::columns::Columns;
+use crate::description;
+use crate::document::{NamedNumbers, Schema};
+use crate::failure::Failure;
+use crate::numbers::readable;
+use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
+use crate::report::Report;
+use crate::table::Table;
+use clap::Args;
+use kingpin::{Key, Wheel};
+use serde::Serialize;
+use std::io::{self, Write};
+
+const EXAMPLE: &str = "kingpin stability -s v=9 -s l=0.08";
+
+/// Linear stability of the uniform motion: eigenvalues and critical speed
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Stability {
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Stability {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare(false)?;
+        let wheel = self.wheel.wheel()?;
+        let motion = wheel.uniform_motion()?;
+        let critical = wheel.critical_speed();
+        output.deliver(&StabilityReport {
+            wheel,
+            eigenvalues: motion.eigenvalues().map(|eigenvalue| [eigenvalue.re, eigenvalue.im]),
+            growth_rate: motion.growth_rate(),
+            stable: motion.is_stable(),
+            critical_speed: critical.map(|critical| critical.speed),
+            critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
+        })
+    }
+}
+
+/// Linear stability of the uniform motion.
+#[derive(Debug, Serialize)]
+struct StabilityReport {
+    #[serde(skip)]
+    wheel: Wheel,
+    eigenvalues: [[f64; 2]; 5],
+    growth_rate: f64,
+    stable: bool,
+    critical_speed: Option<f64>,
+    critical_yaw_rate: Option<f64>,
+}
+
+impl Report for StabilityReport {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.stability")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let verdict = if self.stable { "stable" } else { "unstable" };
+        writeln!(out, "uniform motion at {}: {verdict}\n", description::of(&self.wheel, &[]))?;
+        let mut table = Table::new(["eigenvalue", "real part (1/s)", "imaginary part (rad/s)"]);
+        for (number, [real, imaginary]) in (1..).zip(self.eigenvalues) {
+            table.row([format!("{number}").into(), real.into(), imaginary.into()]);
+        }
+        table.write(out)?;
+        writeln!(out)?;
+        let straight = self.wheel.get(Key::TurningRadius).is_infinite();
+        if straight && self.wheel.get(Key::CU) == 0.0 {
+            writeln!(out, "on a straight path without c_u, the undamped longitudinal motion does not count")?;
+        }
+        writeln!(out, "growth rate {} 1/s", readable(self.growth_rate))?;
+        match (self.critical_speed, self.critical_yaw_rate) {
+            (Some(speed), Some(yaw_rate)) => writeln!(
+                out,
+                "critical speed {} m/s, there the yaw rate is {} rad/s",
+                readable(speed),
+                readable(yaw_rate)
+            ),
+            _ => writeln!(out, "no critical speed: the stability changes at no speed"),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        Columns::new()
+            .numbers("real_part", self.eigenvalues.map(|[real, _]| real))
+            .numbers("imaginary_part", self.eigenvalues.map(|[_, imaginary]| imaginary))
+    }
+}
