@@ -11,6 +11,8 @@ mod files;
 mod page;
 mod rolling_limit;
 mod stability_chart;
+#[cfg(test)]
+mod tests;
 mod turning_radii;
 mod uniform_motion;
 
@@ -94,7 +96,7 @@ pub enum PaperError {
     #[error(transparent)]
     Figure(#[from] FigureError),
     /// A file could not be written.
-    #[error("--out {}: cannot write there: {source}; no file was left behind", path.display())]
+    #[error("--out: cannot write {}: {source}; give a folder in which files can be made", path.display())]
     Unwritable {
         /// The file or folder.
         path: PathBuf,

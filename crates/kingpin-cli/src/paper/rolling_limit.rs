@@ -1,7 +1,7 @@
 //! Figure 4: the speed up to which the ground can hold the wheel in its uniform motion, for several vertical loads.
 
 use super::data::Data;
-use super::stability_chart::{Boundary, LENGTHS, SHADED_RADIUS, boundary, stable_side};
+use super::stability_chart::{Boundary, LENGTHS, SHADED_RADIUS, boundary, stable_side, upwards};
 use super::{Drawing, PaperError, paper_wheel};
 use kingpin::{Axis as Interval, Key, Plane};
 use kingpin_figure::{Axis, Figure, Legend, LegendEntry, Line, Panel, Region, palette};
@@ -21,15 +21,6 @@ pub(super) struct RollingLimit {
     pub load: f64,
     /// Curves of speed in m/s and caster length in m.
     pub curves: Vec<Vec<[f64; 2]>>,
-}
-
-/// From the short caster to the long one.
-fn upwards(points: &mut Vec<[f64; 2]>) {
-    if let [first, .., last] = points[..]
-        && first[1] > last[1]
-    {
-        points.reverse();
-    }
 }
 
 impl RollingLimit {
@@ -57,7 +48,7 @@ impl RollingLimits {
             let wheel = paper_wheel(FASTEST, LENGTHS[1], SHADED_RADIUS)?.with(Key::FAz, load)?;
             let mut curves: Vec<Vec<[f64; 2]>> =
                 wheel.rolling_limit(&plane)?.into_iter().map(|curve| curve.points).collect();
-            curves.iter_mut().for_each(upwards);
+            curves.iter_mut().for_each(|points| upwards(points));
             Ok::<_, PaperError>(RollingLimit { load, curves })
         };
         Ok(Self {

@@ -4,6 +4,7 @@
 //! The boundaries are traced as curves in the plane of speed and caster length. The collapse is shown with crossings
 //! found independently: eigenvalues, by QR iteration, of the Jacobian, by automatic differentiation.
 
+use super::claims::number;
 use super::data::{Cell, Data};
 use super::{Drawing, PaperError, RADII, paper_wheel, radius_color, radius_label};
 use arclength::linear::eigenvalues::eigenvalues;
@@ -111,10 +112,17 @@ impl StabilityChart {
         let caption = format!(
             "Linear stability of the uniform motion. (a) Boundaries for several turning radii, the stable side on the left, \
              shaded for <i>r</i> = {SHADED_RADIUS} m; straight running (<i>r</i> = ∞) is stable above <i>l</i> = {:.6} m at every speed. \
-             (b) The same boundaries against <i>v</i>/<i>r</i>: one curve. Markers are crossings of eigenvalues of the Jacobian, the line is the closed form.",
-            self.critical_caster_length
+             (b) The same boundaries against <i>v</i>/<i>r</i>. The line is the closed form; the markers are crossings of \
+             eigenvalues of the Jacobian, which deviate from it by at most {} (relative).",
+            self.critical_caster_length,
+            number(self.largest_deviation(), 2)
         );
         Ok(Drawing { number: 3, figure, data: self.data(), caption })
+    }
+
+    /// Largest relative deviation of a crossing from the closed form.
+    pub fn largest_deviation(&self) -> f64 {
+        self.crossings.iter().map(|crossing| crossing.deviation.abs()).fold(0.0, f64::max)
     }
 
     /// The closed form of the boundary, as yaw rate against caster length.
@@ -184,6 +192,15 @@ fn collapse_marker(radius: f64) -> Marker {
     Marker::new(shape).open().size(size).color(color)
 }
 
+/// Turns a curve of speeds and caster lengths so that it starts at the shorter caster.
+pub(super) fn upwards(points: &mut [[f64; 2]]) {
+    if let [first, .., last] = *points
+        && first[1] > last[1]
+    {
+        points.reverse();
+    }
+}
+
 /// Caster length in m above which straight running is stable at any speed.
 pub(super) fn critical_caster_length() -> Result<f64, PaperError> {
     paper_wheel(1.0, 0.08, f64::INFINITY)?
@@ -204,11 +221,7 @@ pub(super) fn boundary(radius: f64) -> Result<Boundary, PaperError> {
         .map(|curve| curve.points)
         .min_by(|a, b| lowest(a).total_cmp(&lowest(b)))
         .ok_or(PaperError::NotFound { what: "stability boundary", place: format!("r = {radius} m") })?;
-    if let [first, .., last] = points[..]
-        && first[1] > last[1]
-    {
-        points.reverse();
-    }
+    upwards(&mut points);
     points.insert(0, [0.0, critical_caster_length()?]);
     Ok(Boundary { radius, points })
 }

@@ -80,8 +80,8 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, PaperError> {
     let caption = format!(
         "Limit cycles at <i>l</i> = {FIGURE_6_LENGTH} m for several turning radii: largest and smallest deviation of the caster angle \
          from that of the uniform motion. The branch of straight running (<i>r</i> = ∞), which has no Hopf point, was reached by \
-         following a cycle in 1/<i>r</i> to zero. Dashed: unstable. Between the torus bifurcations (open diamonds) of a \
-         branch its cycles have three unstable directions, elsewhere one."
+         following a cycle in 1/<i>r</i> to zero. Dashed: unstable. At a torus bifurcation a pair of multipliers \
+         crosses the unit circle."
     );
     Ok(Drawing { number: 6, figure, data, caption })
 }

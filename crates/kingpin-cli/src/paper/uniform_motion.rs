@@ -3,6 +3,7 @@
 //! The closed form is drawn; Newton's method on the equilibrium of the vector field, started away from it, is kept
 //! beside it as the independent witness.
 
+use super::claims::number;
 use super::data::Data;
 use super::{Drawing, PaperError, paper_wheel};
 use kingpin::{Key, UniformMotion};
@@ -109,10 +110,17 @@ impl UniformMotions {
         let caption = format!(
             "Uniform motion at <i>l</i> = {CASTER_LENGTH} m, <i>r</i> = {RADIUS} m: lateral displacement <i>q</i><sub>0</sub>, \
              longitudinal displacement <i>u</i><sub>0</sub> and caster angle <i>ψ</i><sub>0</sub>, from the closed form; \
-             dashed where unstable (beyond {:.4} m/s). The dots in (b) are what Newton's method finds: zero but for rounding.",
-            self.critical_speed
+             dashed where unstable (beyond {:.4} m/s). The dots in (b) are what Newton's method finds, at most \
+             {} m.",
+            self.critical_speed,
+            number(self.largest_longitudinal_displacement(), 2)
         );
         Drawing { number: 2, figure, data, caption }
+    }
+
+    /// Largest absolute value of `u0` that Newton's method finds, in m.
+    pub fn largest_longitudinal_displacement(&self) -> f64 {
+        self.newton.iter().map(|motion| motion.u().abs()).fold(0.0, f64::max)
     }
 
     /// A quantity against the speed, from its limit at standstill on; dashed beyond the critical speed.

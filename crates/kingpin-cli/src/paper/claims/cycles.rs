@@ -173,7 +173,7 @@ fn more_unstable_directions(branch: &Branch) -> Option<String> {
     let mut speeds =
         branch.cycles.iter().filter(|cycle| cycle.unstable_multipliers > 1).map(|cycle| cycle.value);
     let fastest = speeds.next()?;
-    let slowest = speeds.last().unwrap_or(fastest);
+    let slowest = speeds.next_back().unwrap_or(fastest);
     let ends = branch.cycles.iter().filter_map(|cycle| match cycle.role {
         Role::Special(Special::Torus { .. }) => Some(cycle.value),
         _ => None,

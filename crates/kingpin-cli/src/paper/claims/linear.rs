@@ -37,7 +37,7 @@ pub(in crate::paper) fn of_the_uniform_motion(motions: &UniformMotions) -> Resul
         largest(closed.state().into_iter().zip(newton.state()).map(|(a, b)| (a - b).abs() / scale))
     }));
     let residual = largest(motions.closed_form.iter().map(|motion| motion.residual()));
-    let longitudinal = largest(motions.newton.iter().map(|motion| motion.u().abs()));
+    let longitudinal = motions.largest_longitudinal_displacement();
     let lateral = largest(motions.newton.iter().map(|motion| motion.q().abs()));
     let closed = Claim {
         place: "section 3",
@@ -199,7 +199,7 @@ fn critical_speed_in_cornering() -> Result<Claim, PaperError> {
 }
 
 fn proportional_to_the_radius(chart: &StabilityChart) -> Claim {
-    let deviation = largest(chart.crossings.iter().map(|crossing| crossing.deviation.abs()));
+    let deviation = chart.largest_deviation();
     let mut falling = true;
     for one in &chart.crossings {
         for other in chart.crossings.iter().filter(|other| other.caster_length == one.caster_length) {

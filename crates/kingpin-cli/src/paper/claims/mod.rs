@@ -1,8 +1,7 @@
 //! The statements of the paper's text, each beside what was computed.
 //!
 //! A statement is paraphrased by hand; its verdict and the evidence are computed in the run. The statements are those
-//! about the equations ([`equations`]), the uniform motion and its stability ([`linear`]), the contact force
-//! ([`contact`]) and the limit cycles ([`cycles`]).
+//! about the equations, the uniform motion and its stability, the contact force, and the limit cycles.
 
 mod contact;
 mod cycles;
