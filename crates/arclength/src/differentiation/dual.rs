@@ -42,7 +42,7 @@ impl<T: Scalar, const N: usize> Dual<T, N> {
     }
 
     /// Chain rule: `value` and `slope` of a function of one variable at `self.value`.
-    #[inline(always)]
+    #[inline]
     fn chain(self, value: T, slope: T) -> Self {
         Self { value, derivatives: self.derivatives.map(|derivative| slope * derivative) }
     }
@@ -57,7 +57,7 @@ impl<T: Scalar, const N: usize> From<f64> for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Add for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(mut self, other: Self) -> Self {
         self += other;
         self
@@ -66,7 +66,7 @@ impl<T: Scalar, const N: usize> Add for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Sub for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn sub(mut self, other: Self) -> Self {
         self -= other;
         self
@@ -75,7 +75,7 @@ impl<T: Scalar, const N: usize> Sub for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Mul for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, other: Self) -> Self {
         let mut product = Self::constant(self.value * other.value);
         for direction in 0..N {
@@ -88,7 +88,7 @@ impl<T: Scalar, const N: usize> Mul for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Div for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, other: Self) -> Self {
         let reciprocal = other.value.recip();
         let mut quotient = Self::constant(self.value * reciprocal);
@@ -102,7 +102,7 @@ impl<T: Scalar, const N: usize> Div for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Neg for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn neg(self) -> Self {
         Self { value: -self.value, derivatives: self.derivatives.map(|derivative| -derivative) }
     }
@@ -110,7 +110,7 @@ impl<T: Scalar, const N: usize> Neg for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Add<f64> for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn add(mut self, constant: f64) -> Self {
         self.value = self.value + constant;
         self
@@ -119,7 +119,7 @@ impl<T: Scalar, const N: usize> Add<f64> for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Sub<f64> for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn sub(mut self, constant: f64) -> Self {
         self.value = self.value - constant;
         self
@@ -128,7 +128,7 @@ impl<T: Scalar, const N: usize> Sub<f64> for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Mul<f64> for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn mul(self, constant: f64) -> Self {
         Self {
             value: self.value * constant,
@@ -139,7 +139,7 @@ impl<T: Scalar, const N: usize> Mul<f64> for Dual<T, N> {
 
 impl<T: Scalar, const N: usize> Div<f64> for Dual<T, N> {
     type Output = Self;
-    #[inline(always)]
+    #[inline]
     fn div(self, constant: f64) -> Self {
         Self {
             value: self.value / constant,
@@ -149,7 +149,7 @@ impl<T: Scalar, const N: usize> Div<f64> for Dual<T, N> {
 }
 
 impl<T: Scalar, const N: usize> AddAssign for Dual<T, N> {
-    #[inline(always)]
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         self.value += other.value;
         for direction in 0..N {
@@ -159,7 +159,7 @@ impl<T: Scalar, const N: usize> AddAssign for Dual<T, N> {
 }
 
 impl<T: Scalar, const N: usize> SubAssign for Dual<T, N> {
-    #[inline(always)]
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         self.value -= other.value;
         for direction in 0..N {
@@ -169,14 +169,14 @@ impl<T: Scalar, const N: usize> SubAssign for Dual<T, N> {
 }
 
 impl<T: Scalar, const N: usize> MulAssign for Dual<T, N> {
-    #[inline(always)]
+    #[inline]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
 impl<T: Scalar, const N: usize> DivAssign for Dual<T, N> {
-    #[inline(always)]
+    #[inline]
     fn div_assign(&mut self, other: Self) {
         *self = *self / other;
     }
@@ -189,7 +189,7 @@ impl<T: Scalar, const N: usize> Sum for Dual<T, N> {
 }
 
 impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
-    #[inline(always)]
+    #[inline]
     fn value(&self) -> f64 {
         self.value.value()
     }
