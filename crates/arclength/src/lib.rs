@@ -13,6 +13,7 @@ pub mod error;
 pub mod field;
 pub mod integration;
 pub mod linear;
+pub mod locus;
 
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;

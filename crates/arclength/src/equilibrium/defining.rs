@@ -11,12 +11,12 @@ use crate::differentiation::Scalar;
 use crate::field::VectorField;
 
 /// Inner product of a vector with a fixed one.
-fn against<T: Scalar>(fixed: &[f64], vector: &[T]) -> T {
+pub(crate) fn against<T: Scalar>(fixed: &[f64], vector: &[T]) -> T {
     vector.iter().zip(fixed).map(|(&entry, &weight)| entry * weight).sum()
 }
 
 /// Splits `unknown` into the parts of the given lengths and the rest.
-fn parts<T, const N: usize>(mut unknown: &[T], lengths: [usize; N]) -> ([&[T]; N], &[T]) {
+pub(crate) fn parts<T, const N: usize>(mut unknown: &[T], lengths: [usize; N]) -> ([&[T]; N], &[T]) {
     let split = lengths.map(|length| {
         let (part, rest) = unknown.split_at(length);
         unknown = rest;
@@ -26,15 +26,17 @@ fn parts<T, const N: usize>(mut unknown: &[T], lengths: [usize; N]) -> ([&[T]; N
 }
 
 /// State and parameters, the unknowns of the equilibrium problem, out of a longer list of unknowns.
-fn equilibrium<T: Scalar>(state: &[T], values: &[T]) -> Vec<T> {
+pub(crate) fn equilibrium<T: Scalar>(state: &[T], values: &[T]) -> Vec<T> {
     state.iter().chain(values).copied().collect()
 }
 
 /// Folds: `f = 0`, `f_x v = 0`, `<normal, v> = 1` with the unknowns `(x, v, parameters)`.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct FoldSystem<'a, F> {
     pub equilibria: EquilibriumProblem<'a, F>,
     pub normal: Vec<f64>,
+    /// Left null vector at the last point of a curve; empty at first.
+    pub left: Vec<f64>,
 }
 
 impl<F: VectorField> AlgebraicProblem for FoldSystem<'_, F> {
@@ -61,7 +63,7 @@ impl<F: VectorField> AlgebraicProblem for FoldSystem<'_, F> {
 ///
 /// The eigenvalues are `+-rate sqrt(-kappa)`: imaginary at a Hopf point, where `kappa` is positive, real at a
 /// neutral saddle, where it is negative. The system is regular at a Bogdanov-Takens point in between.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct HopfSystem<'a, F> {
     pub equilibria: EquilibriumProblem<'a, F>,
     pub normal: Vec<f64>,
@@ -99,12 +101,14 @@ impl<F: VectorField> AlgebraicProblem for HopfSystem<'_, F> {
 /// Branch points of curves in the first active parameter: `f + beta psi = 0`, `f_x' psi = 0`, `f_p . psi = 0`,
 /// `<normal, psi> = 1` with the unknowns `(x, psi, beta, parameters)`; `beta` is zero at a branch point of the field
 /// itself. Components are divided by `scales` where vectors of states and of rates meet.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct BranchPointSystem<'a, F> {
     pub equilibria: EquilibriumProblem<'a, F>,
     pub normal: Vec<f64>,
     /// Sizes of the states; the perturbation is `beta psi scales^2`, so that units match.
     pub scales: Vec<f64>,
+    /// Size of `beta`: the largest modulus of an eigenvalue.
+    pub rate: f64,
 }
 
 impl<F: VectorField> AlgebraicProblem for BranchPointSystem<'_, F> {
@@ -133,5 +137,26 @@ impl<F: VectorField> AlgebraicProblem for BranchPointSystem<'_, F> {
             field[index] += beta[0] * left[index] * (self.scales[index] * self.scales[index]);
         }
         rest[n + 1] = against(&self.normal, left) - 1.0;
+    }
+}
+
+// Derived implementations would ask the field to be `Clone`.
+impl<F> Clone for FoldSystem<'_, F> {
+    fn clone(&self) -> Self {
+        Self { equilibria: self.equilibria.clone(), normal: self.normal.clone(), left: self.left.clone() }
+    }
+}
+
+impl<F> Clone for HopfSystem<'_, F> {
+    fn clone(&self) -> Self {
+        let (normal, conormal) = (self.normal.clone(), self.conormal.clone());
+        Self { equilibria: self.equilibria.clone(), normal, conormal, rate: self.rate }
+    }
+}
+
+impl<F> Clone for BranchPointSystem<'_, F> {
+    fn clone(&self) -> Self {
+        let (normal, scales) = (self.normal.clone(), self.scales.clone());
+        Self { equilibria: self.equilibria.clone(), normal, scales, rate: self.rate }
     }
 }

@@ -136,34 +136,57 @@ impl<'a, F: VectorField> CriticalPair<'a, F> {
 
     /// Solves `(shift - A) y = right_hand_side`; `None` if singular.
     pub fn resolvent(&self, shift: Complex64, right_hand_side: &[Complex64]) -> Option<Vec<Complex64>> {
-        // As a real system for real and imaginary part: shift = a + i b.
+        self.bordered_resolvent(shift, right_hand_side, false)
+    }
+
+    /// Solves `(i frequency - A) y = right_hand_side`, `<p, y> = 0`, where `<p, right_hand_side> = 0`.
+    pub fn critical_resolvent(&self, right_hand_side: &[Complex64]) -> Option<Vec<Complex64>> {
+        self.bordered_resolvent(Complex64::new(0.0, self.frequency), right_hand_side, true)
+    }
+
+    fn bordered_resolvent(
+        &self,
+        shift: Complex64,
+        right_hand_side: &[Complex64],
+        bordered: bool,
+    ) -> Option<Vec<Complex64>> {
+        // As a real system: the complex number a + i b is the block (a, -b; b, a).
         let n = self.state.len();
-        let m = 2 * n;
+        let half = n + usize::from(bordered);
+        let m = 2 * half;
         let mut matrix = vec![0.0; m * m];
+        let mut put = |row: usize, column: usize, value: Complex64| {
+            matrix[row + m * column] += value.re;
+            matrix[half + row + m * (half + column)] += value.re;
+            matrix[half + row + m * column] += value.im;
+            matrix[row + m * (half + column)] -= value.im;
+        };
         for column in 0..n {
             for row in 0..n {
-                let entry = -self.matrix[row + n * column];
-                matrix[row + m * column] = entry;
-                matrix[n + row + m * (n + column)] = entry;
+                put(row, column, Complex64::from(-self.matrix[row + n * column]));
             }
-            matrix[column + m * column] += shift.re;
-            matrix[n + column + m * (n + column)] += shift.re;
-            matrix[n + column + m * column] += shift.im;
-            matrix[column + m * (n + column)] -= shift.im;
+            put(column, column, shift);
+            if bordered {
+                put(n, column, self.left[column].conj());
+                put(column, n, self.right[column]);
+            }
         }
+        let mut columns = self.scales.clone();
+        columns.resize(half, 1.0);
+        columns.extend_from_within(..);
         let mut lu = ScaledLu::default();
-        let columns: Vec<f64> = self.scales.iter().chain(&self.scales).copied().collect();
         if lu.factorize(m, &matrix, &columns) == 0.0 {
             return None;
         }
-        let parts =
-            right_hand_side.iter().map(|entry| entry.re).chain(right_hand_side.iter().map(|entry| entry.im));
-        let mut vector: Vec<f64> = parts.collect();
+        let mut vector = vec![0.0; m];
+        for (index, entry) in right_hand_side.iter().enumerate() {
+            (vector[index], vector[half + index]) = (entry.re, entry.im);
+        }
         lu.solve(&mut vector);
         if vector.iter().any(|entry| !entry.is_finite()) {
             return None;
         }
-        Some((0..n).map(|index| Complex64::new(vector[index], vector[n + index])).collect())
+        Some((0..n).map(|index| Complex64::new(vector[index], vector[half + index])).collect())
     }
 
     /// First Lyapunov coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, equation 5.34) and the sum of

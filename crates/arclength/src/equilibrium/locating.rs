@@ -6,6 +6,7 @@ use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::{NeutralSaddle, SpecialPoint};
+use super::spectrum::critical_pair;
 use crate::algebraic::{Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, finish, locate};
@@ -101,7 +102,7 @@ pub(super) fn fold<F: VectorField>(
         let size = length(&near.tangent[..n], &scales[..n]);
         let vector: Vec<f64> = near.tangent[..n].iter().map(|entry| entry / size).collect();
         let normal = vector.iter().zip(&scales).map(|(entry, scale)| entry / (scale * scale)).collect();
-        let system = FoldSystem { equilibria: curve.system.problem.clone(), normal };
+        let system = FoldSystem { equilibria: curve.system.problem.clone(), normal, left: Vec::new() };
         let start = [&near.unknown[..n], &vector, &near.unknown[n..]].concat();
         let sizes = [&scales[..n], &scales[..n], &scales[n..]].concat();
         let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
@@ -125,7 +126,7 @@ pub(super) fn hopf<F: VectorField>(
     let test = |tests: &Tests| tests.hopf;
     for tolerance in BRACKETS {
         let near = near_zero(curve, before, after, tolerance, test);
-        let Some(pair) = near.point.spectrum.critical_pair() else { continue };
+        let Some(pair) = critical_pair(&near.point.spectrum.eigenvalues) else { continue };
         let matrix = curve.jacobian(&near.unknown);
         let scales = curve.system.scales.clone();
         let Some((system, start)) =
@@ -256,13 +257,15 @@ pub(super) fn branch_point<F: VectorField>(
             equilibria: curve.system.problem.clone(),
             normal,
             scales: scales[..n].to_vec(),
+            rate: if rate > 0.0 { rate } else { 1.0 },
         };
         let start = [&near.unknown[..n], &left, &[0.0], &near.unknown[n..]].concat();
-        let rate = if rate > 0.0 { rate } else { 1.0 };
-        let sizes = [&scales[..n], &inverse, &[rate], &scales[n..]].concat();
+        let sizes = [&scales[..n], &inverse, &[system.rate], &scales[n..]].concat();
         let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
         let unknown = [&solved.unknown[..n], &solved.unknown[2 * n + 1..]].concat();
-        if !inside(&scales, before, distance, &unknown) || solved.unknown[2 * n].abs() > UNPERTURBED * rate {
+        if !inside(&scales, before, distance, &unknown)
+            || solved.unknown[2 * n].abs() > UNPERTURBED * system.rate
+        {
             continue;
         }
         let tangent: Vec<f64> =

@@ -16,6 +16,7 @@ pub(crate) mod multilinear;
 mod newton;
 pub(crate) mod problem;
 mod run;
+mod second_lyapunov;
 mod special;
 pub(crate) mod spectrum;
 
@@ -26,3 +27,4 @@ pub use hopf::HopfPoint;
 pub use newton::find_equilibrium;
 pub use run::{Equilibria, equilibrium_settings};
 pub use special::{NeutralSaddle, SpecialPoint};
+pub(crate) use {newton::check_length, run::check_range};

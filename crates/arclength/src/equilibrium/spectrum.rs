@@ -45,12 +45,7 @@ impl Spectrum {
         } else {
             Stability::Stable
         };
-        let (mut hopf_test, mut hopf_decided) = (1.0, true);
-        for_each_pair(&eigenvalues, |one, other| {
-            let ratio = sum_ratio(one, other);
-            hopf_test *= ratio / ratio.hypot(SATURATION);
-            hopf_decided &= ratio.abs() > UNDECIDED_SUM;
-        });
+        let (hopf_test, hopf_decided) = hopf_test(&eigenvalues);
         Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_decided })
     }
 
@@ -64,19 +59,43 @@ impl Spectrum {
         };
         near(target) && near(-target)
     }
+}
 
-    /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
-    pub fn critical_pair(&self) -> Option<[Complex64; 2]> {
-        let mut smallest = None;
-        for_each_pair(&self.eigenvalues, |one, other| {
-            let ratio = sum_ratio(one, other).abs();
-            let candidate = one.im == -other.im;
-            if candidate && smallest.as_ref().is_none_or(|(least, _)| ratio < *least) {
-                smallest = Some((ratio, [one, other]));
-            }
-        });
-        smallest.map(|(_, pair)| pair)
+/// See [`Spectrum::hopf_test`] and [`Spectrum::hopf_decided`].
+pub(crate) fn hopf_test(eigenvalues: &[Complex64]) -> (f64, bool) {
+    let (mut product, mut decided) = (1.0, true);
+    for_each_pair(eigenvalues, |one, other| {
+        let ratio = sum_ratio(one, other);
+        product *= ratio / ratio.hypot(SATURATION);
+        decided &= ratio.abs() > UNDECIDED_SUM;
+    });
+    (product, decided)
+}
+
+/// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
+pub(crate) fn critical_pair(eigenvalues: &[Complex64]) -> Option<[Complex64; 2]> {
+    let mut smallest = None;
+    for_each_pair(eigenvalues, |one, other| {
+        let ratio = sum_ratio(one, other).abs();
+        let candidate = one.im == -other.im;
+        if candidate && smallest.as_ref().is_none_or(|(least, _)| ratio < *least) {
+            smallest = Some((ratio, [one, other]));
+        }
+    });
+    smallest.map(|(_, pair)| pair)
+}
+
+/// The eigenvalues without those closest to the ones given.
+pub(crate) fn without(eigenvalues: &[Complex64], removed: &[Complex64]) -> Vec<Complex64> {
+    let mut rest = eigenvalues.to_vec();
+    for target in removed {
+        let nearest =
+            (0..rest.len()).min_by(|&a, &b| (rest[a] - target).norm().total_cmp(&(rest[b] - target).norm()));
+        if let Some(index) = nearest {
+            rest.remove(index);
+        }
     }
+    rest
 }
 
 /// `(a + b)/(|a| + |b|)` where that is real, the modulus otherwise; zero for a double zero.

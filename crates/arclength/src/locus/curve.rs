@@ -1,0 +1,165 @@
+//! A curve of special equilibria as continuation sees it.
+
+use super::codimension_two::CodimensionTwoPoint;
+use super::events;
+use super::kind::{Linearized, LocusKind, Monitor};
+use crate::algebraic::{DenseSystem, Differentiator};
+use crate::branch::SpecialKind;
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
+use crate::equilibrium::spectrum::Spectrum;
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::linear::eigenvalues::EigenvalueWorkspace;
+use std::marker::PhantomData;
+
+/// Perturbation of the field, relative to its fastest rate, beyond which a branch point does not persist.
+const UNPERTURBED: f64 = 1e-8;
+
+/// What is known about a point of the curve.
+#[derive(Clone, Debug)]
+pub(super) struct Inspection {
+    pub spectrum: Spectrum,
+    pub monitor: Monitor,
+    pub special: Option<Box<CodimensionTwoPoint>>,
+}
+
+/// The curve of one kind of special equilibria in two parameters.
+pub(super) struct LocusCurve<'a, F: VectorField, K: LocusKind<'a, F>> {
+    pub system: DenseSystem<K>,
+    pub settings: Settings,
+    /// Sizes of the states.
+    pub states: Vec<f64>,
+    ranges: [f64; 2],
+    first_scales: Vec<f64>,
+    visited: Vec<[f64; 2]>,
+    differentiator: Differentiator,
+    workspace: EigenvalueWorkspace,
+    matrix: Vec<f64>,
+    residual: Vec<f64>,
+    field: PhantomData<&'a F>,
+}
+
+impl<'a, F: VectorField, K: LocusKind<'a, F>> LocusCurve<'a, F, K> {
+    pub fn new(kind: K, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
+        let n = states.len();
+        let sizes = kind.sizes(&states, ranges);
+        Self {
+            system: DenseSystem::new(kind, sizes),
+            settings,
+            ranges,
+            first_scales: states.clone(),
+            visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
+            states,
+            differentiator: Differentiator::default(),
+            workspace: EigenvalueWorkspace::new(n),
+            matrix: Vec::new(),
+            residual: vec![0.0; n],
+            field: PhantomData,
+        }
+    }
+
+    /// State and parameters out of the unknowns.
+    pub fn equilibrium(&self, unknown: &[f64]) -> Vec<f64> {
+        [&unknown[..self.states.len()], &unknown[unknown.len() - 2..]].concat()
+    }
+
+    /// The column-major Jacobian with respect to the state.
+    pub fn jacobian(&mut self, unknown: &[f64]) -> &[f64] {
+        let n = self.states.len();
+        let point = self.equilibrium(unknown);
+        let problem = self.system.problem.equilibria();
+        self.matrix.resize(n * (n + 2), 0.0);
+        self.differentiator.jacobian(problem, &point, &mut self.residual, &mut self.matrix, n);
+        &self.matrix[..n * n]
+    }
+
+    pub fn spectrum(&mut self, unknown: &[f64]) -> Result<Spectrum, Error> {
+        let n = self.states.len();
+        self.jacobian(unknown);
+        Spectrum::of(&self.matrix[..n * n], &mut self.workspace)
+    }
+
+    /// Suits scales and normalisations to `unknown`.
+    pub fn renormalize(&mut self, unknown: &mut [f64], vectors: &mut [&mut Vec<f64>]) -> Result<(), Error> {
+        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.states) {
+            *range = [range[0].min(*value), range[1].max(*value)];
+            *scale = scale.max(range[1] - range[0]);
+        }
+        let spectrum = self.spectrum(unknown)?;
+        let largest = spectrum.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        self.system.problem.renormalize(unknown, vectors, &self.states, largest);
+        self.system.scales = self.system.problem.sizes(&self.states, self.ranges);
+        Ok(())
+    }
+}
+
+impl<'a, F: VectorField, K: LocusKind<'a, F>> Curve for LocusCurve<'a, F, K> {
+    type Point = Inspection;
+
+    fn unknowns(&self) -> usize {
+        self.system.problem.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.system.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.system.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.system.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        self.system.apply_metric(vector, image);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        self.renormalize(unknown, vectors)?;
+        Ok(Adaptation::Unchanged)
+    }
+
+    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+        let n = self.states.len();
+        let spectrum = self.spectrum(unknown)?;
+        let point = Linearized {
+            unknown,
+            matrix: &self.matrix[..n * n],
+            eigenvalues: &spectrum.eigenvalues,
+            scales: &self.states,
+        };
+        let monitor = self.system.problem.monitor(&point)?;
+        Ok(Inspection { spectrum, monitor, special: None })
+    }
+
+    fn special_points(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Result<Vec<Solution<Inspection>>, Error> {
+        events::special_points(self, before, after)
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+        let states = unknown.iter().zip(&self.first_scales).map(|(value, scale)| value / scale);
+        let last = unknown.last().map(|value| value / self.ranges[1]);
+        states.chain(last).collect()
+    }
+
+    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+        if K::KIND != SpecialKind::BranchPoint {
+            return None;
+        }
+        let perturbation = after.unknown[2 * self.states.len()];
+        let limit = UNPERTURBED * self.system.scales[2 * self.states.len()];
+        (perturbation.abs() > limit).then(|| {
+            Ending::Between(Stop::Failed(Error::Invalid {
+                name: "branch point".into(),
+                value: "one that breaks up when the second parameter varies".into(),
+                allowed: "branch points that persist, by symmetry or because a state stays zero".into(),
+            }))
+        })
+    }
+}

@@ -1,0 +1,315 @@
+//! What the curves of folds, of Hopf points and of branch points have in common, and how they differ.
+
+use super::gauge::{PlaneGauge, combine, rewrite_vector};
+use crate::algebraic::{AlgebraicProblem, length};
+use crate::branch::SpecialKind;
+use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
+use crate::equilibrium::hopf::CriticalPair;
+use crate::equilibrium::locating::normals;
+use crate::equilibrium::multilinear::MultilinearForms;
+use crate::equilibrium::problem::EquilibriumProblem;
+use crate::equilibrium::spectrum::{hopf_test, without};
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::linear::eigenvectors::left_eigenvector;
+use num_complex::Complex64;
+
+/// Sizes of eigenvectors in the metric, so that they count less than states and parameters.
+const VECTOR_WEIGHT: f64 = 10.0;
+/// The vectors that span the critical plane are chosen anew when the Jacobian turns the first one this much less than it
+/// turns the best of the candidates.
+const SMALLEST_TURN: f64 = 0.5;
+/// Candidates.
+const ANGLES: usize = 32;
+
+/// An equilibrium on the curve with its linearisation.
+pub(super) struct Linearized<'u> {
+    pub unknown: &'u [f64],
+    /// Column-major Jacobian with respect to the state.
+    pub matrix: &'u [f64],
+    pub eigenvalues: &'u [Complex64],
+    /// Sizes of the states.
+    pub scales: &'u [f64],
+}
+
+/// Test functions and other quantities at a point of a curve.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Monitor {
+    /// Test functions that are defined here, by what happens where they change sign.
+    pub tests: Vec<(SpecialKind, f64)>,
+    pub frequency: Option<f64>,
+    pub first_lyapunov: Option<f64>,
+}
+
+/// A kind of special equilibria of which there are curves in two parameters.
+pub(super) trait LocusKind<'a, F: VectorField>: AlgebraicProblem {
+    /// What the curve consists of.
+    const KIND: SpecialKind;
+
+    /// The equilibrium problem in two parameters.
+    fn equilibria(&self) -> &EquilibriumProblem<'a, F>;
+
+    /// Sizes of the unknowns; `states` are those of the states.
+    fn sizes(&self, states: &[f64], ranges: [f64; 2]) -> Vec<f64>;
+
+    /// Chooses normalisations that suit `unknown` and rewrites it and `vectors` for them. `largest` is the largest modulus of
+    /// an eigenvalue.
+    fn renormalize(
+        &mut self,
+        unknown: &mut [f64],
+        vectors: &mut [&mut Vec<f64>],
+        states: &[f64],
+        largest: f64,
+    );
+
+    /// Test functions and so on.
+    fn monitor(&mut self, point: &Linearized<'_>) -> Result<Monitor, Error>;
+
+    /// The problem of the codimension-two points that involve Hopf points: the frequency and `v`, `w`, `kappa`.
+    fn critical_eigenvalues(&self, unknown: &[f64]) -> Vec<Complex64>;
+}
+
+fn weighted(states: &[f64]) -> impl Iterator<Item = f64> + '_ {
+    states.iter().map(|scale| VECTOR_WEIGHT * scale)
+}
+
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn dual(vector: &[f64], scales: &[f64]) -> Vec<f64> {
+    vector.iter().zip(scales).map(|(entry, scale)| entry / (scale * scale)).collect()
+}
+
+/// Product of the real eigenvalues, each divided by its modulus plus a tenth of the largest one: changes sign where one of
+/// them passes zero.
+fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
+    eigenvalues
+        .iter()
+        .filter(|value| value.im >= 0.0)
+        .map(|value| {
+            let size = value.norm();
+            let sign = if value.im == 0.0 { value.re.signum() } else { 1.0 };
+            sign * size / size.hypot(0.1 * largest)
+        })
+        .product()
+}
+
+impl<'a, F: VectorField> LocusKind<'a, F> for FoldSystem<'a, F> {
+    const KIND: SpecialKind = SpecialKind::Fold;
+
+    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+        &self.equilibria
+    }
+
+    fn sizes(&self, states: &[f64], ranges: [f64; 2]) -> Vec<f64> {
+        states.iter().copied().chain(weighted(states)).chain(ranges).collect()
+    }
+
+    fn renormalize(
+        &mut self,
+        unknown: &mut [f64],
+        vectors: &mut [&mut Vec<f64>],
+        states: &[f64],
+        _largest: f64,
+    ) {
+        let n = states.len();
+        let size = length(&unknown[n..2 * n], states);
+        let normal: Vec<f64> = dual(&unknown[n..2 * n], states).iter().map(|entry| entry / size).collect();
+        rewrite_vector(n, &self.normal, &normal, unknown, vectors);
+        self.normal = normal;
+    }
+
+    fn monitor(&mut self, point: &Linearized<'_>) -> Result<Monitor, Error> {
+        let n = point.scales.len();
+        let failed = |_| Error::Eigenvalues { quantity: "null vectors" };
+        let vector = &point.unknown[n..2 * n];
+        let mut left: Vec<f64> = left_eigenvector(point.matrix, n, Complex64::ZERO)
+            .map_err(failed)?
+            .vector
+            .iter()
+            .map(|entry| entry.re)
+            .collect();
+        let size =
+            left.iter().zip(point.scales).map(|(entry, scale)| (entry * scale).powi(2)).sum::<f64>().sqrt();
+        // The sign that goes on continuously.
+        let sign =
+            if self.left.is_empty() || products(&left, &self.left, point.scales) >= 0.0 { 1.0 } else { -1.0 };
+        left.iter_mut().for_each(|entry| *entry *= sign / size);
+        let parameters = self.equilibria.parameters_at(&point.unknown[2 * n..]);
+        let forms = MultilinearForms {
+            field: self.equilibria.field,
+            state: &point.unknown[..n],
+            parameters: &parameters,
+        };
+        let curvature = forms.real(&[vector, vector]);
+        let vector_size = length(vector, point.scales);
+        let terms = inner(&left, &curvature) / (vector_size * vector_size);
+        let largest = point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let quadratic = if largest > 0.0 { terms / largest } else { terms };
+        let double = inner(&left, vector) / vector_size;
+        let rest = without(point.eigenvalues, &[Complex64::ZERO]);
+        let mut tests = vec![(SpecialKind::Cusp, quadratic)];
+        if n > 1 {
+            tests.push((SpecialKind::BogdanovTakens, double));
+        }
+        let (pairs, decided) = hopf_test(&rest);
+        if n > 2 && decided {
+            tests.push((SpecialKind::ZeroHopf, pairs));
+        }
+        self.left = left;
+        Ok(Monitor { tests, frequency: None, first_lyapunov: None })
+    }
+
+    fn critical_eigenvalues(&self, _unknown: &[f64]) -> Vec<Complex64> {
+        vec![Complex64::ZERO]
+    }
+}
+
+/// Inner product of covectors.
+fn products(one: &[f64], other: &[f64], scales: &[f64]) -> f64 {
+    one.iter().zip(other).zip(scales).map(|((a, b), scale)| a * scale * (b * scale)).sum()
+}
+
+impl<'a, F: VectorField> LocusKind<'a, F> for HopfSystem<'a, F> {
+    const KIND: SpecialKind = SpecialKind::Hopf;
+
+    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+        &self.equilibria
+    }
+
+    fn sizes(&self, states: &[f64], ranges: [f64; 2]) -> Vec<f64> {
+        let vectors = weighted(states).chain(weighted(states));
+        states.iter().copied().chain(vectors).chain([VECTOR_WEIGHT]).chain(ranges).collect()
+    }
+
+    fn renormalize(
+        &mut self,
+        unknown: &mut [f64],
+        vectors: &mut [&mut Vec<f64>],
+        states: &[f64],
+        _largest: f64,
+    ) {
+        let n = states.len();
+        // Another vector of the critical plane: v -> a v + b w, w -> a w - b kappa v. The best one is turned most by the
+        // Jacobian: v and w are then orthogonal, also at a Bogdanov-Takens point, where w is the null vector.
+        let kappa = unknown[3 * n];
+        let product = |one: &[f64], other: &[f64]| -> f64 {
+            one.iter().zip(other).zip(states).map(|((x, y), scale)| x / scale * (y / scale)).sum()
+        };
+        // Area that v and w span, divided by the square of v.
+        let turned = |first: &[f64], second: &[f64]| {
+            let (square, other, shared) =
+                (product(first, first), product(second, second), product(first, second));
+            (square * other - shared * shared).max(0.0).sqrt() / square
+        };
+        let (first, second) = (unknown[n..2 * n].to_vec(), unknown[2 * n..3 * n].to_vec());
+        let sizes = (length(&first, states), length(&second, states));
+        let best = (0..ANGLES)
+            .map(|index| {
+                let (sin, cos) = (std::f64::consts::PI * index as f64 / ANGLES as f64).sin_cos();
+                combine(&first, &second, kappa, cos / sizes.0, sin / sizes.1)
+            })
+            .max_by(|one, other| turned(&one.0, &one.1).total_cmp(&turned(&other.0, &other.1)));
+        let (one, other) = match best {
+            Some((one, other)) if turned(&first, &second) < SMALLEST_TURN * turned(&one, &other) => {
+                (one, other)
+            }
+            _ => (first, second),
+        };
+        // The unit of frequencies makes v and w equally long.
+        let rate_ratio = length(&one, states) / length(&other, states);
+        let rate_ratio = if rate_ratio.is_finite() && rate_ratio > 0.0 { rate_ratio } else { 1.0 };
+        let size = length(&one, states);
+        let [one, other] =
+            [one, other].map(|vector| vector.iter().map(|entry| entry / size).collect::<Vec<f64>>());
+        if let Some((normal, conormal)) = normals(&one, &other, states) {
+            let gauge = PlaneGauge { normal, conormal, rate_ratio };
+            gauge.rewrite(n, &self.normal, unknown, vectors);
+            self.rate /= rate_ratio;
+            (self.normal, self.conormal) = (gauge.normal, gauge.conormal);
+        }
+    }
+
+    fn monitor(&mut self, point: &Linearized<'_>) -> Result<Monitor, Error> {
+        let n = point.scales.len();
+        let kappa = point.unknown[3 * n];
+        let largest = point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let mut monitor = Monitor { tests: vec![(SpecialKind::BogdanovTakens, kappa)], ..Monitor::default() };
+        if kappa <= 0.0 {
+            return Ok(monitor);
+        }
+        let frequency = self.rate * kappa.sqrt();
+        monitor.frequency = Some(frequency);
+        let rest = without(point.eigenvalues, &self.critical_eigenvalues(point.unknown));
+        if n > 2 {
+            monitor.tests.push((SpecialKind::ZeroHopf, zero_test(&rest, largest)));
+        }
+        let (pairs, decided) = hopf_test(&rest);
+        if n > 3 && decided {
+            monitor.tests.push((SpecialKind::HopfHopf, pairs));
+        }
+        let parameters = self.equilibria.parameters_at(&point.unknown[3 * n + 1..]);
+        let state = &point.unknown[..n];
+        let local = CriticalPair::at(self.equilibria.field, state, &parameters, frequency, point.scales)?;
+        if let Some((value, _)) = local.first_lyapunov() {
+            monitor.first_lyapunov = Some(value);
+            // With the eigenvector of unit length in the metric, so that units do not matter.
+            let square = local
+                .right
+                .iter()
+                .zip(point.scales)
+                .map(|(entry, scale)| (entry / scale).norm_sqr())
+                .sum::<f64>();
+            monitor.tests.push((SpecialKind::GeneralizedHopf, value / square));
+        }
+        Ok(monitor)
+    }
+
+    fn critical_eigenvalues(&self, unknown: &[f64]) -> Vec<Complex64> {
+        let kappa = unknown[3 * self.equilibria.dimension];
+        let modulus = self.rate * kappa.abs().sqrt();
+        let value = if kappa > 0.0 { Complex64::new(0.0, modulus) } else { Complex64::new(modulus, 0.0) };
+        vec![value, -value]
+    }
+}
+
+impl<'a, F: VectorField> LocusKind<'a, F> for BranchPointSystem<'a, F> {
+    const KIND: SpecialKind = SpecialKind::BranchPoint;
+
+    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+        &self.equilibria
+    }
+
+    fn sizes(&self, states: &[f64], ranges: [f64; 2]) -> Vec<f64> {
+        let covectors = states.iter().map(|scale| VECTOR_WEIGHT / scale);
+        states.iter().copied().chain(covectors).chain([self.rate]).chain(ranges).collect()
+    }
+
+    fn renormalize(
+        &mut self,
+        unknown: &mut [f64],
+        vectors: &mut [&mut Vec<f64>],
+        states: &[f64],
+        largest: f64,
+    ) {
+        let n = states.len();
+        if largest > 0.0 {
+            self.rate = largest;
+        }
+        let size = products(&unknown[n..2 * n], &unknown[n..2 * n], states).sqrt();
+        let normal: Vec<f64> =
+            unknown[n..2 * n].iter().zip(states).map(|(entry, scale)| entry * scale * scale / size).collect();
+        rewrite_vector(n, &self.normal, &normal, unknown, vectors);
+        self.scales = states.to_vec();
+        self.normal = normal;
+    }
+
+    fn monitor(&mut self, _point: &Linearized<'_>) -> Result<Monitor, Error> {
+        Ok(Monitor::default())
+    }
+
+    fn critical_eigenvalues(&self, _unknown: &[f64]) -> Vec<Complex64> {
+        vec![Complex64::ZERO]
+    }
+}

@@ -1,0 +1,21 @@
+//! Curves of special points in two parameters.
+//!
+//! [`EquilibriumLocus`] follows folds, Hopf points and branch points of equilibria while two parameters vary, by the
+//! extended systems that define them, and locates the points of codimension two on the way: cusps, Bogdanov-Takens,
+//! generalised Hopf (Bautin), zero-Hopf and Hopf-Hopf points. The metric is dimensionless, so that the steps depend on
+//! neither the units of states and parameters nor the scaling of eigenvectors. Source: Kuznetsov, *Elements of Applied
+//! Bifurcation Theory*, 3rd edition (2004), chapters 8 and 10.
+
+mod branch;
+mod codimension_two;
+mod curve;
+mod events;
+mod gauge;
+mod kind;
+mod locating;
+mod normal_form;
+mod run;
+
+pub use branch::{EquilibriumLocusBranch, LocusPoint};
+pub use codimension_two::CodimensionTwoPoint;
+pub use run::{EquilibriumLocus, LocusObserver};
