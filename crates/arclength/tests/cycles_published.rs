@@ -13,7 +13,8 @@ fn van_der_pol_periods() {
     // The Hopf point at mu = 0 is degenerate, so the branch starts from a cycle found by integration.
     let integrator = Integrator::with_tolerance(1e-12);
     let parameters = [1.0];
-    let settled = integrator.integrate(autonomous(&VanDerPol, &parameters), 0.0, &[2.0, 0.0], 60.0).expect("smooth");
+    let settled =
+        integrator.integrate(autonomous(&VanDerPol, &parameters), 0.0, &[2.0, 0.0], 60.0).expect("smooth");
     let orbit = Orbit::from_time_history(&VanDerPol, &parameters, &settled.state, 20.0).expect("a cycle");
     let branch = Cycles::of(&VanDerPol, CycleStart::Orbit(orbit))
         .parameters(&parameters)
@@ -29,7 +30,12 @@ fn van_der_pol_periods() {
 #[test]
 fn radial_cycle_has_its_exact_multiplier() {
     let start = hopf_start(&RadialCycle, &[0.0, 0.0], &[0.0]);
-    let branch = Cycles::of(&RadialCycle, start).parameters(&[0.0]).along(0, 0.0..=2.0).at(&[0.5, 2.0]).run().expect("exists");
+    let branch = Cycles::of(&RadialCycle, start)
+        .parameters(&[0.0])
+        .along(0, 0.0..=2.0)
+        .at(&[0.5, 2.0])
+        .run()
+        .expect("exists");
     for rho in [0.5, 2.0] {
         let cycle = branch.points.iter().find(|cycle| cycle.value == rho).expect("asked for");
         let exact = (-4.0 * std::f64::consts::PI * rho).exp();
@@ -43,7 +49,8 @@ fn radial_cycle_has_its_exact_multiplier() {
 fn lure_period_doubling() {
     let start = hopf_start(&Lure, &[0.0, 0.0, 0.0], &[1.0, 1.0]);
     let branch = Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along(0, -1.1..=1.1).run().expect("exists");
-    let doublings: Vec<_> = branch.special_points().filter(|(special, _)| *special == Special::Doubling).collect();
+    let doublings: Vec<_> =
+        branch.special_points().filter(|(special, _)| *special == Special::Doubling).collect();
     assert_eq!(doublings.len(), 2);
     for (_, cycle) in doublings {
         assert_relative_eq!(cycle.value.abs(), 0.6303020062, max_relative = 1e-9);
@@ -68,7 +75,8 @@ fn lorenz_subcritical_branch_and_homoclinic() {
 #[test]
 fn brusselator_branch_reaches_its_end() {
     let start = hopf_start(&Brusselator, &[1.0, 2.0], &[1.0, 2.0]);
-    let branch = Cycles::of(&Brusselator, start).parameters(&[1.0, 2.0]).along(1, 1.5..=5.0).run().expect("exists");
+    let branch =
+        Cycles::of(&Brusselator, start).parameters(&[1.0, 2.0]).along(1, 1.5..=5.0).run().expect("exists");
     assert!(matches!(branch.stops.1, Stop::RangeEnd { value: 5.0, .. }));
     assert!(branch.points.iter().all(|cycle| cycle.stable == Some(true) && cycle.error_estimate < 1e-8));
     // With a = 1, b = 5 integration gives a relaxation oscillation.

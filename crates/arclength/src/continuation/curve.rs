@@ -57,11 +57,7 @@ pub trait Curve {
     fn signature(&self, unknown: &[f64]) -> Vec<f64>;
 
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
-    fn ending(
-        &mut self,
-        _before: &Solution<Self::Point>,
-        _after: &Solution<Self::Point>,
-    ) -> Option<Ending> {
+    fn ending(&mut self, _before: &Solution<Self::Point>, _after: &Solution<Self::Point>) -> Option<Ending> {
         None
     }
 }

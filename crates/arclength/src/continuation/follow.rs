@@ -111,7 +111,8 @@ pub fn follow<C: Curve>(
         if let Some((bound, value)) = leaves {
             let from_end = request.bounds[bound].from_end;
             // Past a fold outside the range the curve comes back: the end lies before it.
-            let outside = |solution: &Solution<C::Point>| first_exit(&solution.unknown, &request.bounds).is_some();
+            let outside =
+                |solution: &Solution<C::Point>| first_exit(&solution.unknown, &request.bounds).is_some();
             let first_outside = between.iter().position(|(solution, _)| outside(solution));
             let beyond = first_outside.map_or(&advanced, |index| &between[index].0).clone();
             between.truncate(first_outside.unwrap_or(between.len()));

@@ -333,7 +333,8 @@ impl<'a, F: VectorField> Cycles<'a, F> {
             .fold(0.0, f64::max);
         let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
         let natural_start = FIRST_AMPLITUDE * natural;
-        let amplitude = if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit };
+        let amplitude =
+            if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit };
         let degree = self.resolution.degree;
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();

@@ -52,15 +52,17 @@ impl Orbit {
         let dimension = initial.len();
         let mut normal = vec![0.0; dimension];
         field.evaluate(initial, parameters, &mut normal);
-        let position =
-            |state: &[f64]| normal.iter().zip(state).zip(initial).map(|((n, x), x0)| n * (x - x0)).sum::<f64>();
+        let position = |state: &[f64]| {
+            normal.iter().zip(state).zip(initial).map(|((n, x), x0)| n * (x - x0)).sum::<f64>()
+        };
         let integrator = Integrator::with_tolerance(HISTORY_TOLERANCE);
         let mut events = [Event::new(|_, state: &[f64]| position(state)).rising()];
         let system = autonomous(field, parameters);
         let history = integrator
             .with_events(system, 0.0, initial, longest_period, &[], &mut events)
             .map_err(|error| not_periodic(error.to_string()))?;
-        let distance = |state: &[f64]| state.iter().zip(initial).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        let distance =
+            |state: &[f64]| state.iter().zip(initial).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let sampling: Vec<f64> = (0..=100).map(|index| longest_period * f64::from(index) / 100.0).collect();
         let size = integrator
             .sample(autonomous(field, parameters), initial, &sampling)

@@ -118,10 +118,7 @@ impl<'a, F: VectorField> EquilibriumLocus<'a, F> {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn observed(
-        self,
-        observer: &mut LocusObserver<'_>,
-    ) -> Result<EquilibriumLocusBranch, Error> {
+    pub fn observed(self, observer: &mut LocusObserver<'_>) -> Result<EquilibriumLocusBranch, Error> {
         let invalid = |name: &str, value: &str, allowed: &str| Error::Invalid {
             name: name.into(),
             value: value.into(),

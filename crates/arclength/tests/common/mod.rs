@@ -63,8 +63,5 @@ macro_rules! model {
 model!(VanDerPol, [x, y], [mu], [y, mu * (-(x * x) + 1.0) * y - x]);
 model!(Lorenz, [x, y, z], [rho], [(y - x) * 10.0, x * (rho - z) - y, x * y - z * (8.0 / 3.0)]);
 model!(Lure, [x, y, z], [alpha, beta], [y, z, -(alpha * z) - beta * y - x + x * x]);
-model!(RadialCycle, [x, y], [rho], [
-    x * (rho - (x * x + y * y)) - y,
-    y * (rho - (x * x + y * y)) + x
-]);
+model!(RadialCycle, [x, y], [rho], [x * (rho - (x * x + y * y)) - y, y * (rho - (x * x + y * y)) + x]);
 model!(Brusselator, [x, y], [a, b], [a - (b + 1.0) * x + x * x * y, b * x - x * x * y]);
