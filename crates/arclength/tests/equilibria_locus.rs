@@ -470,7 +470,7 @@ fn bad_requests_are_refused() {
         .run()
         .unwrap();
     let fold = branch.folds().next().unwrap();
-    let message = |asked: EquilibriumLocus<'_, Cusp>| asked.run().unwrap_err().to_string();
+    let message = |asked: EquilibriumLocus<'_>| asked.run().unwrap_err().to_string();
     let ask = || EquilibriumLocus::of(&Cusp).from_fold(fold);
     assert!(message(ask()).contains("two parameters"));
     assert!(message(ask().along("beta1", -1.0..=1.0)).contains("two parameters"));

@@ -294,7 +294,7 @@ fn requested_values_are_there_once_wherever_they_are() {
 #[test]
 fn bad_requests_are_refused() {
     let ask = || Equilibria::of(&Root).start(&[1.0]).parameters(&[1.0]);
-    let message = |asked: Equilibria<'_, Root>| asked.run().unwrap_err().to_string();
+    let message = |asked: Equilibria<'_>| asked.run().unwrap_err().to_string();
     assert!(message(ask()).contains("along"));
     assert!(message(ask().along("q", 0.0..=1.0)).contains("one of p"));
     assert!(message(ask().along("p", 2.0..=1.0)).contains("smaller one first"));

@@ -63,10 +63,10 @@ impl Differentiator {
         matrix: &mut [f64],
         rows: usize,
     ) {
-        if unknown.len() <= 4 {
-            self.narrow.jacobian(problem, unknown, residual, matrix, rows);
-        } else {
+        if P::WIDE && unknown.len() > 4 {
             self.wide.jacobian(problem, unknown, residual, matrix, rows);
+        } else {
+            self.narrow.jacobian(problem, unknown, residual, matrix, rows);
         }
     }
 }

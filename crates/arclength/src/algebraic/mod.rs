@@ -19,6 +19,10 @@ use crate::differentiation::Scalar;
 
 /// Equations `F(z) = 0`.
 pub trait AlgebraicProblem {
+    /// Whether Jacobians of more than four unknowns are computed eight columns at a time instead of four: faster, but one
+    /// more scalar to compile the problem for.
+    const WIDE: bool = false;
+
     /// Number of unknowns.
     fn unknowns(&self) -> usize;
 

@@ -7,6 +7,7 @@ use super::hopf::HopfPoint;
 use super::special::SpecialPoint;
 use crate::branch::{Label, SpecialKind, Stability};
 use crate::continuation::{Origin, Solution, Stop};
+use crate::equilibrium::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -60,8 +61,8 @@ pub(super) struct BranchDirection {
 }
 
 impl EquilibriumBranch {
-    pub(super) fn assemble<F: VectorField>(
-        field: &F,
+    pub(super) fn assemble(
+        field: ErasedField<'_>,
         active: usize,
         parameters: Vec<f64>,
         requested: &[f64],

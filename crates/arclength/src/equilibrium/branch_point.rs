@@ -5,7 +5,6 @@ use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu, length};
 use crate::error::Error;
-use crate::field::VectorField;
 use serde::{Deserialize, Serialize};
 
 /// How two branches cross.
@@ -58,8 +57,8 @@ const PITCHFORK: f64 = 1e-6;
 
 impl BranchPoint {
     /// The branch point at a located singular equilibrium on a branch with the direction `tangent`.
-    pub(crate) fn at<F: VectorField>(
-        problem: &EquilibriumProblem<'_, F>,
+    pub(crate) fn at(
+        problem: &EquilibriumProblem<'_>,
         unknown: &[f64],
         tangent: &[f64],
         scales: &[f64],

@@ -8,7 +8,6 @@ use super::spectrum::Spectrum;
 use crate::algebraic::DenseSystem;
 use crate::continuation::{Adaptation, Bound, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
 
 /// Test functions of an equilibrium; each changes sign at one kind of special point.
@@ -45,8 +44,8 @@ const IDLE: f64 = 1e-13;
 const MOST_IDLE_STEPS: usize = 20;
 
 /// The curve of equilibria in the space of the states and one parameter.
-pub(crate) struct EquilibriumCurve<'a, F> {
-    pub system: DenseSystem<EquilibriumProblem<'a, F>>,
+pub(crate) struct EquilibriumCurve<'a> {
+    pub system: DenseSystem<EquilibriumProblem<'a>>,
     pub settings: Settings,
     bound: Bound,
     idle_steps: usize,
@@ -55,14 +54,9 @@ pub(crate) struct EquilibriumCurve<'a, F> {
     scratch: Vec<f64>,
 }
 
-impl<'a, F: VectorField> EquilibriumCurve<'a, F> {
+impl<'a> EquilibriumCurve<'a> {
     /// `scales` are the sizes of the states and the length of the parameter's range.
-    pub fn new(
-        problem: EquilibriumProblem<'a, F>,
-        scales: Vec<f64>,
-        bound: Bound,
-        settings: Settings,
-    ) -> Self {
+    pub fn new(problem: EquilibriumProblem<'a>, scales: Vec<f64>, bound: Bound, settings: Settings) -> Self {
         let workspace = EigenvalueWorkspace::new(problem.dimension);
         Self {
             system: DenseSystem::new(problem, scales.clone()),
@@ -121,7 +115,7 @@ impl<'a, F: VectorField> EquilibriumCurve<'a, F> {
     }
 }
 
-impl<F: VectorField> Curve for EquilibriumCurve<'_, F> {
+impl Curve for EquilibriumCurve<'_> {
     type Point = Inspection;
 
     fn unknowns(&self) -> usize {

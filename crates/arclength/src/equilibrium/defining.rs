@@ -8,7 +8,6 @@
 use super::problem::EquilibriumProblem;
 use crate::algebraic::AlgebraicProblem;
 use crate::differentiation::Scalar;
-use crate::field::VectorField;
 
 /// Inner product of a vector with a fixed one.
 pub(crate) fn against<T: Scalar>(fixed: &[f64], vector: &[T]) -> T {
@@ -31,15 +30,15 @@ pub(crate) fn equilibrium<T: Scalar>(state: &[T], values: &[T]) -> Vec<T> {
 }
 
 /// Folds: `f = 0`, `f_x v = 0`, `<normal, v> = 1` with the unknowns `(x, v, parameters)`.
-#[derive(Debug)]
-pub(crate) struct FoldSystem<'a, F> {
-    pub equilibria: EquilibriumProblem<'a, F>,
+#[derive(Clone, Debug)]
+pub(crate) struct FoldSystem<'a> {
+    pub equilibria: EquilibriumProblem<'a>,
     pub normal: Vec<f64>,
     /// Left null vector at the last point of a curve; empty at first.
     pub left: Vec<f64>,
 }
 
-impl<F: VectorField> AlgebraicProblem for FoldSystem<'_, F> {
+impl AlgebraicProblem for FoldSystem<'_> {
     fn unknowns(&self) -> usize {
         2 * self.equilibria.dimension + self.equilibria.active.len()
     }
@@ -63,15 +62,15 @@ impl<F: VectorField> AlgebraicProblem for FoldSystem<'_, F> {
 ///
 /// The eigenvalues are `+-rate sqrt(-kappa)`: imaginary at a Hopf point, where `kappa` is positive, real at a
 /// neutral saddle, where it is negative. The system is regular at a Bogdanov-Takens point in between.
-#[derive(Debug)]
-pub(crate) struct HopfSystem<'a, F> {
-    pub equilibria: EquilibriumProblem<'a, F>,
+#[derive(Clone, Debug)]
+pub(crate) struct HopfSystem<'a> {
+    pub equilibria: EquilibriumProblem<'a>,
     pub normal: Vec<f64>,
     pub conormal: Vec<f64>,
     pub rate: f64,
 }
 
-impl<F: VectorField> AlgebraicProblem for HopfSystem<'_, F> {
+impl AlgebraicProblem for HopfSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.equilibria.dimension + 1 + self.equilibria.active.len()
     }
@@ -101,9 +100,9 @@ impl<F: VectorField> AlgebraicProblem for HopfSystem<'_, F> {
 /// Branch points of curves in the first active parameter: `f + beta psi = 0`, `f_x' psi = 0`, `f_p . psi = 0`,
 /// `<normal, psi> = 1` with the unknowns `(x, psi, beta, parameters)`; `beta` is zero at a branch point of the field
 /// itself. Components are divided by `scales` where vectors of states and of rates meet.
-#[derive(Debug)]
-pub(crate) struct BranchPointSystem<'a, F> {
-    pub equilibria: EquilibriumProblem<'a, F>,
+#[derive(Clone, Debug)]
+pub(crate) struct BranchPointSystem<'a> {
+    pub equilibria: EquilibriumProblem<'a>,
     pub normal: Vec<f64>,
     /// Sizes of the states; the perturbation is `beta psi scales^2`, so that units match.
     pub scales: Vec<f64>,
@@ -111,7 +110,7 @@ pub(crate) struct BranchPointSystem<'a, F> {
     pub rate: f64,
 }
 
-impl<F: VectorField> AlgebraicProblem for BranchPointSystem<'_, F> {
+impl AlgebraicProblem for BranchPointSystem<'_> {
     fn unknowns(&self) -> usize {
         2 * self.equilibria.dimension + 1 + self.equilibria.active.len()
     }
@@ -137,26 +136,5 @@ impl<F: VectorField> AlgebraicProblem for BranchPointSystem<'_, F> {
             field[index] += beta[0] * left[index] * (self.scales[index] * self.scales[index]);
         }
         rest[n + 1] = against(&self.normal, left) - 1.0;
-    }
-}
-
-// Derived implementations would ask the field to be `Clone`.
-impl<F> Clone for FoldSystem<'_, F> {
-    fn clone(&self) -> Self {
-        Self { equilibria: self.equilibria.clone(), normal: self.normal.clone(), left: self.left.clone() }
-    }
-}
-
-impl<F> Clone for HopfSystem<'_, F> {
-    fn clone(&self) -> Self {
-        let (normal, conormal) = (self.normal.clone(), self.conormal.clone());
-        Self { equilibria: self.equilibria.clone(), normal, conormal, rate: self.rate }
-    }
-}
-
-impl<F> Clone for BranchPointSystem<'_, F> {
-    fn clone(&self) -> Self {
-        let (normal, scales) = (self.normal.clone(), self.scales.clone());
-        Self { equilibria: self.equilibria.clone(), normal, scales, rate: self.rate }
     }
 }

@@ -11,7 +11,6 @@ use crate::algebraic::{between, length, position};
 use crate::branch::Stability;
 use crate::continuation::Solution;
 use crate::error::Error;
-use crate::field::VectorField;
 
 /// Solutions that may be computed to sort out one step.
 const MOST_TRIALS: usize = 100;
@@ -128,15 +127,15 @@ fn suspicious(before: &Node, after: &Node, distance: f64) -> Option<f64> {
     })
 }
 
-struct Scan<'c, 'a, F> {
-    curve: &'c mut EquilibriumCurve<'a, F>,
+struct Scan<'c, 'a> {
+    curve: &'c mut EquilibriumCurve<'a>,
     trials: usize,
     found: Vec<Node>,
 }
 
 /// As [`Curve::special_points`](crate::continuation::Curve::special_points).
-pub(super) fn special_points<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+pub(super) fn special_points(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
 ) -> Result<Vec<Node>, Error> {
@@ -150,7 +149,7 @@ pub(super) fn special_points<F: VectorField>(
     Ok(found)
 }
 
-impl<F: VectorField> Scan<'_, '_, F> {
+impl Scan<'_, '_> {
     /// Special points in a part of the step.
     fn part(&mut self, before: &Node, after: &Node, share: f64) -> Result<(), Error> {
         let changes = Changes::between(before, after);

@@ -4,7 +4,6 @@ use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{AlgebraicProblem, Differentiator};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -36,8 +35,8 @@ const DOUBLE: f64 = 1e-9;
 
 /// Null vectors `q`, `p` of the Jacobian at an equilibrium, `<q, q> = 1` and `<p, q> = 1` if that is possible, and
 /// whether it is.
-pub(crate) fn null_vectors<F: VectorField>(
-    problem: &EquilibriumProblem<'_, F>,
+pub(crate) fn null_vectors(
+    problem: &EquilibriumProblem<'_>,
     unknown: &[f64],
 ) -> Result<(Vec<f64>, Vec<f64>, bool), Error> {
     let n = problem.dimension;
@@ -60,8 +59,8 @@ pub(crate) fn null_vectors<F: VectorField>(
 
 impl FoldPoint {
     /// The fold at a located singular equilibrium.
-    pub(crate) fn at<F: VectorField>(
-        problem: &EquilibriumProblem<'_, F>,
+    pub(crate) fn at(
+        problem: &EquilibriumProblem<'_>,
         unknown: &[f64],
         location_error: f64,
     ) -> Result<Self, Error> {

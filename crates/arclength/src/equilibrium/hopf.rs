@@ -4,8 +4,8 @@ use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::Criticality;
+use crate::equilibrium::erased::ErasedField;
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -44,8 +44,8 @@ pub struct HopfPoint {
 
 impl HopfPoint {
     /// The Hopf point at a located equilibrium with an eigenvalue `i frequency`.
-    pub(crate) fn at<F: VectorField>(
-        problem: &EquilibriumProblem<'_, F>,
+    pub(crate) fn at(
+        problem: &EquilibriumProblem<'_>,
         unknown: &[f64],
         scales: &[f64],
         frequency: f64,
@@ -80,8 +80,8 @@ impl HopfPoint {
 
 /// An equilibrium with the eigenvalues `+-i frequency`, its eigenvectors and linear solves: what Hopf normal forms need.
 #[derive(Clone, Debug)]
-pub(crate) struct CriticalPair<'a, F> {
-    field: &'a F,
+pub(crate) struct CriticalPair<'a> {
+    field: ErasedField<'a>,
     state: Vec<f64>,
     parameters: Vec<f64>,
     pub frequency: f64,
@@ -98,9 +98,9 @@ pub(crate) fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
-impl<'a, F: VectorField> CriticalPair<'a, F> {
+impl<'a> CriticalPair<'a> {
     pub fn at(
-        field: &'a F,
+        field: ErasedField<'a>,
         state: &[f64],
         parameters: &[f64],
         frequency: f64,
@@ -130,7 +130,7 @@ impl<'a, F: VectorField> CriticalPair<'a, F> {
         })
     }
 
-    pub fn forms(&self) -> MultilinearForms<'_, F> {
+    pub fn forms(&self) -> MultilinearForms<'_> {
         MultilinearForms { field: self.field, state: &self.state, parameters: &self.parameters }
     }
 

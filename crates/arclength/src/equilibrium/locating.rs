@@ -11,7 +11,6 @@ use crate::algebraic::{Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, finish, locate};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 
@@ -27,8 +26,8 @@ const UNPERTURBED: f64 = 1e-8;
 type Node = Solution<Inspection>;
 
 /// A solution close to the zero of a test function.
-fn near_zero<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+fn near_zero(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
     tolerance: f64,
@@ -59,8 +58,8 @@ fn location_error(solved: &Solved) -> f64 {
 }
 
 /// What is left when the defining system has no regular solution.
-fn degenerate<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+fn degenerate(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
     distance: f64,
@@ -76,8 +75,8 @@ fn degenerate<F: VectorField>(
 }
 
 /// Completes a located point of the curve.
-fn complete<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+fn complete(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     unknown: Vec<f64>,
     special: SpecialPoint,
@@ -88,8 +87,8 @@ fn complete<F: VectorField>(
 }
 
 /// The fold between two solutions.
-pub(super) fn fold<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+pub(super) fn fold(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
     distance: f64,
@@ -116,8 +115,8 @@ pub(super) fn fold<F: VectorField>(
 }
 
 /// The Hopf point or neutral saddle between two solutions.
-pub(super) fn hopf<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+pub(super) fn hopf(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
     distance: f64,
@@ -167,11 +166,11 @@ pub(super) fn hopf<F: VectorField>(
     Ok(degenerate(curve, before, after, distance, SpecialKind::Hopf, test))
 }
 
-impl<'a, F: VectorField> HopfSystem<'a, F> {
+impl<'a> HopfSystem<'a> {
     /// The system and a start close to a point with two eigenvalues of sum nearly zero, `pair`, of the Jacobian `matrix`
     /// there. `None` if both are zero.
     pub(crate) fn from_pair(
-        equilibria: super::problem::EquilibriumProblem<'a, F>,
+        equilibria: super::problem::EquilibriumProblem<'a>,
         unknown: &[f64],
         matrix: &[f64],
         pair: [Complex64; 2],
@@ -229,8 +228,8 @@ pub(crate) fn normals(first: &[f64], second: &[f64], scales: &[f64]) -> Option<(
 }
 
 /// The branch point between two solutions.
-pub(super) fn branch_point<F: VectorField>(
-    curve: &mut EquilibriumCurve<'_, F>,
+pub(super) fn branch_point(
+    curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
     distance: f64,

@@ -3,6 +3,7 @@
 //! Computed by nested dual numbers, one level for each direction, exact to rounding.
 
 use crate::differentiation::{Dual, Scalar};
+use crate::equilibrium::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 
@@ -38,13 +39,13 @@ type Fifth = Dual<Fourth, 1>;
 
 /// The derivatives of a field with respect to the state (and one parameter) at a point.
 #[derive(Clone, Debug)]
-pub(crate) struct MultilinearForms<'a, F> {
-    pub field: &'a F,
+pub(crate) struct MultilinearForms<'a> {
+    pub field: ErasedField<'a>,
     pub state: &'a [f64],
     pub parameters: &'a [f64],
 }
 
-impl<F: VectorField> MultilinearForms<'_, F> {
+impl MultilinearForms<'_> {
     /// The derivative of order `directions.len()` (one to five) along real directions in the space of states followed
     /// by parameters; a direction may stop after the states.
     pub fn real(&self, directions: &[&[f64]]) -> Vec<f64> {
@@ -123,7 +124,8 @@ mod tests {
 
     #[test]
     fn forms_of_a_monomial() {
-        let forms = MultilinearForms { field: &Monomial, state: &[2.0, 3.0], parameters: &[5.0] };
+        let forms =
+            MultilinearForms { field: ErasedField::of(&Monomial), state: &[2.0, 3.0], parameters: &[5.0] };
         let (x, y, p): (&[f64], &[f64], &[f64]) = (&[1.0], &[0.0, 1.0], &[0.0, 0.0, 1.0]);
         assert_eq!(forms.real(&[x]), [5.0 * 12.0 * 9.0, 2f64.exp()]);
         assert_eq!(forms.real(&[x, y])[0], 5.0 * 12.0 * 6.0);

@@ -5,6 +5,7 @@
 //! implicit Euler steps of growing length go with the flow until they turn into Newton's method (Kelley
 //! and Keyes, *SIAM J. Numer. Anal.* 35, 1998).
 
+use super::erased::ErasedField;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{AlgebraicProblem, Differentiator, ScaledLu};
@@ -48,6 +49,15 @@ pub fn find_equilibrium<F: VectorField>(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<Vec<f64>, Error> {
+    find_erased(ErasedField::of(field), start, parameters)
+}
+
+/// As [`find_equilibrium`].
+pub(crate) fn find_erased(
+    field: ErasedField<'_>,
+    start: &[f64],
+    parameters: &[f64],
+) -> Result<Vec<f64>, Error> {
     check_length("start", start, field.dimension(), "the dimension of the field")?;
     check_length("parameters", parameters, field.parameter_names().len(), "the number of parameters")?;
     let mut search = Search::new(EquilibriumProblem::new(field, parameters, &[]), start);
@@ -79,8 +89,8 @@ pub(crate) fn check_length(name: &str, values: &[f64], expected: usize, meaning:
     }
 }
 
-struct Search<'a, F> {
-    problem: EquilibriumProblem<'a, F>,
+struct Search<'a> {
+    problem: EquilibriumProblem<'a>,
     differentiator: Differentiator,
     lu: ScaledLu,
     matrix: Vec<f64>,
@@ -89,10 +99,10 @@ struct Search<'a, F> {
     scratch: Vec<f64>,
 }
 
-impl<'a, F: VectorField> Search<'a, F> {
-    fn new(problem: EquilibriumProblem<'a, F>, start: &[f64]) -> Self {
+impl<'a> Search<'a> {
+    fn new(problem: EquilibriumProblem<'a>, start: &[f64]) -> Self {
         let n = start.len();
-        let floors = natural_scales(problem.field, start, &problem.parameters, &vec![0.0; n]);
+        let floors = natural_scales(&problem.field, start, &problem.parameters, &vec![0.0; n]);
         Self {
             problem,
             differentiator: Differentiator::default(),

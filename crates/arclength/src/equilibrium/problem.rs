@@ -2,30 +2,20 @@
 
 use crate::algebraic::AlgebraicProblem;
 use crate::differentiation::{Dual, Scalar};
+use crate::equilibrium::erased::ErasedField;
 use crate::field::VectorField;
 
 /// `f(x, p) = 0` with the unknowns `(x, active parameters)`; the other parameters are fixed.
-#[derive(Debug)]
-pub(crate) struct EquilibriumProblem<'a, F> {
-    pub field: &'a F,
+#[derive(Clone, Debug)]
+pub(crate) struct EquilibriumProblem<'a> {
+    pub field: ErasedField<'a>,
     pub parameters: Vec<f64>,
     pub active: Vec<usize>,
     pub dimension: usize,
 }
 
-impl<F> Clone for EquilibriumProblem<'_, F> {
-    fn clone(&self) -> Self {
-        Self {
-            field: self.field,
-            parameters: self.parameters.clone(),
-            active: self.active.clone(),
-            dimension: self.dimension,
-        }
-    }
-}
-
-impl<'a, F: VectorField> EquilibriumProblem<'a, F> {
-    pub fn new(field: &'a F, parameters: &[f64], active: &[usize]) -> Self {
+impl<'a> EquilibriumProblem<'a> {
+    pub fn new(field: ErasedField<'a>, parameters: &[f64], active: &[usize]) -> Self {
         Self { field, parameters: parameters.to_vec(), active: active.to_vec(), dimension: field.dimension() }
     }
 
@@ -76,7 +66,9 @@ impl<'a, F: VectorField> EquilibriumProblem<'a, F> {
     }
 }
 
-impl<F: VectorField> AlgebraicProblem for EquilibriumProblem<'_, F> {
+impl AlgebraicProblem for EquilibriumProblem<'_> {
+    const WIDE: bool = true;
+
     fn unknowns(&self) -> usize {
         self.dimension + self.active.len()
     }

@@ -3,11 +3,12 @@
 use super::branch::{BranchDirection, EquilibriumBranch};
 use super::branch_point::BranchPoint;
 use super::curve::{EquilibriumCurve, Inspection};
-use super::newton::{check_length, find_equilibrium};
+use super::newton::{check_length, find_erased};
 use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use crate::equilibrium::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use std::ops::{ControlFlow, RangeInclusive};
@@ -51,8 +52,8 @@ enum Start {
 /// # Ok::<(), arclength::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct Equilibria<'a, F> {
-    field: &'a F,
+pub struct Equilibria<'a> {
+    field: ErasedField<'a>,
     start: Start,
     parameters: Option<Vec<f64>>,
     along: Option<(String, RangeInclusive<f64>)>,
@@ -60,9 +61,10 @@ pub struct Equilibria<'a, F> {
     settings: Settings,
 }
 
-impl<'a, F: VectorField> Equilibria<'a, F> {
+impl<'a> Equilibria<'a> {
     /// Equilibria of `field`, by default from the start zero.
-    pub fn of(field: &'a F) -> Self {
+    pub fn of<F: VectorField>(field: &'a F) -> Self {
+        let field = ErasedField::of(field);
         Self {
             field,
             start: Start::State(vec![0.0; field.dimension()]),
@@ -159,7 +161,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
             Start::State(state) => {
                 check_length("start", state, n, "the dimension of the field")?;
                 let value = parameters[active].clamp(bound.lower, bound.upper);
-                let mut unknown = find_equilibrium(self.field, state, &problem.parameters_at(&[value]))?;
+                let mut unknown = find_erased(self.field, state, &problem.parameters_at(&[value]))?;
                 unknown.push(value);
                 (unknown, None, 0.0)
             }
@@ -187,9 +189,7 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
 
         let mut observe =
             |solution: &Solution<Inspection>| observer(solution.unknown[n], &solution.unknown[..n]);
-        let mut run = |curve: &mut EquilibriumCurve<'_, F>,
-                       sign: f64|
-         -> Result<Followed<Inspection>, Error> {
+        let mut run = |curve: &mut EquilibriumCurve<'_>, sign: f64| -> Result<Followed<Inspection>, Error> {
             let tangent: Vec<f64> = tangent.iter().map(|entry| sign * entry).collect();
             let leaves = |end: f64| (unknown[n] - end).abs() <= f64::EPSILON * end.abs() && departure == 0.0;
             if !vertical && leaves(if sign > 0.0 { bound.upper } else { bound.lower }) {
@@ -221,14 +221,14 @@ impl<'a, F: VectorField> Equilibria<'a, F> {
 }
 
 /// Sizes of the states and of the parameter.
-fn scales<F: VectorField>(problem: &EquilibriumProblem<'_, F>, unknown: &[f64], range: f64) -> Vec<f64> {
+fn scales(problem: &EquilibriumProblem<'_>, unknown: &[f64], range: f64) -> Vec<f64> {
     let n = problem.dimension;
     let mut matrix = vec![0.0; n * (n + 1)];
     let mut residual = vec![0.0; n];
     Differentiator::default().jacobian(problem, unknown, &mut residual, &mut matrix, n);
     let speed: Vec<f64> = matrix[n * n..].iter().map(|entry| entry * range).collect();
     let mut scales =
-        natural_scales(problem.field, &unknown[..n], &problem.parameters_at(&unknown[n..]), &speed);
+        natural_scales(&problem.field, &unknown[..n], &problem.parameters_at(&unknown[n..]), &speed);
     scales.push(range);
     scales
 }

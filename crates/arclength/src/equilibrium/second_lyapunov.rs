@@ -4,7 +4,6 @@
 //! Numer. Anal.* 36 (1999), section 3.
 
 use super::hopf::{CriticalPair, inner};
-use crate::field::VectorField;
 use num_complex::Complex64;
 
 /// A vector with complex entries.
@@ -19,7 +18,7 @@ fn conjugate(vector: &[Complex64]) -> Vector {
     vector.iter().map(Complex64::conj).collect()
 }
 
-impl<F: VectorField> CriticalPair<'_, F> {
+impl CriticalPair<'_> {
     /// `Re(c2)/omega` with `c2` the coefficient of `z |z|^4` and `<q, q> = <p, q> = 1`, valid where the first Lyapunov
     /// coefficient vanishes; `None` if an eigenvalue is zero or a resonant multiple of the critical one.
     pub fn second_lyapunov(&self) -> Option<f64> {

@@ -4,6 +4,7 @@ use super::codimension_two::CodimensionTwoPoint;
 use super::curve::Inspection;
 use crate::branch::{Label, SpecialKind};
 use crate::continuation::{Followed, Origin, Solution, Stop};
+use crate::equilibrium::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -53,9 +54,9 @@ pub struct EquilibriumLocusBranch {
 }
 
 impl EquilibriumLocusBranch {
-    pub(super) fn assemble<F: VectorField>(
+    pub(super) fn assemble(
         kind: SpecialKind,
-        field: &F,
+        field: ErasedField<'_>,
         parameters: Vec<f64>,
         active: [usize; 2],
         [mut backward, forward]: [Followed<Inspection>; 2],

@@ -7,7 +7,6 @@ use crate::algebraic::AlgebraicProblem;
 use crate::branch::SpecialKind;
 use crate::differentiation::{Dual, Scalar};
 use crate::equilibrium::defining::{FoldSystem, HopfSystem, against, equilibrium, parts};
-use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -38,11 +37,11 @@ pub struct CodimensionTwoPoint {
 }
 
 /// Cusps: a fold with `f_x z + f_xx(v, v) = 0` for some `z`, `<normal, z> = 0`; unknowns `(x, v, z, parameters)`.
-pub(super) struct CuspSystem<'a, F> {
-    pub fold: FoldSystem<'a, F>,
+pub(super) struct CuspSystem<'a> {
+    pub fold: FoldSystem<'a>,
 }
 
-impl<F: VectorField> AlgebraicProblem for CuspSystem<'_, F> {
+impl AlgebraicProblem for CuspSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.fold.equilibria.dimension + 2
     }
@@ -83,11 +82,11 @@ impl<F: VectorField> AlgebraicProblem for CuspSystem<'_, F> {
 }
 
 /// Bogdanov-Takens points: a Hopf point with `kappa = 0`; unknowns `(x, v, w, parameters)`.
-pub(super) struct BogdanovTakensSystem<'a, F> {
-    pub hopf: HopfSystem<'a, F>,
+pub(super) struct BogdanovTakensSystem<'a> {
+    pub hopf: HopfSystem<'a>,
 }
 
-impl<F: VectorField> AlgebraicProblem for BogdanovTakensSystem<'_, F> {
+impl AlgebraicProblem for BogdanovTakensSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.hopf.equilibria.dimension + 2
     }
@@ -105,12 +104,12 @@ impl<F: VectorField> AlgebraicProblem for BogdanovTakensSystem<'_, F> {
 }
 
 /// Zero-Hopf points: a Hopf point with `f_x z = 0`, `<null_normal, z> = 1`; unknowns `(x, v, w, kappa, z, parameters)`.
-pub(super) struct ZeroHopfSystem<'a, F> {
-    pub hopf: HopfSystem<'a, F>,
+pub(super) struct ZeroHopfSystem<'a> {
+    pub hopf: HopfSystem<'a>,
     pub null_normal: Vec<f64>,
 }
 
-impl<F: VectorField> AlgebraicProblem for ZeroHopfSystem<'_, F> {
+impl AlgebraicProblem for ZeroHopfSystem<'_> {
     fn unknowns(&self) -> usize {
         4 * self.hopf.equilibria.dimension + 3
     }
@@ -132,11 +131,11 @@ impl<F: VectorField> AlgebraicProblem for ZeroHopfSystem<'_, F> {
 }
 
 /// Hopf-Hopf points: two Hopf points at once; unknowns `(x, v, w, kappa, v', w', kappa', parameters)`.
-pub(super) struct HopfHopfSystem<'a, F> {
-    pub pairs: [HopfSystem<'a, F>; 2],
+pub(super) struct HopfHopfSystem<'a> {
+    pub pairs: [HopfSystem<'a>; 2],
 }
 
-impl<F: VectorField> AlgebraicProblem for HopfHopfSystem<'_, F> {
+impl AlgebraicProblem for HopfHopfSystem<'_> {
     fn unknowns(&self) -> usize {
         5 * self.pairs[0].equilibria.dimension + 4
     }

@@ -8,7 +8,6 @@ use crate::branch::SpecialKind;
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::equilibrium::spectrum::Spectrum;
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
 use std::marker::PhantomData;
 
@@ -24,7 +23,7 @@ pub(super) struct Inspection {
 }
 
 /// The curve of one kind of special equilibria in two parameters.
-pub(super) struct LocusCurve<'a, F: VectorField, K: LocusKind<'a, F>> {
+pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
     pub system: DenseSystem<K>,
     pub settings: Settings,
     /// Sizes of the states.
@@ -36,10 +35,10 @@ pub(super) struct LocusCurve<'a, F: VectorField, K: LocusKind<'a, F>> {
     workspace: EigenvalueWorkspace,
     matrix: Vec<f64>,
     residual: Vec<f64>,
-    field: PhantomData<&'a F>,
+    lifetime: PhantomData<&'a ()>,
 }
 
-impl<'a, F: VectorField, K: LocusKind<'a, F>> LocusCurve<'a, F, K> {
+impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
     pub fn new(kind: K, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
         let n = states.len();
         let sizes = kind.sizes(&states, ranges);
@@ -54,7 +53,7 @@ impl<'a, F: VectorField, K: LocusKind<'a, F>> LocusCurve<'a, F, K> {
             workspace: EigenvalueWorkspace::new(n),
             matrix: Vec::new(),
             residual: vec![0.0; n],
-            field: PhantomData,
+            lifetime: PhantomData,
         }
     }
 
@@ -93,7 +92,7 @@ impl<'a, F: VectorField, K: LocusKind<'a, F>> LocusCurve<'a, F, K> {
     }
 }
 
-impl<'a, F: VectorField, K: LocusKind<'a, F>> Curve for LocusCurve<'a, F, K> {
+impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
     type Point = Inspection;
 
     fn unknowns(&self) -> usize {

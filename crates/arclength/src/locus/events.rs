@@ -7,7 +7,6 @@ use crate::algebraic::{between, length, position};
 use crate::branch::SpecialKind;
 use crate::continuation::Solution;
 use crate::error::Error;
-use crate::field::VectorField;
 
 /// Solutions that may be computed to sort out one step.
 const MOST_TRIALS: usize = 60;
@@ -30,15 +29,15 @@ fn changes(before: &Node, after: &Node) -> Vec<SpecialKind> {
         .collect()
 }
 
-struct Scan<'c, 'a, F: VectorField, K: LocusKind<'a, F>> {
-    curve: &'c mut LocusCurve<'a, F, K>,
+struct Scan<'c, 'a, K: LocusKind<'a>> {
+    curve: &'c mut LocusCurve<'a, K>,
     trials: usize,
     found: Vec<Node>,
 }
 
 /// As [`Curve::special_points`](crate::continuation::Curve::special_points).
-pub(super) fn special_points<'a, F: VectorField, K: LocusKind<'a, F>>(
-    curve: &mut LocusCurve<'a, F, K>,
+pub(super) fn special_points<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
     before: &Node,
     after: &Node,
 ) -> Result<Vec<Node>, Error> {
@@ -52,7 +51,7 @@ pub(super) fn special_points<'a, F: VectorField, K: LocusKind<'a, F>>(
     Ok(found)
 }
 
-impl<'a, F: VectorField, K: LocusKind<'a, F>> Scan<'_, 'a, F, K> {
+impl<'a, K: LocusKind<'a>> Scan<'_, 'a, K> {
     fn part(&mut self, before: &Node, after: &Node, share: f64) -> Result<(), Error> {
         let changed = changes(before, after);
         let step: Vec<f64> = after.unknown.iter().zip(&before.unknown).map(|(b, a)| b - a).collect();

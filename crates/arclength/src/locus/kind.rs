@@ -10,7 +10,6 @@ use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
 use crate::equilibrium::spectrum::{hopf_test, without};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::left_eigenvector;
 use num_complex::Complex64;
 
@@ -42,12 +41,12 @@ pub(super) struct Monitor {
 }
 
 /// A kind of special equilibria of which there are curves in two parameters.
-pub(super) trait LocusKind<'a, F: VectorField>: AlgebraicProblem {
+pub(super) trait LocusKind<'a>: AlgebraicProblem {
     /// What the curve consists of.
     const KIND: SpecialKind;
 
     /// The equilibrium problem in two parameters.
-    fn equilibria(&self) -> &EquilibriumProblem<'a, F>;
+    fn equilibria(&self) -> &EquilibriumProblem<'a>;
 
     /// Sizes of the unknowns; `states` are those of the states.
     fn sizes(&self, states: &[f64], ranges: [f64; 2]) -> Vec<f64>;
@@ -95,10 +94,10 @@ fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
         .product()
 }
 
-impl<'a, F: VectorField> LocusKind<'a, F> for FoldSystem<'a, F> {
+impl<'a> LocusKind<'a> for FoldSystem<'a> {
     const KIND: SpecialKind = SpecialKind::Fold;
 
-    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+    fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
     }
 
@@ -171,10 +170,10 @@ fn products(one: &[f64], other: &[f64], scales: &[f64]) -> f64 {
     one.iter().zip(other).zip(scales).map(|((a, b), scale)| a * scale * (b * scale)).sum()
 }
 
-impl<'a, F: VectorField> LocusKind<'a, F> for HopfSystem<'a, F> {
+impl<'a> LocusKind<'a> for HopfSystem<'a> {
     const KIND: SpecialKind = SpecialKind::Hopf;
 
-    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+    fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
     }
 
@@ -274,10 +273,10 @@ impl<'a, F: VectorField> LocusKind<'a, F> for HopfSystem<'a, F> {
     }
 }
 
-impl<'a, F: VectorField> LocusKind<'a, F> for BranchPointSystem<'a, F> {
+impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
     const KIND: SpecialKind = SpecialKind::BranchPoint;
 
-    fn equilibria(&self) -> &EquilibriumProblem<'a, F> {
+    fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
     }
 

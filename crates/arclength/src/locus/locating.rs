@@ -13,7 +13,6 @@ use crate::continuation::{Solution, locate};
 use crate::equilibrium::defining::{FoldSystem, HopfSystem};
 use crate::equilibrium::spectrum::{critical_pair, without};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 
@@ -30,8 +29,8 @@ type Node = Solution<Inspection>;
 
 /// The point of codimension two between two neighbours; `None` if a test function has a pole there or the point is not of the
 /// kind sought (two real eigenvalues of opposite sign are no Hopf-Hopf point).
-pub(super) fn codimension_two<'a, F: VectorField, K: LocusKind<'a, F>>(
-    curve: &mut LocusCurve<'a, F, K>,
+pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
     before: &Node,
     after: &Node,
     distance: f64,
@@ -85,8 +84,8 @@ pub(super) fn codimension_two<'a, F: VectorField, K: LocusKind<'a, F>>(
 }
 
 /// A solution close to the zero of a test function.
-fn near_zero<'a, F: VectorField, K: LocusKind<'a, F>>(
-    curve: &mut LocusCurve<'a, F, K>,
+fn near_zero<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
     before: &Node,
     after: &Node,
     tolerance: f64,
@@ -103,8 +102,8 @@ fn near_zero<'a, F: VectorField, K: LocusKind<'a, F>>(
 }
 
 /// The located point as a solution of the curve.
-fn complete<'a, F: VectorField, K: LocusKind<'a, F>>(
-    curve: &mut LocusCurve<'a, F, K>,
+fn complete<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
     near: Node,
     unknown: Vec<f64>,
     location_error: [f64; 2],
@@ -165,8 +164,8 @@ impl Newton {
 }
 
 /// Newton's method from a point close by.
-fn newton<'a, F: VectorField, K: LocusKind<'a, F>>(
-    curve: &mut LocusCurve<'a, F, K>,
+fn newton<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
     near: &Node,
     kind: SpecialKind,
 ) -> Result<Newton, Error> {

@@ -5,18 +5,18 @@
 
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::SpecialKind;
+use crate::equilibrium::erased::ErasedField;
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
-use crate::field::VectorField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
 /// The coefficients that exist, by name.
-pub(super) fn coefficients<F: VectorField>(
+pub(super) fn coefficients(
     kind: SpecialKind,
-    field: &F,
+    field: ErasedField<'_>,
     state: &[f64],
     parameters: &[f64],
     scales: &[f64],
@@ -56,7 +56,7 @@ struct Singular {
 }
 
 impl Singular {
-    fn of<F: VectorField>(forms: &MultilinearForms<'_, F>, scales: &[f64]) -> Option<Self> {
+    fn of(forms: &MultilinearForms<'_>, scales: &[f64]) -> Option<Self> {
         let n = forms.state.len();
         let mut matrix = vec![0.0; n * n];
         let mut residual = vec![0.0; n];
@@ -107,7 +107,7 @@ impl Singular {
 }
 
 /// `c = <p, C(q, q, q) + 3 B(q, h)>/6`, `A h = -B(q, q)`, `<p, q> = 1`.
-fn cusp<F: VectorField>(forms: &MultilinearForms<'_, F>, scales: &[f64]) -> Option<f64> {
+fn cusp(forms: &MultilinearForms<'_>, scales: &[f64]) -> Option<f64> {
     let singular = Singular::of(forms, scales)?;
     let q = &singular.right;
     let square: Vec<f64> = forms.real(&[q, q]).iter().map(|entry| -entry).collect();
@@ -119,7 +119,7 @@ fn cusp<F: VectorField>(forms: &MultilinearForms<'_, F>, scales: &[f64]) -> Opti
 
 /// `a = <p1, B(q0, q0)>/2`, `b = <p0, B(q0, q0)> + <p1, B(q0, q1)>` with `A q0 = 0`, `A q1 = q0`, `A' p1 = 0`,
 /// `A' p0 = p1`, `<q0, q0> = <p0, q0> = <p1, q1> = 1`, `<q1, q0> = <p0, q1> = 0`; `a` is not negative.
-fn bogdanov_takens<F: VectorField>(forms: &MultilinearForms<'_, F>, scales: &[f64]) -> Option<[f64; 2]> {
+fn bogdanov_takens(forms: &MultilinearForms<'_>, scales: &[f64]) -> Option<[f64; 2]> {
     let singular = Singular::of(forms, scales)?;
     let q0 = &singular.right;
     let mut q1 = singular.solve(q0);

@@ -7,6 +7,7 @@ use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Bound, Followed, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
+use crate::equilibrium::erased::ErasedField;
 use crate::equilibrium::problem::EquilibriumProblem;
 use crate::equilibrium::{
     BranchPoint, FoldPoint, HopfPoint, check_length, check_range, equilibrium_settings,
@@ -49,17 +50,18 @@ enum Start {
 /// # Ok::<(), arclength::Error>(())
 /// ```
 #[derive(Debug)]
-pub struct EquilibriumLocus<'a, F> {
-    field: &'a F,
+pub struct EquilibriumLocus<'a> {
+    field: ErasedField<'a>,
     start: Option<Start>,
     along: [Option<(String, RangeInclusive<f64>)>; 2],
     at: Vec<f64>,
     settings: Settings,
 }
 
-impl<'a, F: VectorField> EquilibriumLocus<'a, F> {
+impl<'a> EquilibriumLocus<'a> {
     /// A curve of special equilibria of `field`.
-    pub fn of(field: &'a F) -> Self {
+    pub fn of<F: VectorField>(field: &'a F) -> Self {
+        let field = ErasedField::of(field);
         Self { field, start: None, along: [None, None], at: Vec::new(), settings: equilibrium_settings() }
     }
 
@@ -188,8 +190,8 @@ impl<'a, F: VectorField> EquilibriumLocus<'a, F> {
 }
 
 /// A checked request.
-struct Run<'a, F> {
-    field: &'a F,
+struct Run<'a> {
+    field: ErasedField<'a>,
     parameters: Vec<f64>,
     /// Parameters in the order of the unknowns.
     active: [usize; 2],
@@ -199,7 +201,7 @@ struct Run<'a, F> {
     ranges: [f64; 2],
 }
 
-impl<'a, F: VectorField> Run<'a, F> {
+impl<'a> Run<'a> {
     fn from(
         &self,
         start: &Start,
@@ -220,7 +222,7 @@ impl<'a, F: VectorField> Run<'a, F> {
             })
             .collect();
         let matrix = &jacobian[..n * n];
-        let scales = natural_scales(self.field, state, &self.parameters, &speed);
+        let scales = natural_scales(&self.field, state, &self.parameters, &speed);
         match start {
             Start::Fold(fold) => {
                 check_length("null vector", &fold.null_vector, n, "the dimension of the field")?;
@@ -249,7 +251,7 @@ impl<'a, F: VectorField> Run<'a, F> {
         }
     }
 
-    fn follow<K: LocusKind<'a, F> + Clone>(
+    fn follow<K: LocusKind<'a> + Clone>(
         &self,
         kind: K,
         mut unknown: Vec<f64>,
