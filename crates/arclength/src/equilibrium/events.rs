@@ -174,6 +174,11 @@ impl Scan<'_, '_> {
                 return self.part(&middle, after, share * (1.0 - fraction));
             }
         }
+        if changes.count() == 0 && !changes.explain(before, after) {
+            // Symmetry makes several eigenvalues cross at once.
+            self.found.push(locating::multiple(self.curve, before, after, distance));
+            return Ok(());
+        }
         self.locate(changes, before, after, distance)
     }
 

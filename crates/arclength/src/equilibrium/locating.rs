@@ -1,7 +1,7 @@
 //! Newton's method on the defining system of a special point that was bracketed on a curve of equilibria.
 
 use super::branch_point::BranchPoint;
-use super::curve::{EquilibriumCurve, Inspection, Tests};
+use super::curve::{EquilibriumCurve, Inspection};
 use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
@@ -31,14 +31,13 @@ fn near_zero(
     before: &Node,
     after: &Node,
     tolerance: f64,
-    test: fn(&Tests) -> f64,
+    test: fn(&Inspection) -> f64,
 ) -> Node {
     let settings = curve.settings;
-    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point.tests)))
-    {
+    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point))) {
         Ok(Some(near)) => near,
         // Next to a branch point corrections fail, but the ends are good starts.
-        _ if test(&before.point.tests).abs() < test(&after.point.tests).abs() => before.clone(),
+        _ if test(&before.point).abs() < test(&after.point).abs() => before.clone(),
         _ => after.clone(),
     }
 }
@@ -64,7 +63,7 @@ fn degenerate(
     after: &Node,
     distance: f64,
     of: SpecialKind,
-    test: fn(&Tests) -> f64,
+    test: fn(&Inspection) -> f64,
 ) -> Node {
     let mut node = near_zero(curve, before, after, LAST_BRACKET, test);
     let n = curve.dimension();
@@ -72,6 +71,18 @@ fn degenerate(
     let location_error = LAST_BRACKET * distance * curve.system.scales[n];
     node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, parameter, location_error }));
     node
+}
+
+/// A point where several eigenvalues cross the imaginary axis together, so that no test function changes sign.
+pub(super) fn multiple(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node, distance: f64) -> Node {
+    fn critical(point: &Inspection) -> Complex64 {
+        let nearest = point.spectrum.eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
+        nearest.copied().unwrap_or_default()
+    }
+    let oscillates = critical(&before.point).im != 0.0;
+    let of = if oscillates { SpecialKind::Hopf } else { SpecialKind::BranchPoint };
+    let test = |point: &Inspection| critical(point).re;
+    degenerate(curve, before, after, distance, of, test)
 }
 
 /// Completes a located point of the curve.
@@ -94,7 +105,7 @@ pub(super) fn fold(
     distance: f64,
 ) -> Result<Node, Error> {
     let n = curve.dimension();
-    let test = |tests: &Tests| tests.fold;
+    let test = |point: &Inspection| point.tests.fold;
     for tolerance in BRACKETS {
         let near = near_zero(curve, before, after, tolerance, test);
         let scales = curve.system.scales.clone();
@@ -122,7 +133,7 @@ pub(super) fn hopf(
     distance: f64,
 ) -> Result<Node, Error> {
     let n = curve.dimension();
-    let test = |tests: &Tests| tests.hopf;
+    let test = |point: &Inspection| point.spectrum.hopf_closest;
     for tolerance in BRACKETS {
         let near = near_zero(curve, before, after, tolerance, test);
         let Some(pair) = critical_pair(&near.point.spectrum.eigenvalues) else { continue };
@@ -235,7 +246,7 @@ pub(super) fn branch_point(
     distance: f64,
 ) -> Result<Node, Error> {
     let n = curve.dimension();
-    let test = |tests: &Tests| tests.branch_point;
+    let test = |point: &Inspection| point.tests.branch_point;
     let failed = |_| Error::Eigenvalues { quantity: "null vector of the branch point" };
     for tolerance in [1.0, BRACKETS[0], BRACKETS[1]] {
         let near = near_zero(curve, before, after, tolerance, test);

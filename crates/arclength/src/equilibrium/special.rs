@@ -35,7 +35,8 @@ pub enum SpecialPoint {
     Hopf(HopfPoint),
     /// Neutral saddle.
     NeutralSaddle(NeutralSaddle),
-    /// A special point that could be bracketed but whose defining system Newton's method could not solve: it is degenerate.
+    /// A special point that was bracketed but whose defining system is not regular: a coefficient of its normal form is zero,
+    /// or symmetry makes several eigenvalues cross at once.
     Degenerate {
         /// What changes sign there.
         of: SpecialKind,

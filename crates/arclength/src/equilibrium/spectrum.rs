@@ -25,6 +25,9 @@ pub(crate) struct Spectrum {
     /// Product over all pairs of `(a + b)/(|a| + |b|)`, each saturating at +-1: changes sign where two eigenvalues have
     /// the sum zero. Continuous, independent of the unit of time.
     pub hopf_test: f64,
+    /// The sum closest to zero, relative to the moduli, with the sign of the product. Where many pairs are close to the
+    /// axis the product is small between its zeros too; this is not.
+    pub hopf_closest: f64,
     /// Whether no sum is so small that its sign is rounding error.
     pub hopf_decided: bool,
 }
@@ -45,8 +48,9 @@ impl Spectrum {
         } else {
             Stability::Stable
         };
-        let (hopf_test, hopf_decided) = hopf_test(&eigenvalues);
-        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_decided })
+        let HopfTest { product: hopf_test, closest, decided: hopf_decided } = HopfTest::of(&eigenvalues);
+        let hopf_closest = closest.copysign(hopf_test);
+        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_closest, hopf_decided })
     }
 
     /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has
@@ -61,15 +65,28 @@ impl Spectrum {
     }
 }
 
-/// See [`Spectrum::hopf_test`] and [`Spectrum::hopf_decided`].
-pub(crate) fn hopf_test(eigenvalues: &[Complex64]) -> (f64, bool) {
-    let (mut product, mut decided) = (1.0, true);
-    for_each_pair(eigenvalues, |one, other| {
-        let ratio = sum_ratio(one, other);
-        product *= ratio / ratio.hypot(SATURATION);
-        decided &= ratio.abs() > UNDECIDED_SUM;
-    });
-    (product, decided)
+/// See [`Spectrum::hopf_test`] and the fields that follow it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HopfTest {
+    pub product: f64,
+    /// Modulus of the sum closest to zero, of complex conjugate or real eigenvalues.
+    pub closest: f64,
+    pub decided: bool,
+}
+
+impl HopfTest {
+    pub fn of(eigenvalues: &[Complex64]) -> Self {
+        let mut test = Self { product: 1.0, closest: 1.0, decided: true };
+        for_each_pair(eigenvalues, |one, other| {
+            let ratio = sum_ratio(one, other);
+            test.product *= ratio / ratio.hypot(SATURATION);
+            test.decided &= ratio.abs() > UNDECIDED_SUM;
+            if one.im == -other.im {
+                test.closest = test.closest.min(ratio.abs());
+            }
+        });
+        test
+    }
 }
 
 /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.

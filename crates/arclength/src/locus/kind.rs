@@ -8,7 +8,7 @@ use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::locating::normals;
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
-use crate::equilibrium::spectrum::{hopf_test, without};
+use crate::equilibrium::spectrum::{HopfTest, without};
 use crate::error::Error;
 use crate::linear::eigenvectors::left_eigenvector;
 use num_complex::Complex64;
@@ -152,9 +152,9 @@ impl<'a> LocusKind<'a> for FoldSystem<'a> {
         if n > 1 {
             tests.push((SpecialKind::BogdanovTakens, double));
         }
-        let (pairs, decided) = hopf_test(&rest);
-        if n > 2 && decided {
-            tests.push((SpecialKind::ZeroHopf, pairs));
+        let pairs = HopfTest::of(&rest);
+        if n > 2 && pairs.decided {
+            tests.push((SpecialKind::ZeroHopf, pairs.closest.copysign(pairs.product)));
         }
         self.left = left;
         Ok(Monitor { tests, frequency: None, first_lyapunov: None })
@@ -244,9 +244,9 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
         if n > 2 {
             monitor.tests.push((SpecialKind::ZeroHopf, zero_test(&rest, largest)));
         }
-        let (pairs, decided) = hopf_test(&rest);
-        if n > 3 && decided {
-            monitor.tests.push((SpecialKind::HopfHopf, pairs));
+        let pairs = HopfTest::of(&rest);
+        if n > 3 && pairs.decided {
+            monitor.tests.push((SpecialKind::HopfHopf, pairs.closest.copysign(pairs.product)));
         }
         let parameters = self.equilibria.parameters_at(&point.unknown[3 * n + 1..]);
         let state = &point.unknown[..n];
