@@ -9,6 +9,7 @@ pub mod continuation;
 pub mod cycle;
 pub mod differentiation;
 pub mod equilibrium;
+mod erased;
 pub mod error;
 pub mod field;
 pub mod integration;

@@ -4,10 +4,10 @@ use super::collocation::Collocation;
 use super::curve::{CycleCurve, CycleInspection, Resolution};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
-use super::problem::PeriodicProblem;
 use super::special::{Special, Unlocated};
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::HopfPoint;
+use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use num_complex::Complex64;
@@ -142,8 +142,8 @@ impl From<&HopfPoint> for CycleStart {
 /// assert_eq!(quarter.stable, Some(true));
 /// # Ok::<(), arclength::Error>(())
 /// ```
-pub struct Cycles<'a, F> {
-    field: &'a F,
+pub struct Cycles<'a> {
+    field: ErasedField<'a>,
     start: CycleStart,
     parameters: Vec<f64>,
     active: usize,
@@ -157,11 +157,11 @@ pub struct Cycles<'a, F> {
 /// Told every cycle of a branch as it is found; may end the run.
 type Observer<'a> = dyn FnMut(f64, f64) -> ControlFlow<()> + 'a;
 
-impl<'a, F: VectorField> Cycles<'a, F> {
+impl<'a> Cycles<'a> {
     /// Cycles of the field, from a start.
-    pub fn of(field: &'a F, start: CycleStart) -> Self {
+    pub fn of<F: VectorField>(field: &'a F, start: CycleStart) -> Self {
         Self {
-            field,
+            field: ErasedField::of(field),
             start,
             parameters: Vec::new(),
             active: 0,
@@ -406,18 +406,5 @@ impl CycleBranch {
             Role::Special(special) => Some((special, point)),
             _ => None,
         })
-    }
-}
-
-impl<P: PeriodicProblem> Collocation<P> {
-    /// Time points of all nodes, in the order of the unknowns.
-    pub fn node_times(&self) -> Vec<f64> {
-        let mesh = self.mesh();
-        mesh.windows(2)
-            .flat_map(|pair| {
-                std::iter::once(pair[0])
-                    .chain(self.gauss().points.iter().map(move |point| pair[0] + point * (pair[1] - pair[0])))
-            })
-            .collect()
     }
 }

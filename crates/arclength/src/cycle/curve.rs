@@ -9,7 +9,6 @@ use super::problem::PeriodicProblem;
 use super::special;
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::periodic_schur::PeriodicSchur;
 
 /// How finely cycles are resolved.
@@ -75,9 +74,9 @@ impl CycleInspection {
 
 /// Limit cycles `u' = T f(u, p)` along one parameter.
 #[derive(Debug)]
-pub struct CycleCurve<'a, F> {
+pub struct CycleCurve<'a> {
     /// The discretised problem.
-    pub collocation: Collocation<LimitCycle<'a, F>>,
+    pub collocation: Collocation<LimitCycle<'a>>,
     /// Resolution asked for.
     pub resolution: Resolution,
     /// Settings of corrections made while special points are located.
@@ -96,10 +95,10 @@ pub struct CycleCurve<'a, F> {
     schur: Option<(usize, PeriodicSchur)>,
 }
 
-impl<'a, F: VectorField> CycleCurve<'a, F> {
+impl<'a> CycleCurve<'a> {
     /// The curve through a start that is given on the mesh of the collocation.
     pub fn new(
-        mut collocation: Collocation<LimitCycle<'a, F>>,
+        mut collocation: Collocation<LimitCycle<'a>>,
         resolution: Resolution,
         parameter_scale: f64,
         start: &[f64],
@@ -172,7 +171,7 @@ impl<'a, F: VectorField> CycleCurve<'a, F> {
     }
 }
 
-impl<F: VectorField> Curve for CycleCurve<'_, F> {
+impl Curve for CycleCurve<'_> {
     type Point = CycleInspection;
 
     fn unknowns(&self) -> usize {

@@ -9,6 +9,7 @@
 use super::limit_cycle::{phase_integrand, with_parameters};
 use super::problem::{PeriodicProblem, Reference};
 use crate::differentiation::{Dual, Scalar};
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 
 /// Which special cycle a defining system is for.
@@ -42,9 +43,9 @@ impl Kind {
 
 /// The defining system of a special cycle.
 #[derive(Debug)]
-pub struct Defining<'a, F> {
+pub struct Defining<'a> {
     /// The vector field.
-    pub field: &'a F,
+    pub field: ErasedField<'a>,
     /// Which special cycle.
     pub kind: Kind,
     /// All parameters; the active ones are replaced by the unknowns.
@@ -59,7 +60,7 @@ pub struct Defining<'a, F> {
     pub period_scale: f64,
 }
 
-impl<F: VectorField> PeriodicProblem for Defining<'_, F> {
+impl PeriodicProblem for Defining<'_> {
     #[inline]
     fn dimension(&self) -> usize {
         self.scales.len() * (1 + self.kind.eigenfunctions())
@@ -109,7 +110,7 @@ impl<F: VectorField> PeriodicProblem for Defining<'_, F> {
     }
 }
 
-impl<F: VectorField> Defining<'_, F> {
+impl Defining<'_> {
     #[inline]
     fn variational<T: Scalar, const K: usize>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let n = self.scales.len();

@@ -3,13 +3,14 @@
 
 use super::problem::{PeriodicProblem, Reference};
 use crate::differentiation::Scalar;
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 
 /// A limit cycle with scalars `(T, p)`: period and active parameter.
-#[derive(Debug)]
-pub struct LimitCycle<'a, F> {
+#[derive(Debug, Clone)]
+pub struct LimitCycle<'a> {
     /// The vector field.
-    pub field: &'a F,
+    pub field: ErasedField<'a>,
     /// All parameters; the active one is replaced by the unknown.
     pub parameters: Vec<f64>,
     /// Index of the active parameter.
@@ -18,18 +19,7 @@ pub struct LimitCycle<'a, F> {
     pub scales: Vec<f64>,
 }
 
-impl<F> Clone for LimitCycle<'_, F> {
-    fn clone(&self) -> Self {
-        Self {
-            field: self.field,
-            parameters: self.parameters.clone(),
-            active: self.active,
-            scales: self.scales.clone(),
-        }
-    }
-}
-
-impl<F: VectorField> PeriodicProblem for LimitCycle<'_, F> {
+impl PeriodicProblem for LimitCycle<'_> {
     #[inline(always)]
     fn dimension(&self) -> usize {
         self.scales.len()

@@ -16,12 +16,6 @@ mod problem;
 mod special;
 
 pub use branch::{CycleBranch, CyclePoint, CycleStart, Cycles, Role};
-pub use collocation::Collocation;
-pub use curve::{CycleCurve, CycleInspection, Resolution};
-pub use defining::{Defining, Kind};
-pub use floquet::Floquet;
-pub use gauss::Gauss;
-pub use limit_cycle::LimitCycle;
+pub use curve::Resolution;
 pub use orbit::Orbit;
-pub use problem::{PeriodicProblem, Reference};
 pub use special::{Special, Unlocated};

@@ -7,7 +7,6 @@ use super::defining::{Defining, Kind};
 use super::problem::PeriodicProblem;
 use crate::continuation::{Adaptation, Curve, Solution, correct, finish, locate};
 use crate::error::Error;
-use crate::field::VectorField;
 use crate::linear::product_eigenvectors::product_eigenvector;
 use num_complex::Complex64;
 
@@ -33,8 +32,8 @@ const START_TOLERANCE: f64 = 1e-2;
 const BRANCH_POINT_TOLERANCE: f64 = 1e-8;
 
 /// All special cycles between two consecutive solutions, in the order of the branch.
-pub(super) fn between<F: VectorField>(
-    curve: &mut CycleCurve<'_, F>,
+pub(super) fn between(
+    curve: &mut CycleCurve<'_>,
     before: &Solution<CycleInspection>,
     after: &Solution<CycleInspection>,
 ) -> Result<Vec<Solution<CycleInspection>>, Error> {
@@ -142,13 +141,13 @@ fn torus_test(point: &CycleInspection, fixed: usize) -> Option<f64> {
 }
 
 /// A curve made of a defining system, as far as Newton's method needs it.
-struct DefiningCurve<'a, F> {
-    collocation: Collocation<Defining<'a, F>>,
+struct DefiningCurve<'a> {
+    collocation: Collocation<Defining<'a>>,
     scales: Vec<f64>,
     parameter_scale: f64,
 }
 
-impl<F: VectorField> Curve for DefiningCurve<'_, F> {
+impl Curve for DefiningCurve<'_> {
     type Point = ();
 
     fn unknowns(&self) -> usize {
@@ -198,8 +197,8 @@ impl<F: VectorField> Curve for DefiningCurve<'_, F> {
 ///
 /// `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
 /// multipliers met on the unit circle's side of it.
-fn converge<F: VectorField>(
-    curve: &mut CycleCurve<'_, F>,
+fn converge(
+    curve: &mut CycleCurve<'_>,
     before: &Solution<CycleInspection>,
     start: &Solution<CycleInspection>,
     kind: Kind,
@@ -259,8 +258,8 @@ fn converge<F: VectorField>(
 type Functions = Vec<Vec<f64>>;
 
 /// Critical eigenfunctions on the nodes of the start, normalised, and the kind's own scalars.
-fn eigenfunctions<F: VectorField>(
-    curve: &mut CycleCurve<'_, F>,
+fn eigenfunctions(
+    curve: &mut CycleCurve<'_>,
     start: &Solution<CycleInspection>,
     kind: Kind,
 ) -> Result<Option<(Functions, Vec<f64>)>, Error> {

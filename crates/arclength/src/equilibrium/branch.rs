@@ -7,7 +7,7 @@ use super::hopf::HopfPoint;
 use super::special::SpecialPoint;
 use crate::branch::{Label, SpecialKind, Stability};
 use crate::continuation::{Origin, Solution, Stop};
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@ use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::Criticality;
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;

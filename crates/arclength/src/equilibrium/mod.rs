@@ -8,7 +8,6 @@ mod branch;
 mod branch_point;
 mod curve;
 pub(crate) mod defining;
-pub(crate) mod erased;
 mod events;
 mod fold;
 pub(crate) mod hopf;

@@ -3,7 +3,7 @@
 //! Computed by nested dual numbers, one level for each direction, exact to rounding.
 
 use crate::differentiation::{Dual, Scalar};
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 

@@ -5,11 +5,11 @@
 //! implicit Euler steps of growing length go with the flow until they turn into Newton's method (Kelley
 //! and Keyes, *SIAM J. Numer. Anal.* 35, 1998).
 
-use super::erased::ErasedField;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{AlgebraicProblem, Differentiator, ScaledLu};
 use crate::continuation::CorrectionFailure;
+use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 

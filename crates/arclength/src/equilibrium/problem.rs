@@ -2,7 +2,7 @@
 
 use crate::algebraic::AlgebraicProblem;
 use crate::differentiation::{Dual, Scalar};
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 
 /// `f(x, p) = 0` with the unknowns `(x, active parameters)`; the other parameters are fixed.

@@ -8,7 +8,7 @@ use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use std::ops::{ControlFlow, RangeInclusive};

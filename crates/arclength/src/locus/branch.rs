@@ -4,7 +4,7 @@ use super::codimension_two::CodimensionTwoPoint;
 use super::curve::Inspection;
 use crate::branch::{Label, SpecialKind};
 use crate::continuation::{Followed, Origin, Solution, Stop};
-use crate::equilibrium::erased::ErasedField;
+use crate::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};

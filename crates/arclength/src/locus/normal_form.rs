@@ -5,10 +5,10 @@
 
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::SpecialKind;
-use crate::equilibrium::erased::ErasedField;
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
+use crate::erased::ErasedField;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 use std::borrow::Cow;

@@ -7,11 +7,11 @@ use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Bound, Followed, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
-use crate::equilibrium::erased::ErasedField;
 use crate::equilibrium::problem::EquilibriumProblem;
 use crate::equilibrium::{
     BranchPoint, FoldPoint, HopfPoint, check_length, check_range, equilibrium_settings,
 };
+use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::linear::eigenvectors::left_eigenvector;

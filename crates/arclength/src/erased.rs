@@ -1,7 +1,7 @@
 //! A vector field behind a pointer, so that everything else is compiled once and not for every field.
 //!
-//! [`VectorField::evaluate`] is generic over the scalar. The computations of this module and of the curves in two parameters
-//! use a short list of scalars, so a field can be erased to a table with one entry for each of them. That divides the time
+//! [`VectorField::evaluate`] is generic over the scalar. Equilibria, cycles and the curves in two parameters use a short list
+//! of scalars, so a field can be erased to a table with one entry for each of them. That divides the time
 //! to compile a program with many fields by more than ten; the cost is one indirect call for an evaluation.
 
 use crate::differentiation::{Dual, Scalar};
@@ -12,6 +12,9 @@ use std::any::TypeId;
 type Narrow = Dual<f64, 4>;
 type Wide = Dual<f64, 8>;
 type NarrowAlong = Dual<Narrow, 1>;
+type WideAlong = Dual<Wide, 1>;
+type WideAlongPair = Dual<Wide, 2>;
+type Pair = Dual<f64, 2>;
 type NarrowAlongTwice = Dual<NarrowAlong, 1>;
 /// One infinitesimal for each direction of a multilinear form.
 type First = Dual<f64, 1>;
@@ -92,6 +95,9 @@ scalars! {
     evaluate_wide: Wide;
     evaluate_narrow_along: NarrowAlong;
     evaluate_narrow_along_twice: NarrowAlongTwice;
+    evaluate_wide_along: WideAlong;
+    evaluate_wide_along_pair: WideAlongPair;
+    evaluate_pair: Pair;
     evaluate_first: First;
     evaluate_second: Second;
     evaluate_third: Third;
