@@ -17,12 +17,15 @@ const SMALL: f64 = 1e-3;
 /// Room for rounding when deciding whether a tick lies within the limits, in steps.
 const ROUNDING: f64 = 1e-6;
 
+/// Below this span the powers of ten of the steps leave the range of the numbers.
+const NARROWEST: f64 = 1e-290;
+
 /// Ticks at 1, 2 or 5 times a power of ten, about `target` of them, at least two where the numbers allow.
 pub(crate) fn linear(low: f64, high: f64, target: usize) -> Ticks {
     let (low, high) = (low.min(high), low.max(high));
     let span = high - low;
     // Too narrow for the precision of the numbers: one tick, labelled with the value itself.
-    if !span.is_finite() || span <= 1e-12 * low.abs().max(high.abs()) {
+    if !span.is_finite() || span <= 1e-12 * low.abs().max(high.abs()) || span < NARROWEST {
         return Ticks { major: vec![(low, plain(low, 6))], ..Ticks::default() };
     }
     let (mut mantissa, mut power) = step(span, target);
@@ -153,6 +156,16 @@ mod tests {
 
     fn labels(ticks: &Ticks) -> Vec<&str> {
         ticks.major.iter().map(|(_, label)| label.as_str()).collect()
+    }
+
+    #[test]
+    fn limits_at_the_ends_of_the_number_range_give_few_ticks() {
+        for (low, high) in
+            [(-1e-310, 0.0), (0.0, 5e-324), (-1e-300, 1e-300), (-1e308, 1e308), (0.0, f64::MAX)]
+        {
+            let count = linear(low, high, 6).major.len();
+            assert!((1..=20).contains(&count), "{low} to {high}: {count}");
+        }
     }
 
     #[test]
