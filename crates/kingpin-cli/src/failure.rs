@@ -1,6 +1,8 @@
 //! How a command fails, and with which exit code.
 
 use crate::paper::PaperError;
+use arclength::integration::IntegrationError;
+use arclength_ode::OdeError;
 use kingpin::KingpinError;
 use kingpin::simulation::SimulationError;
 use kingpin_figure::FigureError;
@@ -46,6 +48,25 @@ pub enum Failure {
     /// A continuation failed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),
+    /// A text model that cannot be read.
+    #[error("{}: {}", path.display(), source.snippet())]
+    Model {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        source: Box<OdeError>,
+    },
+    /// A file that cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// A motion that cannot be followed to its end.
+    #[error("the motion cannot be followed: {0}")]
+    Integration(#[from] IntegrationError),
     /// Nothing was found where something was sought.
     #[error("{0}")]
     NothingFound(String),
@@ -99,8 +120,11 @@ impl Failure {
             | Self::Set { .. }
             | Self::Simulation(_)
             | Self::Unwritable { .. }
+            | Self::Model { .. }
+            | Self::Unreadable { .. }
             | Self::ResultFile { .. } => BAD_INPUT,
             Self::Continuation(_)
+            | Self::Integration(_)
             | Self::NothingFound(_)
             | Self::Paper(_)
             | Self::Figure(_)

@@ -3,7 +3,8 @@
 use crate::document::{NamedNumbers, Number, Schema};
 use crate::failure::Failure;
 use arclength::cycle::Orbit;
-use serde::Deserialize;
+use arclength::equilibrium::SpecialPoint;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -41,6 +42,7 @@ impl FromStr for PointReference {
 struct ResultFile {
     schema: Schema,
     parameters: NamedNumbers,
+    model: Option<StoredModel>,
     along: StoredParameter,
     points: Vec<StoredPoint>,
 }
@@ -55,15 +57,29 @@ struct StoredPoint {
     value: Number,
     label: Option<String>,
     orbit: Option<Orbit>,
+    special: Option<SpecialPoint>,
 }
 
-/// A labelled point: all parameters, and the orbit where it is a cycle.
+/// A model that is not the wheel, with its text.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StoredModel {
+    /// Name of the file that it was read from.
+    pub name: String,
+    /// The text of that file.
+    pub source: String,
+}
+
+/// A labelled point: all parameters, and what is known of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelledPoint {
+    /// The model, where it is not the wheel.
+    pub model: Option<StoredModel>,
     /// Every parameter of the model there.
     pub parameters: Vec<(String, f64)>,
-    /// The cycle; `None` at a Hopf point.
+    /// The cycle, where it is one.
     pub orbit: Option<Orbit>,
+    /// The normal form of an equilibrium that bifurcates.
+    pub special: Option<SpecialPoint>,
 }
 
 impl PointReference {
@@ -71,23 +87,34 @@ impl PointReference {
     ///
     /// # Errors
     /// [`Failure::ResultFile`]: no such file, not a result of one of the commands, no such label.
-    pub fn read(&self, schemas: &[&str], dimension: usize) -> Result<LabelledPoint, Failure> {
-        let failure = |problem: String| Failure::ResultFile { path: self.path.clone(), problem };
-        let mut file = read_file(&self.path, schemas).map_err(failure)?;
+    pub fn read(&self, schemas: &[&str]) -> Result<LabelledPoint, Failure> {
+        let mut file = read_file(&self.path, schemas).map_err(|problem| self.failure(problem))?;
         let labels: Vec<String> = file.points.iter().filter_map(|point| point.label.clone()).collect();
         let place = file.points.iter().position(|point| point.label.as_ref() == Some(&self.label));
         let Some(place) = place else {
             let known = if labels.is_empty() { "it has no labels".to_owned() } else { labels.join(", ") };
-            return Err(failure(format!("no point is labelled `{}`; the labels are: {known}", self.label)));
+            return Err(
+                self.failure(format!("no point is labelled `{}`; the labels are: {known}", self.label))
+            );
         };
         let point = file.points.swap_remove(place);
-        if let Some(orbit) = &point.orbit {
-            check(orbit, dimension)
-                .map_err(|problem| failure(format!("the orbit of {}: {problem}", self.label)))?;
-        }
         let mut parameters = file.parameters.0;
         parameters.push((file.along.key, point.value.0));
-        Ok(LabelledPoint { parameters, orbit: point.orbit })
+        Ok(LabelledPoint { model: file.model, parameters, orbit: point.orbit, special: point.special })
+    }
+
+    /// That the orbit that was read is one of a model with so many states.
+    ///
+    /// # Errors
+    /// [`Failure::ResultFile`].
+    pub fn check(&self, orbit: &Orbit, dimension: usize) -> Result<(), Failure> {
+        check(orbit, dimension)
+            .map_err(|problem| self.failure(format!("the orbit of {}: {problem}", self.label)))
+    }
+
+    /// What is wrong with the file.
+    pub fn failure(&self, problem: String) -> Failure {
+        Failure::ResultFile { path: self.path.clone(), problem }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
 
 /// Hands a buffered standard output to a writer of results.
 ///
@@ -27,8 +28,19 @@ pub fn say(kind: &str, message: &str) {
     let _ = writeln!(io::stderr(), "{kind}: {message}");
 }
 
+/// The exit code of a command, after saying why it failed.
+pub fn exit_code(outcome: Result<(), Failure>) -> ExitCode {
+    match outcome {
+        Ok(()) | Err(Failure::OutputClosed) => ExitCode::SUCCESS,
+        Err(failure) => {
+            say_failure(&failure);
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
 /// Says why the command failed, with the causes that the message itself does not name.
-pub fn say_failure(failure: &Failure) {
+fn say_failure(failure: &Failure) {
     let mut message = failure.to_string();
     let mut cause = std::error::Error::source(failure);
     while let Some(error) = cause {

@@ -4,6 +4,7 @@ use crate::columns::Columns;
 use crate::description;
 use crate::document::{NamedNumbers, Schema};
 use crate::failure::Failure;
+use crate::history::{drawn, extremes};
 use crate::numbers::readable;
 use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
 use crate::range::Assignment;
@@ -20,8 +21,6 @@ use std::io::{self, Write};
 const EXAMPLE: &str = "kingpin simulate --duration 5 --perturb psi=0.1 -s v=8 -o history.svg";
 /// Most samples.
 const MOST_POINTS: u64 = 1_000_000;
-/// A curve of more samples than this is drawn through the smallest and largest of each of half as many groups.
-const DRAWN_POINTS: usize = 4000;
 
 /// Time history from the perturbed uniform motion
 #[derive(Args, Debug)]
@@ -200,30 +199,4 @@ impl Report for HistoryReport {
         let (_, values, _, label) = states[2];
         Ok(Some(figure.panel(panel(values, label, true)).panel(force)))
     }
-}
-
-fn extremes(values: &[f64]) -> [f64; 2] {
-    values
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
-}
-
-/// The points through which a curve is drawn: all, or the extremes of groups of neighbours.
-fn drawn(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
-    let all = || times.iter().copied().zip(values.iter().copied());
-    if values.len() <= DRAWN_POINTS {
-        return all().collect();
-    }
-    let group = (2 * values.len()).div_ceil(DRAWN_POINTS);
-    let points: Vec<(f64, f64)> = all().collect();
-    let smaller = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-    points
-        .chunks(group)
-        .flat_map(|neighbours| {
-            let ends = [neighbours.iter().min_by(smaller), neighbours.iter().max_by(smaller)];
-            let mut ends: Vec<(f64, f64)> = ends.into_iter().flatten().copied().collect();
-            ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-            ends
-        })
-        .collect()
 }

@@ -50,8 +50,15 @@ pub struct Cycles {
 
 /// Where branches of cycles come from.
 enum Start {
-    Hopf(Vec<HopfPoint>),
-    Cycle { origin: String, orbit: arclength::cycle::Orbit },
+    /// All Hopf points of the interval, and the one to start from where it is not all.
+    Hopf {
+        points: Vec<HopfPoint>,
+        only: Option<usize>,
+    },
+    Cycle {
+        origin: String,
+        orbit: arclength::cycle::Orbit,
+    },
 }
 
 /// A branch with the label of what it starts from.
@@ -60,6 +67,8 @@ struct Branch {
     origin: String,
     /// The Hopf point that it starts from.
     hopf: Option<HopfPoint>,
+    /// The Hopf point at which it ends.
+    reached: Option<(String, HopfPoint)>,
     cycles: WheelCycles,
 }
 
@@ -85,9 +94,9 @@ impl Cycles {
         let branches = match start {
             Start::Cycle { origin, orbit } => {
                 let cycles = wheel.cycles_through(&orbit, along, &options, &mut observer)?;
-                vec![Branch { origin, hopf: None, cycles }]
+                vec![Branch { origin, hopf: None, reached: None, cycles }]
             }
-            Start::Hopf(points) => from_hopf_points(points, along, &options, &mut observer)?,
+            Start::Hopf { points, only } => from_hopf_points(&points, only, along, &options, &mut observer)?,
         };
         drop(progress);
         output.deliver(&CyclesReport::new(wheel, along, &branches)?)
@@ -96,13 +105,11 @@ impl Cycles {
     fn start(&self, along: Along) -> Result<(Wheel, Start), Failure> {
         let Some(reference) = &self.from else {
             let wheel = self.wheel.wheel()?;
-            return Ok((wheel, Start::Hopf(hopf::search(&wheel, along)?.points)));
+            let points = hopf::search(&wheel, along)?.points;
+            return Ok((wheel, Start::Hopf { points, only: None }));
         };
-        let LabelledPoint { parameters, orbit } = reference.read(&SCHEMAS, STATE_NAMES.len())?;
-        let wheel = stored_wheel(&parameters).map_err(|error| Failure::ResultFile {
-            path: reference.path.clone(),
-            problem: error.to_string(),
-        })?;
+        let LabelledPoint { parameters, orbit, .. } = reference.read(&SCHEMAS)?;
+        let wheel = stored_wheel(&parameters).map_err(|error| reference.failure(error.to_string()))?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
         let (start, end) = along.ends();
@@ -110,41 +117,46 @@ impl Cycles {
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
         }
         if let Some(orbit) = orbit {
+            reference.check(&orbit, STATE_NAMES.len())?;
             return Ok((wheel, Start::Cycle { origin: reference.label.clone(), orbit }));
         }
         // The point of an earlier search is found again along the parameter that now varies, on the way from one end: a
         // search that starts at the point itself would not see the growth rate change its sign.
-        let mut points = hopf::search(&wheel.with(along.key(), start)?, along)?.points;
-        points.retain(|point| same_value(point.value, value));
-        if points.is_empty() {
-            return Err(Failure::NothingFound(format!(
+        let points = hopf::search(&wheel.with(along.key(), start)?, along)?.points;
+        match points.iter().position(|point| same_value(point.value, value)) {
+            Some(only) => Ok((wheel, Start::Hopf { points, only: Some(only) })),
+            None => Err(Failure::NothingFound(format!(
                 "{} is no Hopf point along {}: the wheel was changed, or the growth rate does not change its sign \
                  there; without --from all Hopf points of the interval are found",
                 reference.label,
                 along.key()
-            )));
+            ))),
         }
-        Ok((wheel, Start::Hopf(points)))
     }
 }
 
 /// Every branch once: one that ends at another of the Hopf points is not followed again from there.
 fn from_hopf_points(
-    points: Vec<HopfPoint>,
+    points: &[HopfPoint],
+    only: Option<usize>,
     along: Along,
     options: &CycleOptions,
     mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
 ) -> Result<Vec<Branch>, Failure> {
     let mut branches: Vec<Branch> = Vec::new();
-    for (index, hopf) in points.into_iter().enumerate() {
-        let reached = branches.iter().any(|branch| match branch.cycles.stops.1 {
-            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, hopf.value), parameter),
+    for (index, hopf) in points.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index))
+    {
+        let origin = hopf::label(index);
+        if branches.iter().any(|branch| branch.reached.as_ref().is_some_and(|(label, _)| *label == origin)) {
+            continue;
+        }
+        let cycles = hopf.cycles(along, options, &mut observer)?;
+        let reached = points.iter().enumerate().find(|(_, other)| match cycles.stops.1 {
+            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, other.value), parameter),
             _ => false,
         });
-        if !reached {
-            let cycles = hopf.cycles(along, options, &mut observer)?;
-            branches.push(Branch { origin: hopf::label(index), hopf: Some(hopf), cycles });
-        }
+        let reached = reached.map(|(index, other)| (hopf::label(index), other.clone()));
+        branches.push(Branch { origin, hopf: Some(hopf.clone()), reached, cycles });
     }
     Ok(branches)
 }

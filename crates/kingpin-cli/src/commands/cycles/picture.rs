@@ -2,10 +2,12 @@
 
 use super::report::{CyclesReport, PointReport};
 use crate::along::drawn_as;
+use crate::labels::kind;
 use crate::{axis_label, description};
 use kingpin::Key;
 use kingpin_figure::{
-    Axis, Branch, Dash, Figure, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
+    Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
+    palette,
 };
 
 /// Values of the parameter at which the uniform motion is drawn.
@@ -18,7 +20,7 @@ pub fn bifurcation_diagram(report: &CyclesReport) -> Figure {
     let ends = [abscissa(start), abscissa(end)];
     let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let x = Axis::new(axis_label::of(key)).limits(low, high);
-    let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)"));
+    let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)")).legend(Legend::Below);
     panel = panel.curve(uniform_motion(report, key, low, high).color(palette::BLUE).legend("uniform motion"));
     let branches = report.points.last().map_or(0, |point| point.branch);
     for number in 1..=branches {
@@ -63,7 +65,7 @@ fn stability(point: &PointReport) -> Stability {
 }
 
 fn marker(label: &str) -> Marker {
-    match label.trim_end_matches(|character: char| character.is_ascii_digit()) {
+    match kind(label) {
         "LPC" => Marker::new(MarkerShape::Square),
         "PD" => Marker::new(MarkerShape::Diamond).open(),
         "NS" => Marker::new(MarkerShape::Triangle).open(),

@@ -7,26 +7,27 @@ use crate::commands::hopf::{criticality, named_state};
 use crate::description;
 use crate::document::{NamedNumbers, Number, Schema};
 use crate::failure::Failure;
+use crate::labels::{Labels, is_bifurcation, kind};
 use crate::numbers::{readable, significant};
 use crate::options::parameters_of;
 use crate::report::Report;
 use crate::table::{Cell, Table};
+use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::{CyclePoint, Orbit, Role, Special};
+use arclength::cycle::{CyclePoint, Orbit};
 use kingpin::Wheel;
 use kingpin::branches::{Along, HopfPoint};
 use kingpin::rolling::STATE_NAMES;
 use kingpin_figure::{Figure, FigureError};
 use num_complex::Complex64;
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::io::{self, Write};
 
 /// Index of the caster angle among the states.
 const CASTER_ANGLE: usize = 2;
 
-/// A cycle, or the Hopf point at which a branch starts.
+/// A cycle, or the Hopf point at which a branch starts or ends.
 #[derive(Debug, Serialize)]
 pub struct PointReport {
     pub branch: u64,
@@ -86,6 +87,9 @@ impl CyclesReport {
             for cycle in &branch.cycles.points {
                 points.push(at_cycle(number, cycle, labels.of(cycle)));
             }
+            if let Some((label, hopf)) = &branch.reached {
+                points.push(at_hopf(number, hopf, label.clone())?);
+            }
             let (first, last) = &branch.cycles.stops;
             let first = match (first, &branch.hopf) {
                 (Some(stop), _) => ending(&interval, stop),
@@ -120,26 +124,6 @@ fn ending(along: &Along, stop: &Stop) -> String {
             at(*parameter)
         ),
         other => other.to_string(),
-    }
-}
-
-/// Counts the special points of each kind.
-#[derive(Default)]
-struct Labels(BTreeMap<&'static str, usize>);
-
-impl Labels {
-    fn of(&mut self, cycle: &CyclePoint) -> Option<String> {
-        let kind = match cycle.role {
-            Role::Step => return None,
-            Role::Requested => "AT",
-            Role::Special(Special::Fold) => "LPC",
-            Role::Special(Special::Doubling) => "PD",
-            Role::Special(Special::Torus { .. }) => "NS",
-            Role::Special(Special::BranchPoint) => "BPC",
-        };
-        let count = self.0.entry(kind).or_default();
-        *count += 1;
-        Some(format!("{kind}{count}"))
     }
 }
 
@@ -259,12 +243,12 @@ impl Report for CyclesReport {
 impl PointReport {
     /// Whether a multiplier is on the unit circle by definition.
     pub fn is_bifurcation(&self) -> bool {
-        self.label.as_ref().is_some_and(|label| !label.starts_with("AT"))
+        is_bifurcation(self.label.as_deref())
     }
 
     /// Whether the uniform motion bifurcates here.
     pub fn is_hopf_point(&self) -> bool {
-        self.label.as_ref().is_some_and(|label| label.starts_with("HB"))
+        self.label.as_deref().is_some_and(|label| kind(label) == SpecialKind::Hopf.label())
     }
 }
 
