@@ -132,7 +132,7 @@ const TABLE: [Entry; STORED + 2] = [
         Allowed::between(-1e3, 1e3), 0.012),
     entry("g", "g", "m/s^2", "acceleration of gravity", Allowed::between(0.0, 1e3), 9.81),
     entry("mu_s", "μ_s", "1", "coefficient of static friction", FRICTION, 1.0),
-    entry("mu_d", "μ_d", "1", "coefficient of sliding friction, in nature at most mu_s; not in the paper", FRICTION, 0.8),
+    entry("mu_d", "μ_d", "1", "coefficient of sliding friction, at most mu_s; if not set, 0.8 or mu_s, whichever is less", FRICTION, 0.8),
     entry("F_Az", "F_Az", "N", "vertical force on the king pin, negative presses down", Allowed::between(-1e6, 1e6), 0.0),
     entry("k_u", "k_u", "N/m", "longitudinal stiffness at the king pin; inf is lateral elasticity only",
         Allowed::or_infinite(1e-3, 1e9), 100.0),

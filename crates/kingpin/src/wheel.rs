@@ -8,7 +8,8 @@ use toml::de::{DeTable, DeValue};
 /// The parameters of a towed wheel, each within its allowed range ([`Key::allowed`]).
 ///
 /// The default is the paper's wheel at v = 4 m/s, l = 0.08 m, r = 1 m, without vertical load (`F_Az = 0`) and
-/// without damping; its coefficient of sliding friction, which the paper does not give, is taken as 0.8.
+/// without damping. Its coefficient of sliding friction, which the paper does not give, is 0.8 or `mu_s`, whichever is less, until
+/// it is set: sliding friction above the static one would let the wheel neither roll nor slide.
 ///
 /// ```
 /// use kingpin::{Key, Wheel};
@@ -17,9 +18,18 @@ use toml::de::{DeTable, DeValue};
 /// assert!(wheel.with(Key::L, -1.0).is_err());
 /// # Ok::<(), kingpin::KingpinError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Wheel {
     values: [f64; STORED],
+    /// Whether `mu_d` was given; otherwise it is kept at or below `mu_s`.
+    sliding_friction_is_set: bool,
+}
+
+impl PartialEq for Wheel {
+    /// Wheels with the same values are the same, whether these were set or not.
+    fn eq(&self, other: &Self) -> bool {
+        self.values == other.values
+    }
 }
 
 impl Default for Wheel {
@@ -28,7 +38,7 @@ impl Default for Wheel {
         for (value, key) in values.iter_mut().zip(Key::ALL) {
             *value = key.default_value();
         }
-        Self { values }
+        Self { values, sliding_friction_is_set: false }
     }
 }
 
@@ -74,6 +84,10 @@ impl Wheel {
                 self.values[Key::TurningRadius as usize] = if straight { f64::INFINITY } else { radius };
             }
             _ => key.sets().iter().for_each(|&stored| self.values[stored as usize] = value),
+        }
+        self.sliding_friction_is_set |= key == Key::MuD;
+        if !self.sliding_friction_is_set {
+            self.values[Key::MuD as usize] = Key::MuD.default_value().min(self.get(Key::MuS));
         }
         Ok(())
     }
@@ -153,6 +167,11 @@ impl Wheel {
     #[inline]
     pub fn normal_force(&self) -> f64 {
         (self.get(Key::MW) + self.get(Key::MC)) * self.get(Key::G) - self.get(Key::FAz)
+    }
+
+    /// Whether `mu_d` is `mu_s` because it was not set.
+    pub(crate) fn sliding_friction_follows_static(&self) -> bool {
+        !self.sliding_friction_is_set && self.get(Key::MuS) < Key::MuD.default_value()
     }
 
     /// Whether any of the three dampers acts.

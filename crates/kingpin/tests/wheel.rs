@@ -95,3 +95,19 @@ fn one_key_may_set_two() {
     assert!(matches!(wheel.rolling(&[Key::TurningRadius]), Err(KingpinError::InfiniteRadius)));
     assert_eq!(wheel.rolling(&[Key::Curvature]).unwrap().parameters(), [0.0]);
 }
+
+#[test]
+fn sliding_friction_stays_below_the_static_one_until_it_is_set() {
+    let mut wheel = Wheel::default();
+    assert_eq!(wheel.get(Key::MuD), 0.8);
+    wheel.set("mu_s", "0.5").unwrap();
+    assert_eq!(wheel.get(Key::MuD), 0.5);
+    assert!(wheel.sliding().is_ok());
+    wheel.set("mu_s", "2").unwrap();
+    assert_eq!(wheel.get(Key::MuD), 0.8);
+    wheel.set("mu_d", "0.7").unwrap();
+    wheel.set("mu_s", "0.5").unwrap();
+    assert_eq!(wheel.get(Key::MuD), 0.7);
+    assert!(wheel.sliding().unwrap_err().to_string().contains("mu_d = 0.7"));
+    assert_eq!(Wheel::from_toml("mu_s = 0.3").unwrap().get(Key::MuD), 0.3);
+}

@@ -1,7 +1,8 @@
 //! The wheel that rolls or slides, with Coulomb friction.
 //!
 //! While it slides with the slip velocity `s = (V1 - W, V2)` the ground pulls with `T = -mu_d N s/|s|`; while it rolls, with
-//! whatever the constraint demands, up to `mu_s N`. The motion is a sequence of [`Phase`]s whose ends are located as
+//! whatever the constraint demands, up to `mu_s N`. Unless it is set, `mu_d` is 0.8 or `mu_s`, whichever is less; a larger `mu_d` than
+//! `mu_s` is refused. The motion is a sequence of [`Phase`]s whose ends are located as
 //! events; friction is not smoothed.
 //!
 //! # How slip starts
@@ -30,7 +31,7 @@
 //! growing limit direction.
 
 mod history;
-mod model;
+pub(crate) mod model;
 #[cfg(test)]
 mod tests;
 
@@ -39,8 +40,10 @@ pub use history::SlidingHistory;
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
-use arclength::integration::{Event, Integrator, Solution, Stepper, autonomous, from_fn};
-use model::{Equations, S1, S2, SlipState};
+use arclength::integration::{
+    Crossing, Direction, Event, Integrator, Solution, Stepper, autonomous, from_fn,
+};
+use model::{Equations, S1, S2, SlipState, slip_squared};
 
 /// Names of the states: as those of the rolling wheel, with `V1` and `V2` the velocity of the wheel centre along and across the
 /// caster in m/s and `W` the speed of the rim in m/s.
@@ -95,7 +98,7 @@ pub struct Phase {
 /// ```
 #[derive(Clone, Debug)]
 pub struct SlidingWheel {
-    equations: Equations,
+    equations: Equations<f64>,
     rolling: RollingWheel,
     while_rolling: Integrator,
     while_sliding: Integrator,
@@ -105,8 +108,8 @@ pub struct SlidingWheel {
 /// A state with what the wheel does there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HybridState {
-    contact: Contact,
-    state: SlipState,
+    pub(crate) contact: Contact,
+    pub(crate) state: SlipState,
 }
 
 impl HybridState {
@@ -205,13 +208,8 @@ impl SlidingWheel {
 
     /// Whether the static friction holds the wheel at a state without slip.
     fn holds(&self, state: &[f64]) -> bool {
-        self.static_reserve(state) >= 0.0 || self.equations.incipient_slip(state).is_none()
-    }
-
-    /// Square of the static limit less that of the rolling force.
-    fn static_reserve(&self, state: &[f64]) -> f64 {
-        let [along, across] = self.equations.holding_force(state);
-        self.equations.static_limit.powi(2) - along * along - across * across
+        // The two are the same expression, so that equal limits give equal answers to the last bit.
+        self.equations.static_reserve(state) >= 0.0 || self.equations.sliding_reserve(state) >= 0.0
     }
 
     /// Rolls until the static friction is exhausted. The solution has the seven states.
@@ -224,7 +222,7 @@ impl SlidingWheel {
     ) -> Result<(Solution, HybridState), SimulationError> {
         let widen = |x: &[f64]| [x[0], x[1], x[2], x[3], 0.0, x[4], 0.0];
         let initial = [state[0], state[1], state[2], state[3], state[5]];
-        let mut events = [Event::new(|_, x| self.static_reserve(&widen(x))).falling().terminal()];
+        let mut events = [Event::new(|_, x| self.equations.static_reserve(&widen(x))).falling().terminal()];
         let times = &times[..times.partition_point(|&time| time <= end)];
         let mut solution = self.while_rolling.with_events(
             autonomous(&self.rolling, &[]),
@@ -250,20 +248,13 @@ impl SlidingWheel {
     ) -> Result<(Solution, HybridState), SimulationError> {
         let equations = &self.equations;
         let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
-            let limit = equations.limit_direction(equations.holding_force(state));
-            let friction = limit.direction.map(|e| -equations.sliding_friction * e);
-            equations.derivative(state, friction, derivative);
+            equations.derivative(state, equations.incipient_force(state), derivative);
         });
         let slip = |x: &[f64]| x[S1].hypot(x[S2]);
         let mut events = [
             Event::new(|_, x| slip(x) - ONSET_SLIP).rising().terminal(),
             // Slip that had hardly begun shrinks again.
-            Event::new(|_, x| {
-                let force = equations.holding_force(x);
-                force[0].hypot(force[1]) - equations.sliding_friction
-            })
-            .falling()
-            .terminal(),
+            Event::new(|_, x| equations.sliding_reserve(x)).rising().terminal(),
         ];
         let solution = self.while_sliding.with_events(system, start, state, end, times, &mut events)?;
         let state = as_slip_state(&solution.state);
@@ -273,7 +264,7 @@ impl SlidingWheel {
         Ok((solution, HybridState { contact: Contact::Rolling, state: stuck(state) }))
     }
 
-    /// Slides until the slip vanishes.
+    /// Slides until the slip vanishes; the crossing is where its straight way to zero begins.
     fn slide(
         &self,
         start: f64,
@@ -285,7 +276,6 @@ impl SlidingWheel {
         let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
             equations.derivative(state, equations.sliding_force(state), derivative);
         });
-        let slip_squared = |x: &[f64]| x[S1] * x[S1] + x[S2] * x[S2];
         // Without friction there is nothing special about zero slip.
         let vanishing = if equations.static_limit == 0.0 { 0.0 } else { VANISHING_SLIP * VANISHING_SLIP };
         // The direction of vanishing slip turns ever faster, so the steps shrink with the slip and cannot jump over zero:
@@ -314,6 +304,12 @@ impl SlidingWheel {
         if !vanished {
             return Ok((solution, HybridState { contact: Contact::Sliding, state }));
         }
+        solution.crossings.push(Crossing {
+            event: 0,
+            time: solution.time,
+            state: solution.state.clone(),
+            direction: Direction::Falling,
+        });
         // The rest of the way to zero slip is a straight line.
         let mut rate = [0.0; 7];
         equations.derivative(&state, equations.sliding_force(&state), &mut rate);
@@ -337,6 +333,6 @@ fn stuck(mut state: SlipState) -> SlipState {
     state
 }
 
-fn as_slip_state(state: &[f64]) -> SlipState {
+pub(crate) fn as_slip_state(state: &[f64]) -> SlipState {
     std::array::from_fn(|i| state[i])
 }

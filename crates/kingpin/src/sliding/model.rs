@@ -4,53 +4,57 @@ use crate::parameters::Key;
 use crate::rolling::Body;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
+use arclength::Scalar;
 
 /// Halvings of the bracket of the secular equation: enough for every bit of a double.
 const BISECTIONS: usize = 200;
 
 /// State while sliding: u, q, psi, V1, V2, Omega and the longitudinal slip velocity s1 = V1 - W. The lateral slip
 /// velocity is V2. With the slip as a state, its direction keeps all digits as it vanishes.
-pub(super) type SlipState = [f64; 7];
+pub(crate) type SlipState = [f64; 7];
 
 /// Index of the longitudinal slip velocity.
-pub(super) const S1: usize = 6;
+pub(crate) const S1: usize = 6;
 /// Index of the lateral slip velocity.
-pub(super) const S2: usize = 4;
+pub(crate) const S2: usize = 4;
 
 /// A direction in which slip may grow from or shrink to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LimitDirection {
+pub(crate) struct LimitDirection<T> {
     /// Unit vector of the slip, along and across the caster.
-    pub direction: [f64; 2],
+    pub direction: [T; 2],
     /// Rate of |s| in m/s^2: positive where slip grows.
     pub growth: f64,
 }
 
-/// Coefficients of the equations.
+/// Coefficients of the equations; with dual numbers they carry derivatives with respect to a parameter.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Equations {
-    body: Body<f64>,
-    v: f64,
-    omega: f64,
+pub(crate) struct Equations<T> {
+    body: Body<T>,
+    v: T,
+    omega: T,
     /// `m_w + m_c`.
-    mass: f64,
+    mass: T,
     /// `J_wxi/R^2`.
-    rim_mass: f64,
+    rim_mass: T,
+    /// `(m_w + m_c) J - m^2`.
+    determinant: T,
     /// Mobility of the contact point, along and across the caster: the acceleration of the slip is its value without
     /// friction plus the mobility times the friction force.
-    mobility: [f64; 2],
+    mobility: [T; 2],
     /// `mu_s N` in N.
-    pub static_limit: f64,
+    pub static_limit: T,
     /// `mu_d N` in N.
-    pub sliding_friction: f64,
+    pub sliding_friction: T,
 }
 
-impl Equations {
+impl Equations<f64> {
+    /// # Errors
+    /// What [`Wheel::sliding`] refuses.
     pub fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
         // The check for a finite longitudinal stiffness is that of the rolling wheel.
         wheel.rolling(&[])?;
-        let normal = wheel.normal_force();
-        if normal < 0.0 {
+        if wheel.normal_force() < 0.0 {
             let allowed = "at most (m_w + m_c) g: a larger force lifts the wheel off the ground";
             return Err(SimulationError::out_of_range("F_Az", wheel.get(Key::FAz), allowed));
         }
@@ -58,99 +62,142 @@ impl Equations {
         if mu_d > mu_s {
             return Err(SimulationError::out_of_range("mu_d", mu_d, "at most mu_s"));
         }
-        let body = wheel.body();
-        let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
-        let rim_mass = wheel.get(Key::JWxi) / wheel.get(Key::WheelRadius).powi(2);
+        Ok(Self::with(|key| wheel.get(key)))
+    }
+}
+
+impl<T: Scalar> Equations<T> {
+    /// The coefficients made of these values of the stored parameters and the curvature.
+    pub fn with(get: impl Fn(Key) -> T) -> Self {
+        let body: Body<T> = Body::new(&get);
+        let mass = get(Key::MW) + get(Key::MC);
+        let rim_mass = get(Key::JWxi) / get(Key::WheelRadius).powi(2);
         let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
-        Ok(Self {
-            body,
-            v: wheel.get(Key::V),
-            omega: wheel.towing_yaw_rate(),
+        let normal = mass * get(Key::G) - get(Key::FAz);
+        Self {
+            v: get(Key::V),
+            omega: get(Key::V) * get(Key::Curvature),
             mass,
             rim_mass,
-            mobility: [1.0 / mass + 1.0 / rim_mass, body.yaw_inertia / determinant],
-            static_limit: mu_s * normal,
-            sliding_friction: mu_d * normal,
-        })
+            determinant,
+            mobility: [mass.recip() + rim_mass.recip(), body.yaw_inertia / determinant],
+            static_limit: get(Key::MuS) * normal,
+            sliding_friction: get(Key::MuD) * normal,
+            body,
+        }
     }
 
     /// Derivative of the state under a friction force `[T1, T2]`.
     #[inline]
-    pub fn derivative(&self, state: &[f64], friction: [f64; 2], derivative: &mut [f64]) {
+    pub fn derivative(&self, state: &[T], friction: [T; 2], derivative: &mut [T]) {
         let body = &self.body;
         let (u, q, psi, forward, lateral, yaw) = (state[0], state[1], state[2], state[3], state[4], state[5]);
         let (sine, cosine) = psi.sin_cos();
         let across = lateral + body.caster_length * yaw;
         let u_rate = forward * cosine + across * sine - self.v + self.omega * q;
         let q_rate = across * cosine - forward * sine - self.omega * u;
-        let force_x = -body.longitudinal_stiffness * u - body.longitudinal_damping * u_rate;
-        let force_y = -body.lateral_stiffness * q - body.lateral_damping * q_rate;
+        let force_x = -(body.longitudinal_stiffness * u) - body.longitudinal_damping * u_rate;
+        let force_y = -(body.lateral_stiffness * q) - body.lateral_damping * q_rate;
         let force_along = force_x * cosine - force_y * sine;
         let force_across = force_x * sine + force_y * cosine;
         let moment = body.caster_length * force_across - body.rotational_damping * (yaw - self.omega)
             + body.rotational_stiffness * psi;
         let lateral_force = force_across + friction[1];
-        let determinant = self.mass * body.yaw_inertia - body.static_moment.powi(2);
         let forward_rate =
             lateral * yaw + (body.static_moment * yaw * yaw + force_along + friction[0]) / self.mass;
         derivative[0] = u_rate;
         derivative[1] = q_rate;
         derivative[2] = self.omega - yaw;
         derivative[3] = forward_rate;
-        derivative[S2] =
-            (body.yaw_inertia * lateral_force - body.static_moment * moment) / determinant - forward * yaw;
-        derivative[5] = (self.mass * moment - body.static_moment * lateral_force) / determinant;
+        derivative[S2] = (body.yaw_inertia * lateral_force - body.static_moment * moment) / self.determinant
+            - forward * yaw;
+        derivative[5] = (self.mass * moment - body.static_moment * lateral_force) / self.determinant;
         derivative[S1] = forward_rate + friction[0] / self.rim_mass;
     }
 
     /// Friction force `-mu_d N s/|s|` at a state with slip.
     #[inline]
-    pub fn sliding_force(&self, state: &[f64]) -> [f64; 2] {
-        if self.sliding_friction == 0.0 {
-            return [0.0; 2];
+    pub fn sliding_force(&self, state: &[T]) -> [T; 2] {
+        if self.sliding_friction.value() == 0.0 {
+            return [T::zero(); 2];
         }
-        let factor = -self.sliding_friction / state[S1].hypot(state[S2]);
+        let factor = -self.sliding_friction / slip_squared(state).sqrt();
         [factor * state[S1], factor * state[S2]]
     }
 
     /// The friction force that would keep the slip velocity as it is: the rolling force where there is no slip.
     #[inline]
-    pub fn holding_force(&self, state: &[f64]) -> [f64; 2] {
-        let mut rate = [0.0; 7];
-        self.derivative(state, [0.0; 2], &mut rate);
+    pub fn holding_force(&self, state: &[T]) -> [T; 2] {
+        let mut rate = [T::zero(); 7];
+        self.derivative(state, [T::zero(); 2], &mut rate);
         [-rate[S1] / self.mobility[0], -rate[S2] / self.mobility[1]]
     }
 
-    /// Where slip may start, or `None` where the sliding friction alone holds the wheel.
-    pub fn incipient_slip(&self, state: &[f64]) -> Option<LimitDirection> {
-        let force = self.holding_force(state);
-        (force[0].hypot(force[1]) > self.sliding_friction).then(|| self.limit_direction(force))
+    /// Friction force while slip grows from zero along its limit direction.
+    #[inline]
+    pub fn incipient_force(&self, state: &[T]) -> [T; 2] {
+        let limit = self.limit_direction(self.holding_force(state));
+        limit.direction.map(|e| -self.sliding_friction * e)
+    }
+
+    /// Square of the static limit less that of the holding force.
+    #[inline]
+    pub fn static_reserve(&self, state: &[T]) -> T {
+        reserve(self.static_limit, self.holding_force(state))
+    }
+
+    /// Square of the sliding friction less that of the holding force: slip may grow from zero where it is negative.
+    #[inline]
+    pub fn sliding_reserve(&self, state: &[T]) -> T {
+        reserve(self.sliding_friction, self.holding_force(state))
     }
 
     /// Solves the secular equation for the limit direction of largest growth.
-    pub fn limit_direction(&self, force: [f64; 2]) -> LimitDirection {
+    pub fn limit_direction(&self, force: [T; 2]) -> LimitDirection<T> {
         let [along, across] = self.mobility;
-        let direction = |growth: f64| {
-            [
-                -force[0] * along / (growth + self.sliding_friction * along),
-                -force[1] * across / (growth + self.sliding_friction * across),
-            ]
+        let friction = self.sliding_friction;
+        let (force_value, friction_value) = (force.map(|f| f.value()), friction.value());
+        let mobility = [along.value(), across.value()];
+        let length_squared = |growth: f64| {
+            let e = |i: usize| force_value[i] * mobility[i] / (growth + friction_value * mobility[i]);
+            e(0) * e(0) + e(1) * e(1)
         };
-        let mut low = -self.sliding_friction * along.min(across);
-        let mut high = (force[0] * along).hypot(force[1] * across);
+        let mut low = -friction_value * mobility[0].min(mobility[1]);
+        let mut high = (force_value[0] * mobility[0]).hypot(force_value[1] * mobility[1]);
         for _ in 0..BISECTIONS {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
                 break;
             }
-            let [e1, e2] = direction(middle);
-            if e1 * e1 + e2 * e2 > 1.0 { low = middle } else { high = middle }
+            if length_squared(middle) > 1.0 { low = middle } else { high = middle }
         }
-        let [e1, e2] = direction(high);
-        let length = e1.hypot(e2);
-        LimitDirection { direction: [e1 / length, e2 / length], growth: high }
+        // A step of Newton's method with dual numbers gives the growth its derivatives.
+        let resistance = [friction * along + high, friction * across + high];
+        let e = [-(force[0] * along) / resistance[0], -(force[1] * across) / resistance[1]];
+        let squares = [e[0] * e[0], e[1] * e[1]];
+        let slope = -2.0 * (squares[0] / resistance[0] + squares[1] / resistance[1]).value();
+        let correction = -(squares[0] + squares[1] - 1.0) / slope;
+        let direction = [
+            -(force[0] * along) / (resistance[0] + correction),
+            -(force[1] * across) / (resistance[1] + correction),
+        ];
+        let length = (direction[0] * direction[0] + direction[1] * direction[1]).sqrt();
+        LimitDirection { direction: [direction[0] / length, direction[1] / length], growth: high }
     }
+}
 
+/// Square of the slip speed.
+#[inline]
+pub(crate) fn slip_squared<T: Scalar>(state: &[T]) -> T {
+    state[S1] * state[S1] + state[S2] * state[S2]
+}
+
+#[inline]
+fn reserve<T: Scalar>(limit: T, force: [T; 2]) -> T {
+    limit * limit - force[0] * force[0] - force[1] * force[1]
+}
+
+impl Equations<f64> {
     /// Kinetic energy and energy of the springs in J.
     pub fn energy(&self, state: &SlipState) -> f64 {
         let [u, q, psi, forward, lateral, yaw, slip] = *state;

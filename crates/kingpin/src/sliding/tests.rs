@@ -15,6 +15,10 @@ fn loaded(mu_s: f64, mu_d: f64) -> Wheel {
     wheel(&[(Key::FAz, -20.0), (Key::MuS, mu_s), (Key::MuD, mu_d)])
 }
 
+fn loaded_by_20(key: Key, value: f64) -> Wheel {
+    wheel(&[(Key::FAz, -20.0), (key, value)])
+}
+
 fn start(wheel: &Wheel) -> [f64; 5] {
     wheel.perturbed_uniform_motion(&[("psi", 0.6)]).unwrap()
 }
@@ -207,6 +211,7 @@ fn onset_agrees_with_strongly_smoothed_friction() {
 #[test]
 fn bad_input_is_refused() {
     let message = |wheel: &Wheel| wheel.sliding().unwrap_err().to_string();
+    assert!(loaded_by_20(Key::MuS, 0.5).sliding().is_ok());
     assert!(message(&loaded(0.5, 0.8)).contains("mu_d = 0.8"));
     assert!(message(&wheel(&[(Key::FAz, 10.0)])).contains("F_Az = 10"));
     assert!(message(&wheel(&[(Key::KU, f64::INFINITY)])).contains("k_u = inf"));
