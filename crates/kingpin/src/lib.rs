@@ -31,6 +31,7 @@ pub mod linear_stability;
 pub mod parameters;
 pub mod plane;
 pub mod rolling;
+pub mod shimmy;
 pub mod simulation;
 pub mod sliding;
 mod tracing;

@@ -62,17 +62,17 @@ impl Along {
     }
 
     /// The parameter that is followed in place of the key.
-    fn followed(&self) -> Key {
+    pub(crate) fn followed(&self) -> Key {
         if self.key == Key::TurningRadius { Key::Curvature } else { self.key }
     }
 
     /// A value of the key as a value of the parameter that is followed, and back: both are the same map.
-    fn convert(&self, value: f64) -> f64 {
+    pub(crate) fn convert(&self, value: f64) -> f64 {
         if self.key == Key::TurningRadius { value.recip() } else { value }
     }
 
     /// The interval of the parameter that is followed.
-    fn range(&self) -> std::ops::RangeInclusive<f64> {
+    pub(crate) fn range(&self) -> std::ops::RangeInclusive<f64> {
         let (a, b) = (self.convert(self.start), self.convert(self.end));
         a.min(b)..=a.max(b)
     }

@@ -77,7 +77,7 @@ impl SlidingWheel {
         self.simulate_hybrid(HybridState { contact, state }, duration, samples)
     }
 
-    fn simulate_hybrid(
+    pub(crate) fn simulate_hybrid(
         &self,
         initial: HybridState,
         duration: f64,

@@ -201,6 +201,18 @@ impl SlidingWheel {
         Err(SimulationError::out_of_range("number of phases", self.maximum_phases as f64, "fewer phases"))
     }
 
+    /// Derivative of the state.
+    pub(crate) fn rate(&self, state: &HybridState) -> SlipState {
+        let equations = &self.equations;
+        let friction = match state.contact {
+            Contact::Rolling => equations.holding_force(&state.state),
+            Contact::Sliding => equations.sliding_force(&state.state),
+        };
+        let mut rate = [0.0; 7];
+        equations.derivative(&state.state, friction, &mut rate);
+        rate
+    }
+
     /// A state without slip.
     pub(crate) fn rolling_state(&self, &[u, q, psi, speed, yaw]: &[f64; 5]) -> HybridState {
         HybridState { contact: Contact::Rolling, state: [u, q, psi, speed, 0.0, yaw, 0.0] }

@@ -1,0 +1,216 @@
+//! Branches of periodic motions with sliding phases along a parameter.
+
+pub use super::curve::SlidingBifurcation;
+use super::curve::{CurvePoint, SlidingCurve};
+use super::error::{Grazing, Refusal, ShimmyError};
+use super::PeriodicSliding;
+use crate::branches::Along;
+use crate::error::KingpinError;
+use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, follow};
+use std::ops::ControlFlow;
+
+/// Most renewals of the start on one branch.
+const MOST_SEGMENTS: usize = 1000;
+
+/// How a branch is followed.
+#[derive(Clone, Debug)]
+pub struct SlidingBranchOptions {
+    /// Parameter values at which motions are wanted exactly.
+    pub at: Vec<f64>,
+    /// Settings of the continuation.
+    pub settings: Settings,
+}
+
+impl Default for SlidingBranchOptions {
+    /// Steps as for other branches; corrections to what the integration resolves.
+    fn default() -> Self {
+        let settings = Settings {
+            corrector_tolerance: 1e-8,
+            smallest_step: 1e-8,
+            predictor_error: 0.02,
+            largest_step: 0.5,
+            most_steps: 500,
+            ..Settings::default()
+        };
+        Self { at: Vec::new(), settings }
+    }
+}
+
+/// Why a motion is part of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlidingRole {
+    /// A step of the continuation, or an end of it.
+    Step,
+    /// Asked for by its parameter value.
+    Requested,
+    /// A bifurcation.
+    Bifurcation(SlidingBifurcation),
+}
+
+/// A motion of a branch.
+#[derive(Clone, Debug)]
+pub struct SlidingBranchPoint {
+    /// Value of the parameter.
+    pub value: f64,
+    /// The motion.
+    pub motion: PeriodicSliding,
+    /// Why it is part of the branch.
+    pub role: SlidingRole,
+}
+
+/// Why a branch ends.
+#[derive(Debug)]
+pub enum SlidingBranchEnd {
+    /// The sequence of phases changes.
+    Grazing {
+        /// How it changes.
+        change: Grazing,
+        /// Parameter value of the last motion with the old sequence.
+        value: f64,
+        /// Distance in the parameter to the nearest value that was tried and refused: how well the change is located.
+        located_within: f64,
+    },
+    /// Another reason.
+    Continuation(Stop),
+}
+
+impl std::fmt::Display for SlidingBranchEnd {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Grazing { change, value, .. } => write!(formatter, "{change} (at {value})"),
+            Self::Continuation(stop) => write!(formatter, "{stop}"),
+        }
+    }
+}
+
+/// A branch of periodic motions with sliding phases, all with the same sequence of phases.
+#[derive(Debug)]
+pub struct SlidingBranch {
+    /// The parameter and its interval.
+    pub along: Along,
+    /// The motions in the order of the branch.
+    pub points: Vec<SlidingBranchPoint>,
+    /// Why the branch ends, at its first and at its last point.
+    pub ends: [SlidingBranchEnd; 2],
+}
+
+impl PeriodicSliding {
+    /// The branch of periodic motions through this one, followed both ways over the interval until the sequence of phases
+    /// changes. `observer` is told value and motion and may end the run.
+    ///
+    /// # Errors
+    /// An interval without the value of this motion, or a start from which nothing can be followed.
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel, branches::Along, shimmy::{SlidingBranchOptions, SlidingMotionSearch}};
+    /// use std::ops::ControlFlow;
+    ///
+    /// let mut wheel = Wheel::default();
+    /// for (key, value) in [("l", "0.03"), ("v", "0.5"), ("r", "inf"), ("c_u", "0.1"), ("c_q", "0.1")] {
+    ///     wheel.set(key, value)?;
+    /// }
+    /// let start = wheel.perturbed_uniform_motion(&[("psi", 0.2)])?;
+    /// let search = SlidingMotionSearch { settling_time: 5.0, ..SlidingMotionSearch::default() };
+    /// let motion = wheel.sliding_motion(&start, &search)?;
+    /// let along = Along::new(Key::V, 0.49, 0.51)?;
+    /// let branch = motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(()))?;
+    /// assert_eq!(branch.points[0].value, 0.49);
+    /// # Ok::<(), kingpin::shimmy::ShimmyError>(())
+    /// ```
+    pub fn along(
+        &self,
+        along: Along,
+        options: &SlidingBranchOptions,
+        mut observer: impl FnMut(f64, &PeriodicSliding) -> ControlFlow<()>,
+    ) -> Result<SlidingBranch, ShimmyError> {
+        let value = self.wheel.get(along.key());
+        if !along.contains(value) {
+            let (start, end) = along.ends();
+            return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
+        }
+        let mut halves = Vec::with_capacity(2);
+        for direction in [-1.0, 1.0] {
+            halves.push(self.half(along, direction, options, &mut observer)?);
+        }
+        let [(backward, first), (forward, last)] =
+            <[_; 2]>::try_from(halves).map_err(|_| Refusal::Singular).map_err(|cause| ShimmyError::NotConverged { cause })?;
+        let mut points: Vec<SlidingBranchPoint> = backward;
+        points.reverse();
+        points.pop();
+        points.extend(forward);
+        Ok(SlidingBranch { along, points, ends: [first, last] })
+    }
+
+    /// One direction of a branch.
+    fn half(
+        &self,
+        along: Along,
+        direction: f64,
+        options: &SlidingBranchOptions,
+        observer: &mut dyn FnMut(f64, &PeriodicSliding) -> ControlFlow<()>,
+    ) -> Result<(Vec<SlidingBranchPoint>, SlidingBranchEnd), ShimmyError> {
+        let range = along.range();
+        let (lower, upper) = (*range.start(), *range.end());
+        let value = along.convert(self.wheel.get(along.key()));
+        let mut curve = SlidingCurve::new(self.map.clone(), along.followed(), upper - lower, options.settings);
+        let mut unknown = curve.unknown(&self.start, value);
+        let mut tangent = vec![0.0; unknown.len()];
+        if let Some(last) = tangent.last_mut() {
+            *last = direction * curve.range;
+        }
+        let mut request = Request {
+            bounds: vec![Bound { from_end: 1, lower, upper }],
+            values: options.at.iter().map(|value| along.convert(*value)).collect(),
+            settings: options.settings,
+        };
+        let mut points: Vec<SlidingBranchPoint> = Vec::new();
+        let mut interrupted = false;
+        for _ in 0..MOST_SEGMENTS {
+            let mut watch = |solution: &Solution<CurvePoint>| {
+                let value = along.convert(solution.unknown[solution.unknown.len() - 1]);
+                let flow = observer(value, &solution.point.motion);
+                interrupted = flow.is_break();
+                flow
+            };
+            let followed = follow(&mut curve, unknown, tangent, &request, &mut watch)?;
+            let first = usize::from(!points.is_empty());
+            points.extend(followed.solutions.iter().skip(first).map(|(solution, origin)| point(along, solution, *origin)));
+            let Some((last, _)) = followed.solutions.last() else { break };
+            let end = match followed.stop {
+                Stop::Interrupted if curve.wants_new_start && !interrupted => None,
+                Stop::StepTooSmall { .. } => match curve.refusal.take() {
+                    Some(Refusal::Grazing(change)) => {
+                        let at = last.unknown[last.unknown.len() - 1];
+                        let tried = curve.map.wheel.get(along.followed());
+                        Some(SlidingBranchEnd::Grazing {
+                            change,
+                            value: along.convert(at),
+                            located_within: (along.convert(tried) - along.convert(at)).abs(),
+                        })
+                    }
+                    _ => Some(SlidingBranchEnd::Continuation(followed.stop)),
+                },
+                stop => Some(SlidingBranchEnd::Continuation(stop)),
+            };
+            if let Some(end) = end {
+                return Ok((points, end));
+            }
+            request.settings.initial_step = options.settings.initial_step;
+            (unknown, tangent) = curve.renew(last).map_err(|cause| ShimmyError::NotConverged { cause })?;
+        }
+        Ok((points, SlidingBranchEnd::Continuation(Stop::MostSteps)))
+    }
+}
+
+fn point(along: Along, solution: &Solution<CurvePoint>, origin: Origin) -> SlidingBranchPoint {
+    let role = match (origin, solution.point.bifurcation) {
+        (Origin::Special, Some(bifurcation)) => SlidingRole::Bifurcation(bifurcation),
+        (Origin::Requested, _) => SlidingRole::Requested,
+        _ => SlidingRole::Step,
+    };
+    SlidingBranchPoint {
+        value: along.convert(solution.unknown[solution.unknown.len() - 1]),
+        motion: solution.point.motion.clone(),
+        role,
+    }
+}

@@ -1,0 +1,286 @@
+//! Periodic motions with sliding phases as a curve that the continuation can follow.
+//!
+//! The unknowns are the scaled states at the start, the scaled period and the parameter.
+
+use super::error::Refusal;
+use super::return_map::{Return, ReturnMap, Start};
+use super::variation::{DIRECTIONS, PARAMETER, STATES};
+use super::{PeriodicSliding, SAMPLES_PER_PERIOD, middle_of_longest_passage, search};
+use crate::parameters::Key;
+use crate::sliding::model::SlipState;
+use arclength::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use arclength::error::Error;
+use arclength::linear::lu;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Bifurcations are located to this part of a step.
+const LOCATED: f64 = 1e-6;
+/// Part of its phase that has to lie on both sides of the start.
+const MARGIN: f64 = 0.2;
+/// Growth of the period after which everything is scaled anew.
+const RESCALE: f64 = 1.3;
+
+/// What kind of bifurcation was located.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SlidingBifurcation {
+    /// The branch turns back in the parameter.
+    Fold,
+    /// A multiplier passes through -1.
+    PeriodDoubling,
+    /// A complex pair of multipliers passes through the unit circle.
+    Torus,
+}
+
+impl SlidingBifurcation {
+    const ALL: [Self; 3] = [Self::Fold, Self::PeriodDoubling, Self::Torus];
+
+    /// Changes sign where the bifurcation is.
+    fn test(self, solution: &Solution<CurvePoint>) -> f64 {
+        let nontrivial: Vec<Complex64> = solution.point.motion.nontrivial().collect();
+        match self {
+            Self::Fold => solution.tangent.last().copied().unwrap_or(0.0),
+            Self::PeriodDoubling => nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re,
+            // Real pairs with product 1 are no bifurcation.
+            Self::Torus => nontrivial
+                .iter()
+                .filter(|multiplier| multiplier.im > 0.0)
+                .map(|multiplier| multiplier.norm() - 1.0)
+                .fold(-1.0, |product, factor| if factor.abs() < 0.5 { product * -factor.signum() * factor.abs() } else { product }),
+        }
+    }
+}
+
+/// What is known about a solution.
+#[derive(Clone, Debug)]
+pub(super) struct CurvePoint {
+    pub motion: PeriodicSliding,
+    pub bifurcation: Option<SlidingBifurcation>,
+}
+
+/// The curve, with the memory of its last linear equations.
+pub(super) struct SlidingCurve {
+    pub map: ReturnMap,
+    pub key: Key,
+    /// Length of the range of the parameter.
+    pub range: f64,
+    matrix: Vec<f64>,
+    pivots: Vec<usize>,
+    last: Option<(Vec<f64>, Return)>,
+    /// Why the map was last not defined.
+    pub refusal: Option<Refusal>,
+    /// Whether the start has to be moved away from the events.
+    pub wants_new_start: bool,
+    settings: Settings,
+}
+
+impl SlidingCurve {
+    pub fn new(map: ReturnMap, key: Key, range: f64, settings: Settings) -> Self {
+        let map = ReturnMap { parameter: Some((key, 1.0)), ..map };
+        Self {
+            map,
+            key,
+            range,
+            matrix: Vec::new(),
+            pivots: Vec::new(),
+            last: None,
+            refusal: None,
+            wants_new_start: false,
+            settings,
+        }
+    }
+
+    /// The unknowns of a start at a parameter value.
+    pub fn unknown(&self, start: &Start, value: f64) -> Vec<f64> {
+        let states = self.map.free().iter().map(|&i| start.state.state[i] / self.map.scales[i]);
+        states.chain([start.period / self.map.period_scale, value]).collect()
+    }
+
+    fn start(&self, unknown: &[f64]) -> Start {
+        let free = self.map.free();
+        let mut state = self.map.reference;
+        for (&i, value) in free.iter().zip(unknown) {
+            state.state[i] = value * self.map.scales[i];
+        }
+        Start { state, period: unknown[free.len()] * self.map.period_scale }
+    }
+
+    fn evaluate(&mut self, unknown: &[f64], with_derivatives: bool) -> Option<Return> {
+        let value = unknown[unknown.len() - 1];
+        let image = self.map.wheel.with(self.key, value).map_err(|error| Refusal::from_wheel(&error)).and_then(|wheel| {
+            self.map.wheel = wheel;
+            self.map.evaluate(&self.start(unknown), with_derivatives)
+        });
+        match image {
+            Ok(image) => Some(image),
+            Err(refusal) => {
+                self.refusal = Some(refusal);
+                None
+            }
+        }
+    }
+
+    /// Moves the start of a solution to the middle of its longest phase and scales everything anew; returns the unknowns and
+    /// the tangent there.
+    pub fn renew(&mut self, solution: &Solution<CurvePoint>) -> Result<(Vec<f64>, Vec<f64>), Refusal> {
+        let value = solution.unknown[solution.unknown.len() - 1];
+        let free = self.map.free();
+        let slope = &solution.tangent;
+        let mut map = solution.point.motion.map.clone();
+        map.parameter = Some((self.key, slope[slope.len() - 1]));
+        let start = self.start(&solution.unknown);
+        let (passages, _) = map.follow(&start, &[])?;
+        let time = middle_of_longest_passage(&passages, start.period);
+        let mut columns = [[0.0; DIRECTIONS]; STATES];
+        for (&i, slope) in free.iter().zip(slope) {
+            columns[i][PARAMETER] = slope * map.scales[i];
+        }
+        if time > 0.0 {
+            let (way, _) = map.follow(&Start { period: time, ..start.clone() }, &[])?;
+            map.carry(&way, &mut columns)?;
+        }
+        let start = map.start_after(&start, time)?;
+        let sampling: Vec<f64> =
+            (0..SAMPLES_PER_PERIOD).map(|i| start.period * i as f64 / SAMPLES_PER_PERIOD as f64).collect();
+        let samples: Vec<SlipState> =
+            map.follow(&start, &sampling)?.0.iter().flat_map(|passage| passage.samples.iter().map(|s| s.1)).collect();
+        let period_slope = slope[free.len()] * map.period_scale;
+        map.scales = search::sizes(&map.wheel, &samples);
+        map.period_scale = start.period;
+        map.set_reference(start.state)?;
+        map.expected = Some(map.follow(&start, &[])?.0);
+        // The tangent lies in the new plane across the flow.
+        let rate = map.sliding()?.rate(&start.state);
+        let normal = |vector: &dyn Fn(usize) -> f64| -> f64 {
+            map.free().iter().map(|&i| map.normal[i] * vector(i) / map.scales[i]).sum()
+        };
+        let along_flow = normal(&|i| columns[i][PARAMETER]) / normal(&|i| rate[i]);
+        let mut tangent: Vec<f64> = map
+            .free()
+            .iter()
+            .map(|&i| (columns[i][PARAMETER] - along_flow * rate[i]) / map.scales[i])
+            .collect();
+        tangent.extend([period_slope / map.period_scale, slope[slope.len() - 1]]);
+        self.map = ReturnMap { parameter: Some((self.key, 1.0)), ..map };
+        self.wants_new_start = false;
+        Ok((self.unknown(&start, value), tangent))
+    }
+
+    fn is_start_near_event(&self, motion: &PeriodicSliding) -> bool {
+        let [first, .., last] = &motion.phases[..] else { return false };
+        let (before, after) = (last.end - last.start, first.end - first.start);
+        before.min(after) < MARGIN * (before + after)
+    }
+}
+
+impl Refusal {
+    fn from_wheel(error: &crate::KingpinError) -> Self {
+        Self::Integration(error.to_string())
+    }
+}
+
+impl Curve for SlidingCurve {
+    type Point = CurvePoint;
+
+    fn unknowns(&self) -> usize {
+        self.map.free().len() + 2
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        match self.evaluate(unknown, false) {
+            Some(image) => residual[..image.residual.len()].copy_from_slice(&image.residual),
+            None => residual.fill(f64::NAN),
+        }
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        let n = unknown.len();
+        self.last = None;
+        let Some(image) = self.evaluate(unknown, true) else {
+            // The update is then not finite, so that the corrector gives up.
+            residual.fill(f64::NAN);
+            return 1.0;
+        };
+        residual[..n - 1].copy_from_slice(&image.residual);
+        self.matrix.resize(n * n, 0.0);
+        self.pivots.resize(n, 0);
+        for (column, border) in border.iter().enumerate() {
+            self.matrix[column * n..][..n - 1].copy_from_slice(&image.jacobian[column * (n - 1)..][..n - 1]);
+            self.matrix[column * n + n - 1] = *border;
+        }
+        self.last = Some((unknown.to_vec(), image));
+        lu::factorize(&mut self.matrix, n, &mut self.pivots)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        if self.last.is_none() {
+            right_hand_side.fill(f64::NAN);
+            return;
+        }
+        lu::solve(&self.matrix, right_hand_side.len(), &self.pivots, right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        image.copy_from_slice(vector);
+        if let Some(parameter) = image.last_mut() {
+            *parameter /= self.range * self.range;
+        }
+    }
+
+    fn adapt(&mut self, _unknown: &mut Vec<f64>, _vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        Ok(Adaptation::Unchanged)
+    }
+
+    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<CurvePoint, Error> {
+        let invalid = |cause: String| Error::Invalid {
+            name: "periodic motion".into(),
+            value: cause,
+            allowed: "a motion whose multipliers can be computed".into(),
+        };
+        let Some((at, image)) = self.last.take() else { return Err(invalid("not computed".into())) };
+        debug_assert_eq!(at, unknown);
+        let motion = PeriodicSliding::describe(&self.map, &self.start(unknown), &image)
+            .map_err(|refusal| invalid(refusal.to_string()))?;
+        self.map.expected = Some(image.passages.clone());
+        self.last = Some((at, image));
+        Ok(CurvePoint { motion, bifurcation: None })
+    }
+
+    fn special_points(
+        &mut self,
+        before: &Solution<CurvePoint>,
+        after: &Solution<CurvePoint>,
+    ) -> Result<Vec<Solution<CurvePoint>>, Error> {
+        let settings = self.settings;
+        let mut found = Vec::new();
+        for bifurcation in SlidingBifurcation::ALL {
+            if bifurcation.test(before) * bifurcation.test(after) >= 0.0 {
+                continue;
+            }
+            let test = |_: &mut Self, solution: &Solution<CurvePoint>| Some(bifurcation.test(solution));
+            if let Ok(Some(mut solution)) = locate(self, before, after, &settings, LOCATED, test) {
+                solution.point.bifurcation = Some(bifurcation);
+                found.push(solution);
+            }
+        }
+        let distance = |solution: &Solution<CurvePoint>| -> f64 {
+            solution.unknown.iter().zip(&before.unknown).map(|(a, b)| (a - b).powi(2)).sum()
+        };
+        found.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        Ok(found)
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+        // The period and, where the start has not moved, the state itself.
+        let start = self.start(unknown);
+        let angle = start.state.state[2];
+        vec![start.period, angle - TAU * (angle / TAU).round()]
+    }
+
+    fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending> {
+        let motion = &after.point.motion;
+        let ratio = motion.period / self.map.period_scale;
+        self.wants_new_start = self.is_start_near_event(motion) || !(RESCALE.recip()..RESCALE).contains(&ratio);
+        self.wants_new_start.then_some(Ending::After(Stop::Interrupted))
+    }
+}

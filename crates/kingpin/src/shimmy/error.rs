@@ -1,0 +1,104 @@
+//! What can go wrong in the search for periodic motions.
+
+use crate::error::KingpinError;
+use crate::simulation::SimulationError;
+use arclength::integration::IntegrationError;
+
+/// Why a periodic motion was not found or could not be followed.
+#[derive(Debug, thiserror::Error)]
+pub enum ShimmyError {
+    /// The motion dies out: the wheel rolls or slides steadily in the end.
+    #[error("the motion dies out: in the last {window} s the caster angle varies by {range:e} rad only; start from a larger disturbance")]
+    DiesOut {
+        /// Time in s that was looked at.
+        window: f64,
+        /// Range of the caster angle in it in rad.
+        range: f64,
+    },
+    /// The motion does not repeat itself.
+    #[error(
+        "the motion does not repeat itself within {longest_period} s (it comes back to {nearest:e} of its size at best): \
+         let it settle for longer than {settling_time} s, or allow a longer period; it may be irregular"
+    )]
+    NotPeriodic {
+        /// Longest period in s that was allowed.
+        longest_period: f64,
+        /// Time in s for which it was left to settle.
+        settling_time: f64,
+        /// Smallest distance of a return, relative to the size of the motion.
+        nearest: f64,
+    },
+    /// Newton's method did not converge from the motion that was found.
+    #[error("Newton's method does not converge to a periodic motion: {cause}; let the motion settle for longer")]
+    NotConverged {
+        /// What happened.
+        cause: Refusal,
+    },
+    /// A motion could not be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A branch could not be followed.
+    #[error(transparent)]
+    Continuation(#[from] arclength::Error),
+}
+
+impl From<KingpinError> for ShimmyError {
+    fn from(error: KingpinError) -> Self {
+        Self::Simulation(error.into())
+    }
+}
+
+/// Why a return map is not defined at a state.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refusal {
+    /// The phases are not those of the motion sought.
+    #[error("{0}")]
+    Grazing(Grazing),
+    /// The motion cannot be followed.
+    #[error("{0}")]
+    Integration(String),
+    /// The linear equations of Newton's method are singular.
+    #[error("the linear equations are singular")]
+    Singular,
+    /// The updates do not become small.
+    #[error("the last update is {update:e} of the size of the motion")]
+    Diverged {
+        /// Length of the last update.
+        update: f64,
+    },
+}
+
+impl From<SimulationError> for Refusal {
+    fn from(error: SimulationError) -> Self {
+        Self::Integration(error.to_string())
+    }
+}
+
+impl From<IntegrationError> for Refusal {
+    fn from(error: IntegrationError) -> Self {
+        Self::Integration(error.to_string())
+    }
+}
+
+/// How the sequence of rolling and sliding changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
+pub enum Grazing {
+    /// The friction force of a rolling phase touches the static limit: a sliding phase appears.
+    #[error("the friction force of a rolling phase touches the static limit, where another sliding phase begins")]
+    StaticLimitReached,
+    /// The friction force of a rolling phase no longer reaches the static limit: a sliding phase disappears.
+    #[error("the friction force of a rolling phase no longer reaches the static limit, so that a sliding phase is lost")]
+    StaticLimitMissed,
+    /// Slip that did not vanish passes through zero.
+    #[error("the slip of a sliding phase passes through zero, where another phase begins")]
+    SlipVanishes,
+    /// Slip that used to vanish misses zero: a rolling phase is lost.
+    #[error("the slip of a sliding phase misses zero, so that the phase after it is lost")]
+    SlipMissesZero,
+    /// Where slip vanishes the static friction no longer holds the wheel.
+    #[error("where slip vanishes the static friction no longer holds the wheel: it slides on instead of rolling")]
+    HoldsNoLonger,
+    /// Where slip vanishes the static friction now holds the wheel.
+    #[error("where slip vanishes the static friction holds the wheel: it rolls instead of sliding on")]
+    HoldsAgain,
+}

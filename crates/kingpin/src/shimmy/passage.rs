@@ -1,0 +1,130 @@
+//! A motion as the sequence of its passages: stretches along which it is smooth, each with its own equations.
+
+use super::error::Grazing;
+use crate::simulation::SimulationError;
+use crate::sliding::model::{Equations, SlipState};
+use crate::sliding::{Contact, HybridState, SlidingWheel, as_slip_state};
+use arclength::Scalar;
+
+/// Which equations hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Regime {
+    /// No slip.
+    Rolling,
+    /// Slip grows from zero along its limit direction.
+    Onset,
+    /// Slip.
+    Sliding,
+}
+
+impl Regime {
+    /// Derivative of the seven states.
+    #[inline]
+    pub fn field<T: Scalar>(self, equations: &Equations<T>, state: &[T], derivative: &mut [T]) {
+        let friction = match self {
+            Self::Rolling => equations.holding_force(state),
+            Self::Onset => equations.incipient_force(state),
+            Self::Sliding => equations.sliding_force(state),
+        };
+        equations.derivative(state, friction, derivative);
+    }
+
+    /// What the wheel is said to do.
+    pub fn contact(self) -> Contact {
+        if self == Self::Rolling { Contact::Rolling } else { Contact::Sliding }
+    }
+}
+
+/// A stretch of the motion.
+#[derive(Clone, Debug)]
+pub(super) struct Passage {
+    pub regime: Regime,
+    pub start: f64,
+    pub end: f64,
+    pub initial: SlipState,
+    /// State at the end.
+    pub last: SlipState,
+    /// Where the straight way of vanishing slip to zero begins, with the state there.
+    pub vanishing: Option<(f64, SlipState)>,
+    /// Samples inside.
+    pub samples: Vec<(f64, SlipState)>,
+}
+
+impl Passage {
+    pub fn duration(&self) -> f64 {
+        self.end - self.start
+    }
+}
+
+/// Follows a motion and cuts it into passages, with samples at `times`.
+///
+/// # Errors
+/// A motion that cannot be followed.
+pub(super) fn passages(
+    wheel: &SlidingWheel,
+    initial: HybridState,
+    duration: f64,
+    times: &[f64],
+) -> Result<(Vec<Passage>, HybridState), SimulationError> {
+    let mut list: Vec<Passage> = Vec::new();
+    let mut present = initial.state;
+    let mut slides = initial.contact == Contact::Sliding;
+    let end = wheel.follow(initial, duration, times, |phase, resumes, solution| {
+        let regime = match phase.contact {
+            Contact::Rolling => Regime::Rolling,
+            Contact::Sliding if resumes || slides => Regime::Sliding,
+            Contact::Sliding => Regime::Onset,
+        };
+        slides = false;
+        let last = as_slip_state(&solution.state);
+        list.push(Passage {
+            regime,
+            start: phase.start,
+            end: phase.end,
+            initial: present,
+            last,
+            vanishing: (regime == Regime::Sliding)
+                .then(|| solution.crossings.first())
+                .flatten()
+                .map(|crossing| (crossing.time, as_slip_state(&crossing.state))),
+            samples: solution.samples().map(|(time, state)| (time, as_slip_state(state))).collect(),
+        });
+        present = last;
+        true
+    })?;
+    Ok((list, end))
+}
+
+/// What distinguishes a motion from one with other phases; `None` where they are the same.
+pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Grazing> {
+    /// Times that differ by more than this part of the whole belong to different events.
+    const SAME_EVENT: f64 = 0.02;
+    let regimes = |list: &[Passage]| list.iter().map(|passage| passage.regime).collect::<Vec<_>>();
+    if regimes(expected) == regimes(found) {
+        return None;
+    }
+    let (Some(last_expected), Some(last_found)) = (expected.last(), found.last()) else {
+        return Some(Grazing::SlipMissesZero);
+    };
+    let tolerance = SAME_EVENT * last_expected.end.max(last_found.end);
+    for (one, other) in expected.iter().zip(found) {
+        let rolls = one.regime == Regime::Rolling;
+        if one.regime != other.regime {
+            return Some(if rolls { Grazing::HoldsNoLonger } else { Grazing::HoldsAgain });
+        }
+        if other.end < one.end - tolerance {
+            return Some(if rolls { Grazing::StaticLimitReached } else { Grazing::SlipVanishes });
+        }
+        if other.end > one.end + tolerance {
+            return Some(if rolls { Grazing::StaticLimitMissed } else { Grazing::SlipMissesZero });
+        }
+    }
+    // Same up to the end: a phase begins or is lost at the very end.
+    let rolls = last_expected.regime == Regime::Rolling;
+    Some(match (found.len() > expected.len(), rolls) {
+        (true, true) => Grazing::StaticLimitReached,
+        (true, false) => Grazing::SlipVanishes,
+        (false, true) => Grazing::SlipMissesZero,
+        (false, false) => Grazing::StaticLimitMissed,
+    })
+}
