@@ -5,9 +5,8 @@
 
 use crate::failure::Failure;
 use crate::report::Report;
-use serde::de::Error as _;
+use serde::de::{Error as _, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Name and version of the form of a result.
@@ -67,6 +66,16 @@ impl NamedNumbers {
     pub fn get(&self, index: usize) -> Option<f64> {
         self.0.get(index).map(|&(_, number)| number)
     }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The number with a name.
+    pub fn named(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(candidate, _)| candidate == name).map(|&(_, number)| number)
+    }
 }
 
 impl Serialize for NamedNumbers {
@@ -77,8 +86,26 @@ impl Serialize for NamedNumbers {
 
 impl<'de> Deserialize<'de> for NamedNumbers {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let entries = BTreeMap::<String, Number>::deserialize(deserializer)?;
-        Ok(Self(entries.into_iter().map(|(key, Number(value))| (key, value)).collect()))
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
+/// Reads an object entry by entry, so that the order of the names is kept.
+struct InOrder;
+
+impl<'de> Visitor<'de> for InOrder {
+    type Value = NamedNumbers;
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("an object of numbers")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<NamedNumbers, A::Error> {
+        let mut named = Vec::new();
+        while let Some((name, Number(value))) = entries.next_entry()? {
+            named.push((name, value));
+        }
+        Ok(NamedNumbers(named))
     }
 }
 
@@ -158,9 +185,9 @@ mod tests {
 
     #[test]
     fn parameters_are_read_back() {
-        let parameters = NamedNumbers(vec![("l".to_owned(), 0.1), ("r".to_owned(), f64::INFINITY)]);
+        let parameters = NamedNumbers(vec![("r".to_owned(), f64::INFINITY), ("l".to_owned(), 0.1)]);
         let text = serde_json::to_string(&parameters).unwrap();
-        assert_eq!(text, r#"{"l":0.1,"r":"inf"}"#);
+        assert_eq!(text, r#"{"r":"inf","l":0.1}"#);
         assert_eq!(serde_json::from_str::<NamedNumbers>(&text).unwrap(), parameters);
         let error = serde_json::from_str::<NamedNumbers>(r#"{"r":"far"}"#).unwrap_err();
         assert!(error.to_string().contains("\"far\""));

@@ -92,8 +92,8 @@ pub enum Failure {
         /// The cause.
         source: std::io::Error,
     },
-    /// A result file that cannot be started from.
-    #[error("--from {}: {problem}", path.display())]
+    /// A result file that cannot be used.
+    #[error("{}: {problem}", path.display())]
     ResultFile {
         /// The file.
         path: PathBuf,

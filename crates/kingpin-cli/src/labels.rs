@@ -25,12 +25,25 @@ impl Labels {
     }
 }
 
-/// Whether something bifurcates at a labelled point: it was not merely asked for.
+/// Whether something bifurcates at a labelled point: it was not merely asked for, nor is it an end or a neutral saddle.
 pub fn is_bifurcation(label: Option<&str>) -> bool {
-    label.is_some_and(|label| kind(label) != SpecialKind::Requested.label())
+    label.is_some_and(|label| !matches!(kind(label), "AT" | "EP" | "NSE" | "NSC"))
 }
 
-/// A label without its number.
+/// A label without its number. The labels of resonances end in a digit of their own.
+///
+/// ```
+/// use kingpin_cli::labels::kind;
+/// assert_eq!((kind("LPC2"), kind("R12"), kind("EP1")), ("LPC", "R1", "EP"));
+/// ```
 pub fn kind(label: &str) -> &str {
-    label.trim_end_matches(|character: char| character.is_ascii_digit())
+    match label.parse::<Label>() {
+        Ok(label) => label.kind.label(),
+        Err(_) => label.trim_end_matches(|character: char| character.is_ascii_digit()),
+    }
+}
+
+/// The label of an end of a branch, as AUTO's users know it.
+pub fn end(number: usize) -> String {
+    format!("EP{number}")
 }

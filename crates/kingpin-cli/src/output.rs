@@ -6,6 +6,7 @@ use crate::parquet;
 use crate::report::Report;
 use crate::terminal;
 use clap::ValueEnum;
+use kingpin_figure::Figure;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -41,8 +42,11 @@ impl Ending {
     const PICTURES: [(&'static str, Self); 3] = [("svg", Self::Svg), ("png", Self::Png), ("pdf", Self::Pdf)];
 
     fn of(path: &Path, pictures: bool) -> Result<Self, Failure> {
-        let allowed: Vec<_> =
-            Self::DATA.into_iter().chain(Self::PICTURES.into_iter().filter(|_| pictures)).collect();
+        let pictures = Self::PICTURES.into_iter().filter(|_| pictures);
+        Self::among(&Self::DATA.into_iter().chain(pictures).collect::<Vec<_>>(), path)
+    }
+
+    fn among(allowed: &[(&'static str, Self)], path: &Path) -> Result<Self, Failure> {
         let given = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let known = allowed.iter().find(|(name, _)| name.eq_ignore_ascii_case(given));
         known.map(|&(_, ending)| ending).ok_or_else(|| {
@@ -123,15 +127,31 @@ fn write_file<R: Report>(report: &R, ending: Ending, out: &mut (dyn Write + Send
         let none = || Failure::Encoding { format: "a picture", cause: "there is nothing to draw".to_owned() };
         report.figure()?.ok_or_else(none)
     };
+    match ending {
+        Ending::Json => document::write(report, out),
+        Ending::Csv => report.columns().write_csv(out).map_err(|e| terminal::output_failure(e, "CSV")),
+        Ending::Parquet => parquet::write(&report.columns(), &metadata(report)?, out),
+        Ending::Svg | Ending::Png | Ending::Pdf => write_picture(&picture()?, ending, out),
+    }
+}
+
+/// Writes a picture to files whose endings say their format.
+///
+/// # Errors
+/// An ending that is none of a picture, [`Failure::Unwritable`], and those of the drawing.
+pub fn write_pictures(figure: &Figure, paths: &[PathBuf]) -> Result<(), Failure> {
+    for path in paths {
+        let ending = Ending::among(&Ending::PICTURES, path)?;
+        write_whole(path, |out| write_picture(figure, ending, out))?;
+    }
+    Ok(())
+}
+
+fn write_picture(figure: &Figure, ending: Ending, out: &mut (dyn Write + Send)) -> Result<(), Failure> {
     let picture = match ending {
-        Ending::Json => return document::write(report, out),
-        Ending::Csv => {
-            return report.columns().write_csv(out).map_err(|e| terminal::output_failure(e, "CSV"));
-        }
-        Ending::Parquet => return parquet::write(&report.columns(), &metadata(report)?, out),
-        Ending::Svg => picture()?.to_svg()?.into_bytes(),
-        Ending::Png => picture()?.to_png(PICTURE_RESOLUTION)?,
-        Ending::Pdf => picture()?.to_pdf(),
+        Ending::Png => figure.to_png(PICTURE_RESOLUTION)?,
+        Ending::Pdf => figure.to_pdf(),
+        _ => figure.to_svg()?.into_bytes(),
     };
     out.write_all(&picture).map_err(|error| terminal::output_failure(error, "a picture"))
 }

@@ -3,8 +3,7 @@
 use crate::document::{NamedNumbers, Number, Schema};
 use crate::failure::Failure;
 use arclength::cycle::Orbit;
-use arclength::equilibrium::SpecialPoint;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -42,7 +41,6 @@ impl FromStr for PointReference {
 struct ResultFile {
     schema: Schema,
     parameters: NamedNumbers,
-    model: Option<StoredModel>,
     along: StoredParameter,
     points: Vec<StoredPoint>,
 }
@@ -57,29 +55,15 @@ struct StoredPoint {
     value: Number,
     label: Option<String>,
     orbit: Option<Orbit>,
-    special: Option<SpecialPoint>,
 }
 
-/// A model that is not the wheel, with its text.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StoredModel {
-    /// Name of the file that it was read from.
-    pub name: String,
-    /// The text of that file.
-    pub source: String,
-}
-
-/// A labelled point: all parameters, and what is known of it.
+/// A labelled point: all parameters, and the cycle where it is one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LabelledPoint {
-    /// The model, where it is not the wheel.
-    pub model: Option<StoredModel>,
     /// Every parameter of the model there.
     pub parameters: Vec<(String, f64)>,
     /// The cycle, where it is one.
     pub orbit: Option<Orbit>,
-    /// The normal form of an equilibrium that bifurcates.
-    pub special: Option<SpecialPoint>,
 }
 
 impl PointReference {
@@ -92,15 +76,12 @@ impl PointReference {
         let labels: Vec<String> = file.points.iter().filter_map(|point| point.label.clone()).collect();
         let place = file.points.iter().position(|point| point.label.as_ref() == Some(&self.label));
         let Some(place) = place else {
-            let known = if labels.is_empty() { "it has no labels".to_owned() } else { labels.join(", ") };
-            return Err(
-                self.failure(format!("no point is labelled `{}`; the labels are: {known}", self.label))
-            );
+            return Err(self.no_such_label(&labels));
         };
         let point = file.points.swap_remove(place);
         let mut parameters = file.parameters.0;
         parameters.push((file.along.key, point.value.0));
-        Ok(LabelledPoint { model: file.model, parameters, orbit: point.orbit, special: point.special })
+        Ok(LabelledPoint { parameters, orbit: point.orbit })
     }
 
     /// That the orbit that was read is one of a model with so many states.
@@ -110,6 +91,12 @@ impl PointReference {
     pub fn check(&self, orbit: &Orbit, dimension: usize) -> Result<(), Failure> {
         check(orbit, dimension)
             .map_err(|problem| self.failure(format!("the orbit of {}: {problem}", self.label)))
+    }
+
+    /// That the label is none of those of the file.
+    pub fn no_such_label(&self, labels: &[String]) -> Failure {
+        let known = if labels.is_empty() { "it has no labels".to_owned() } else { labels.join(", ") };
+        self.failure(format!("no point is labelled `{}`; the labels are: {known}", self.label))
     }
 
     /// What is wrong with the file.

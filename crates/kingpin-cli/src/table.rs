@@ -1,6 +1,6 @@
 //! Tables of text for people: columns aligned, numbers to the right.
 
-use crate::numbers::readable;
+use crate::numbers::{readable, significant};
 use std::io::{self, Write};
 
 /// Space between columns.
@@ -11,6 +11,8 @@ const GAP: usize = 2;
 pub enum Cell {
     /// A number, shown with eight significant digits.
     Number(f64),
+    /// A number with as many significant digits as given.
+    Digits(f64, usize),
     /// Words.
     Text(String),
     /// Nothing: a dash.
@@ -45,6 +47,7 @@ impl Cell {
     fn text(&self) -> String {
         match self {
             Self::Number(number) => readable(*number),
+            Self::Digits(number, digits) => significant(*number, *digits),
             Self::Text(text) => text.clone(),
             Self::Nothing => "-".to_owned(),
         }
@@ -84,7 +87,11 @@ impl Table {
         let widths: Vec<usize> = (0..columns).map(width).collect();
         // A column of words starts at the left, a column in which there is a number ends at the right.
         let to_the_right: Vec<bool> = (0..columns)
-            .map(|column| self.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Number(_)))))
+            .map(|column| {
+                self.rows
+                    .iter()
+                    .any(|row| matches!(row.get(column), Some(Cell::Number(_) | Cell::Digits(..))))
+            })
             .collect();
         let mut line = |cells: &[String]| {
             let mut text = String::new();

@@ -31,6 +31,7 @@ pub fn equilibrium_settings() -> Settings {
 #[derive(Clone, Debug)]
 enum Start {
     State(Vec<f64>),
+    Equilibrium(Vec<f64>),
     OtherBranch { branch_point: Box<BranchPoint>, tangent: Vec<f64> },
 }
 
@@ -78,6 +79,13 @@ impl<'a> Equilibria<'a> {
     /// State from which the first equilibrium is sought; it need not be one.
     pub fn start(mut self, state: &[f64]) -> Self {
         self.start = Start::State(state.to_vec());
+        self
+    }
+
+    /// Starts at a state that is an equilibrium, perhaps a singular one such as a fold, to which Newton's method would not
+    /// converge.
+    pub fn through(mut self, equilibrium: &[f64]) -> Self {
+        self.start = Start::Equilibrium(equilibrium.to_vec());
         self
     }
 
@@ -164,6 +172,18 @@ impl<'a> Equilibria<'a> {
                 let mut unknown = find_erased(self.field, state, &problem.parameters_at(&[value]))?;
                 unknown.push(value);
                 (unknown, None, 0.0)
+            }
+            Start::Equilibrium(state) => {
+                check_length("start", state, n, "the dimension of the field")?;
+                let value = parameters[active];
+                if !range.contains(&value) {
+                    return Err(Error::Invalid {
+                        name: format!("{name} at the start"),
+                        value: value.to_string(),
+                        allowed: format!("{} to {}", bound.lower, bound.upper),
+                    });
+                }
+                ([&state[..], &[value]].concat(), None, 0.0)
             }
             Start::OtherBranch { branch_point, tangent } => {
                 check_length("branch point", &branch_point.state, n, "the dimension of the field")?;

@@ -1,12 +1,17 @@
 //! The commands of `arclength`, for models in .ode files.
 
-mod branch;
-mod cycles;
-mod equilibria;
-mod model;
-mod picture;
+pub mod branch;
+pub mod cycles;
+pub mod equilibria;
+pub mod locus;
+pub mod model;
+mod normal_form;
+pub mod picture;
+pub mod result_file;
 mod show;
-mod simulate;
+pub mod simulate;
+mod start;
+mod story;
 
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
@@ -27,6 +32,7 @@ pub struct Arclength {
 enum Command {
     Equilibria(equilibria::Equilibria),
     Cycles(cycles::Cycles),
+    Locus(locus::Locus),
     Simulate(simulate::Simulate),
     Show(show::Show),
 }
@@ -40,6 +46,7 @@ impl Arclength {
         match &self.command {
             Command::Equilibria(command) => command.run(),
             Command::Cycles(command) => command.run(),
+            Command::Locus(command) => command.run(),
             Command::Simulate(command) => command.run(),
             Command::Show(command) => command.run(),
         }

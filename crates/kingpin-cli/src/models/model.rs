@@ -1,26 +1,36 @@
 //! A model with values of its parameters, from a file or from an earlier result.
 
+use super::branch::StoredModel;
+use super::start::{LabelledPoint, read};
 use crate::document::NamedNumbers;
 use crate::failure::Failure;
 use crate::output::Output;
 use crate::range::{Assignment, Range, Values};
-use crate::stored::StoredModel;
+use crate::stored::PointReference;
 use arclength_ode::Model;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Which model, with which parameters.
+/// Which model, with which parameters, from which state.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Model")]
 pub struct ModelOptions {
     /// File of the model
-    #[arg(value_name = "MODEL.ode")]
-    model: PathBuf,
+    #[arg(value_name = "MODEL.ode", required_unless_present = "from")]
+    model: Option<PathBuf>,
+
+    /// Start from a labelled point of an earlier result, with its model and parameters
+    #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "model")]
+    from: Option<PointReference>,
+
+    /// Take the values of one of the model's named sets
+    #[arg(long, value_name = "NAME")]
+    named_set: Option<String>,
 
     #[command(flatten)]
     parameters: ParameterOptions,
 
-    /// Initial values of states in place of those of the file, for example x=1,y=2
+    /// Initial values of states, for example x=1,y=2
     #[arg(long, value_name = "KEY=VALUE,..", value_delimiter = ',')]
     start: Vec<Assignment>,
 }
@@ -48,34 +58,73 @@ pub struct ChosenModel {
 }
 
 impl ModelOptions {
-    /// Reads the model and sets its parameters and initial state.
+    /// Reads the model, or the labelled point with its model, and sets parameters and initial state.
     ///
     /// # Errors
     /// A file that cannot be read, a model that makes no sense, an unknown name or a value that is no number.
-    pub fn choose(&self, output: &Output) -> Result<ChosenModel, Failure> {
-        let unreadable = |source| Failure::Unreadable { path: self.model.clone(), source };
-        let bytes = std::fs::read(&self.model).map_err(unreadable)?;
-        let model = Model::parse_bytes(&bytes)
-            .map_err(|source| Failure::Model { path: self.model.clone(), source: source.into() })?;
-        for warning in model.warnings() {
-            output.warn(&format!("{}: {warning}", self.model.display()));
+    pub fn choose(&self, output: &Output) -> Result<(ChosenModel, Option<LabelledPoint>), Failure> {
+        let (mut chosen, point) = match (&self.from, &self.model) {
+            (Some(reference), _) => {
+                let point = read(reference)?;
+                (point.chosen.clone(), Some(point))
+            }
+            (None, Some(path)) => (read_model(path, output)?, None),
+            (None, None) => {
+                return Err(Failure::Option {
+                    option: "MODEL.ode",
+                    given: "nothing".to_owned(),
+                    problem: "there is no model".to_owned(),
+                    allowed: "the file of a model, or --from FILE.json:LABEL".to_owned(),
+                });
+            }
+        };
+        let mut initial = Vec::new();
+        if let Some(name) = &self.named_set {
+            let set = chosen.model.set(name).ok_or_else(|| {
+                let names: Vec<String> = chosen.model.sets().iter().map(|set| set.name.clone()).collect();
+                unknown("--named-set", name, "named set", &names)
+            })?;
+            initial.clone_from(&set.states);
+            set.parameters.iter().for_each(|&(index, value)| chosen.parameters[index] = value);
         }
-        let name = self.model.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let stored = StoredModel { name, source: model.source().to_owned() };
-        let mut chosen = ChosenModel::new(stored, model);
         chosen.set(&self.parameters)?;
-        chosen.start = chosen.model.initial_state(&chosen.parameters);
+        if point.is_none() {
+            chosen.start = chosen.model.initial_state(&chosen.parameters);
+        }
         for Assignment { key, value } in &self.start {
             let index = chosen.model.state_index(key);
             let index = index.ok_or_else(|| unknown("--start", key, "state", chosen.model.states()))?;
-            chosen.start[index] = number("--start", key, value)?;
+            initial.push((index, number("--start", key, value)?));
         }
-        Ok(chosen)
+        initial.into_iter().for_each(|(index, value)| chosen.start[index] = value);
+        Ok((chosen, point))
+    }
+
+    /// Whether parameters or states are not those of the file that was read.
+    pub fn changes_anything(&self) -> bool {
+        self.named_set.is_some() || !self.parameters.set.is_empty() || !self.start.is_empty()
     }
 }
 
+/// Reads the file of a model.
+///
+/// # Errors
+/// A file that cannot be read or a model that makes no sense.
+pub fn read_model(path: &Path, output: &Output) -> Result<ChosenModel, Failure> {
+    let unreadable = |source| Failure::Unreadable { path: path.to_owned(), source };
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let model = Model::parse_bytes(&bytes)
+        .map_err(|source| Failure::Model { path: path.to_owned(), source: source.into() })?;
+    for warning in model.warnings() {
+        output.warn(&format!("{}: {warning}", path.display()));
+    }
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(ChosenModel::new(StoredModel { name, source: model.source().to_owned() }, model))
+}
+
 impl ChosenModel {
-    fn new(stored: StoredModel, model: Model) -> Self {
+    /// A model with the parameters and the initial state of its text.
+    pub fn new(stored: StoredModel, model: Model) -> Self {
         let parameters = model.default_parameters().to_vec();
         let start = model.initial_state(&parameters);
         Self { stored, model, parameters, start }
@@ -111,11 +160,12 @@ impl ChosenModel {
         Ok(())
     }
 
-    /// Index of the parameter along which something is followed.
+    /// Index of the parameter along which something is followed; `option` is where it was given.
     ///
     /// # Errors
-    /// An unknown name; a field that depends on the time, which has neither equilibria nor cycles of its own.
-    pub fn along(&self, range: &Range) -> Result<usize, Failure> {
+    /// An unknown name; an infinite interval; a field that depends on the time, which has neither equilibria nor cycles of
+    /// its own.
+    pub fn along(&self, option: &'static str, range: &Range) -> Result<usize, Failure> {
         if let Some(place) = self.model.time_dependence() {
             return Err(Failure::ResultFile {
                 path: self.stored.name.clone().into(),
@@ -125,7 +175,33 @@ impl ChosenModel {
                 ),
             });
         }
-        self.parameter("--along", &range.key)
+        let index = self.parameter(option, &range.key)?;
+        if !(range.start.is_finite() && range.end.is_finite()) {
+            return Err(Failure::Option {
+                option,
+                given: format!("{}={}:{}", range.key, range.start, range.end),
+                problem: "the interval is infinite".to_owned(),
+                allowed: "two finite ends".to_owned(),
+            });
+        }
+        Ok(index)
+    }
+
+    /// That the interval contains the value of the parameter where a computation starts.
+    ///
+    /// # Errors
+    /// It does not.
+    pub fn starts_within(&self, option: &'static str, range: &Range, label: &str) -> Result<(), Failure> {
+        let value = self.model.parameter_index(&range.key).and_then(|index| self.parameters.get(index));
+        match value {
+            Some(value) if !(range.start..=range.end).contains(value) => Err(Failure::Option {
+                option,
+                given: format!("{}={}:{}", range.key, range.start, range.end),
+                problem: format!("{label} is outside the interval, {} = {value} there", range.key),
+                allowed: format!("an interval that contains {value}"),
+            }),
+            _ => Ok(()),
+        }
     }
 
     fn parameter(&self, option: &'static str, key: &str) -> Result<usize, Failure> {
@@ -159,13 +235,6 @@ impl ChosenModel {
             }),
             None => Ok(all),
         }
-    }
-
-    /// All parameters by name, without the one that varies.
-    pub fn named_parameters(&self, varying: Option<usize>) -> NamedNumbers {
-        let named = self.model.parameters().iter().cloned().zip(self.parameters.iter().copied());
-        let fixed = named.enumerate().filter(|(index, _)| Some(*index) != varying);
-        NamedNumbers(fixed.map(|(_, entry)| entry).collect())
     }
 
     /// A state by name.

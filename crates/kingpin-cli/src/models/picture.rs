@@ -1,58 +1,95 @@
-//! Bifurcation diagrams of models: one panel for each of the first states.
+//! Bifurcation diagrams: a panel for each of the first states over the parameter, or one of two parameters.
 
-use super::branch::VaryingParameter;
-use super::model::ChosenModel;
 use crate::labels::{is_bifurcation, kind};
 use kingpin_figure::{
-    Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
-    palette,
+    Axis, Branch, Color, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel,
+    Stability, palette,
 };
 
 /// Most panels.
 const MOST_PANELS: usize = 4;
 
-/// A branch as it is drawn.
-pub struct Curve<'a> {
-    /// Name in the legend.
-    pub name: &'static str,
-    /// Value of the parameter, stability and label of every point.
-    pub points: Vec<(f64, Option<bool>, Option<&'a str>)>,
-    /// For every state one or two lists of what is drawn over the points: the state, or its largest and smallest value.
-    pub extremes: Vec<Vec<Vec<Option<f64>>>>,
+/// A branch as it is drawn: solid where stable, dashed elsewhere, with labelled points.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    name: &'static str,
+    color: Color,
+    points: Vec<((f64, f64), Stability)>,
+    labels: Vec<((f64, f64), String)>,
 }
 
-/// Draws stable parts solid and all others dashed, with labelled points.
-pub fn bifurcation_diagram(chosen: &ChosenModel, along: &VaryingParameter, curve: &Curve) -> Figure {
-    let states = chosen.model.states();
-    let panels = states.len().min(MOST_PANELS);
-    let figure = if panels > 1 { Figure::double_column().columns(2) } else { Figure::single_column() };
-    let mut figure =
-        figure.description(format!("{} of {} along {}", curve.name, chosen.stored.name, along.key));
-    for (index, (state, lists)) in states.iter().zip(&curve.extremes).take(panels).enumerate() {
-        let mut panel = Panel::new(Axis::new(&along.key), Axis::new(state)).legend(Legend::Below);
-        for (number, list) in lists.iter().enumerate() {
-            let points = curve.points.iter().zip(list).filter_map(|((value, stable, label), height)| {
-                let stability = match is_bifurcation(*label) {
-                    true => Stability::Changes,
-                    false => Stability::from(*stable == Some(true)),
-                };
-                height.map(|height| ((*value, height), stability))
-            });
-            let line = Branch::new(points).color(palette::BLUE);
-            panel = panel.curve(if number == 0 && index == 0 { line.legend(curve.name) } else { line });
-        }
-        let labelled = curve.points.iter().zip(lists.first().into_iter().flatten());
-        for ((value, _, label), height) in labelled {
-            if let (Some(label), Some(height)) = (label, height) {
-                panel = panel.point(PointLabel::new((*value, *height), *label).marker(marker(label)));
+impl Curve {
+    /// A curve through points with their stability and labels. Ends and neutral saddles are not labelled in
+    /// pictures.
+    pub fn of<'a>(
+        name: &'static str,
+        color: Color,
+        points: impl IntoIterator<Item = ((f64, f64), Option<bool>, Option<&'a str>)>,
+    ) -> Self {
+        let mut curve = Self { name, color, points: Vec::new(), labels: Vec::new() };
+        for (at, stable, label) in points {
+            // Nothing is claimed to be stable that is not known to be.
+            let stability = match is_bifurcation(label) {
+                true => Stability::Changes,
+                false => Stability::from(stable == Some(true)),
+            };
+            curve.points.push((at, stability));
+            if let Some(label) = label.filter(|label| !matches!(kind(label), "EP" | "NSE" | "NSC")) {
+                curve.labels.push((at, label.to_owned()));
             }
         }
-        if index == 0 {
-            panel = panel.legend_entry(LegendEntry::line("not stable", palette::BLACK, Dash::Dashed));
-        }
-        figure = figure.panel(panel);
+        curve
+    }
+
+    /// The same curve without labels.
+    pub fn without_labels(self) -> Self {
+        Self { labels: Vec::new(), ..self }
+    }
+}
+
+/// A diagram: for every state its name and the curves over the parameter `key`. Only the first states are drawn.
+pub fn bifurcation_diagram(
+    description: &str,
+    key: &str,
+    states: impl IntoIterator<Item = (String, Vec<Curve>)>,
+) -> Figure {
+    let states: Vec<(String, Vec<Curve>)> = states.into_iter().take(MOST_PANELS).collect();
+    let figure = if states.len() > 1 { Figure::double_column().columns(2) } else { Figure::single_column() };
+    let mut figure = figure.description(description);
+    for (index, (state, curves)) in states.into_iter().enumerate() {
+        figure = figure.panel(panel([key, &state], &curves, (index == 0).then_some("not stable")));
     }
     figure
+}
+
+/// A diagram of curves in the plane of two parameters.
+pub fn plane(description: &str, keys: [&str; 2], curves: &[Curve]) -> Figure {
+    Figure::single_column().description(description).panel(panel(keys, curves, Some("neutral saddles")))
+}
+
+/// A panel with curves, the first of every name in the legend where there is one, with the meaning of dashes.
+fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&str>) -> Panel {
+    let mut panel = Panel::new(Axis::new(horizontal), Axis::new(vertical)).legend(Legend::Below);
+    let mut named: Vec<&str> = Vec::new();
+    for curve in curves {
+        let line = Branch::new(curve.points.iter().copied()).color(curve.color);
+        let first = legend.is_some() && !named.contains(&curve.name);
+        named.push(curve.name);
+        panel = panel.curve(if first { line.legend(curve.name) } else { line });
+    }
+    // Labels of several curves at one point are one.
+    let mut labelled: Vec<(&(f64, f64), &str)> = Vec::new();
+    for (at, label) in curves.iter().flat_map(|curve| &curve.labels) {
+        if !labelled.contains(&(at, label.as_str())) {
+            labelled.push((at, label));
+            panel = panel.point(PointLabel::new(*at, label.as_str()).marker(marker(label)));
+        }
+    }
+    let dashed = curves.iter().flat_map(|curve| &curve.points).any(|(_, s)| *s == Stability::Unstable);
+    if let Some(text) = legend.filter(|_| dashed) {
+        panel = panel.legend_entry(LegendEntry::line(text, palette::BLACK, Dash::Dashed));
+    }
+    panel
 }
 
 fn marker(label: &str) -> Marker {

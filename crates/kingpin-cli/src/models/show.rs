@@ -1,40 +1,38 @@
-//! `arclength show`: the labelled points of a result file.
+//! `arclength show`: result files as tables of their special points, and all of them in one diagram.
 
-use crate::document::{Number, Schema};
+use super::picture::{self, Curve};
+use super::result_file::ResultFile;
 use crate::failure::Failure;
-use crate::table::Table;
+use crate::output::write_pictures;
+use crate::report::Report;
 use crate::terminal;
 use clap::Args;
-use serde::Deserialize;
+use kingpin_figure::Figure;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// Labelled points of a result file, from which computations can start
+/// The special points of result files with their normal forms, from which computations can start
+///
+/// Several files of one model, along the same parameter or in the same two, are drawn in one diagram.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: arclength show cycles.json")]
+#[command(after_help = "Example: arclength show cycles.json\n         \
+                        arclength show equilibria.json cycles.json -o diagram.svg")]
 pub struct Show {
-    /// File that one of the commands wrote
-    #[arg(value_name = "FILE.json")]
-    file: PathBuf,
-}
+    /// Files that the other commands wrote
+    #[arg(value_name = "FILE.json", required = true)]
+    files: Vec<PathBuf>,
 
-#[derive(Debug, Deserialize)]
-struct ShownFile {
-    schema: Schema,
-    along: ShownParameter,
-    points: Vec<ShownPoint>,
-}
+    /// Tell the story of every run after its table
+    #[arg(long)]
+    explain: bool,
 
-#[derive(Debug, Deserialize)]
-struct ShownParameter {
-    key: String,
-}
+    /// Draw everything in one diagram (.svg, .png, .pdf); repeatable
+    #[arg(short, long, value_name = "PATH")]
+    out: Vec<PathBuf>,
 
-#[derive(Debug, Deserialize)]
-struct ShownPoint {
-    value: Number,
-    label: Option<String>,
-    period: Option<f64>,
-    stable: Option<bool>,
+    /// With --out nothing on standard output
+    #[arg(short, long)]
+    quiet: bool,
 }
 
 impl Show {
@@ -43,31 +41,117 @@ impl Show {
     /// # Errors
     /// Why it failed.
     pub fn run(&self) -> Result<(), Failure> {
-        let failure = |problem: String| Failure::ResultFile { path: self.file.clone(), problem };
-        let bytes = std::fs::read(&self.file)
-            .map_err(|source| Failure::Unreadable { path: self.file.clone(), source })?;
-        let file: ShownFile = serde_json::from_slice(&bytes).map_err(|error| {
-            failure(format!("not a result file with labelled points: {error}; allowed: what `equilibria` and `cycles` write"))
-        })?;
-        let mut table = Table::new(["label", file.along.key.as_str(), "period", ""]);
-        let labelled = file.points.iter().filter(|point| point.label.is_some());
-        for point in labelled {
-            let stability = match point.stable {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "",
-            };
-            table.row([
-                point.label.clone().into(),
-                point.value.0.into(),
-                point.period.into(),
-                stability.into(),
-            ]);
+        let mut results = Vec::new();
+        for path in &self.files {
+            let failure = |problem: String| Failure::ResultFile { path: path.clone(), problem };
+            results.push(ResultFile::read(path).map_err(failure)?);
+        }
+        if !self.out.is_empty() {
+            write_pictures(
+                &diagram(&results).map_err(|(index, problem)| self.failure(index, problem))?,
+                &self.out,
+            )?;
+            for path in self.out.iter().filter(|_| !self.quiet) {
+                terminal::say("wrote", &path.display().to_string());
+            }
+            if self.quiet {
+                return Ok(());
+            }
         }
         terminal::print(|out| {
-            writeln!(out, "{}, {} points\n", file.schema.name, file.points.len())
-                .and_then(|()| table.write(out))
-                .map_err(|error| terminal::output_failure(error, "text"))
+            self.write(&mut results, out).map_err(|error| terminal::output_failure(error, "text"))
         })
     }
+
+    fn failure(&self, index: usize, problem: String) -> Failure {
+        Failure::ResultFile { path: self.files.get(index).cloned().unwrap_or_default(), problem }
+    }
+
+    fn write(&self, results: &mut [ResultFile], out: &mut dyn Write) -> io::Result<()> {
+        for (index, result) in results.iter_mut().enumerate() {
+            if index > 0 {
+                writeln!(out)?;
+            }
+            match result {
+                ResultFile::Equilibria(report) => {
+                    report.explain = self.explain;
+                    report.write_table(out)?;
+                }
+                ResultFile::Cycles(report) => {
+                    report.explain = self.explain;
+                    report.write_table(out)?;
+                }
+                ResultFile::Locus(report) => {
+                    report.explain = self.explain;
+                    report.write_table(out)?;
+                }
+                ResultFile::History(report) => report.write_table(out)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Everything in one diagram; the error says which file does not fit to the first one.
+///
+/// # Errors
+/// A time history, or files over different parameters.
+pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
+    let axes = |result: &ResultFile| -> Option<Vec<String>> {
+        match result {
+            ResultFile::Equilibria(report) => Some(vec![report.along.key.clone()]),
+            ResultFile::Cycles(report) => Some(vec![report.along.key.clone()]),
+            ResultFile::Locus(report) => Some(report.keys().map(str::to_owned).to_vec()),
+            ResultFile::History(_) => None,
+        }
+    };
+    let first = results.first().and_then(axes).unwrap_or_default();
+    let (mut states, mut name): (Vec<String>, String) = (Vec::new(), String::new());
+    for (index, result) in results.iter().enumerate() {
+        match axes(result) {
+            Some(own) if own == first => {}
+            Some(own) => {
+                let problem = format!("it is over {}, not over {}", own.join(" and "), first.join(" and "));
+                return Err((
+                    index,
+                    format!("{problem} as the first file; allowed: files over the same parameters"),
+                ));
+            }
+            None => {
+                let problem =
+                    "a time history has no place in a bifurcation diagram; allowed: `simulate -o x.svg`";
+                return Err((index, problem.to_owned()));
+            }
+        }
+        let (own, model) = match result {
+            ResultFile::Equilibria(report) => (report.states(), &report.model),
+            ResultFile::Cycles(report) => (report.states(), &report.model),
+            ResultFile::Locus(report) => (Vec::new(), &report.model),
+            ResultFile::History(_) => continue,
+        };
+        if index == 0 {
+            states = own.into_iter().map(str::to_owned).collect();
+            name.clone_from(&model.name);
+        }
+    }
+    if let [one, two] = &first[..] {
+        let curves: Vec<Curve> = results
+            .iter()
+            .filter_map(|result| match result {
+                ResultFile::Locus(report) => Some(report.curve()),
+                _ => None,
+            })
+            .collect();
+        return Ok(picture::plane(&format!("Special points of {name}"), [one, two], &curves));
+    }
+    let panels = states.iter().map(|state| {
+        let curves = results.iter().flat_map(|result| match result {
+            ResultFile::Equilibria(report) => report.curves(state),
+            ResultFile::Cycles(report) => report.curves(state),
+            _ => Vec::new(),
+        });
+        (state.clone(), curves.collect::<Vec<Curve>>())
+    });
+    let key = first.first().map_or("", String::as_str);
+    Ok(picture::bifurcation_diagram(&format!("Bifurcation diagram of {name}"), key, panels))
 }

@@ -1,7 +1,7 @@
 //! `arclength simulate`: a time history of a model.
 
-use super::branch::parameters;
-use super::model::{ChosenModel, ModelOptions};
+use super::branch::{StoredModel, named_parameters, parameters};
+use super::model::ModelOptions;
 use crate::columns::Columns;
 use crate::document::{NamedNumbers, Schema};
 use crate::failure::Failure;
@@ -9,12 +9,13 @@ use crate::history::{drawn, extremes};
 use crate::numbers::readable;
 use crate::options::OutputOptions;
 use crate::report::Report;
-use crate::stored::StoredModel;
 use crate::table::Table;
 use arclength::integration::{Integrator, from_fn};
 use clap::Args;
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde::de::{MapAccess, Visitor};
+use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::io::{self, Write};
 
 /// Most samples.
@@ -59,7 +60,7 @@ impl Simulate {
             });
         }
         let output = self.output.prepare(true)?;
-        let chosen = self.model.choose(&output)?;
+        let (chosen, _) = self.model.choose(&output)?;
         let last = (self.points - 1) as f64;
         let times: Vec<f64> = (0..self.points).map(|index| self.duration * (index as f64 / last)).collect();
         let dimension = chosen.model.states().len();
@@ -72,15 +73,15 @@ impl Simulate {
         output.deliver(&HistoryReport {
             model: chosen.stored.clone(),
             states: Histories { names: chosen.model.states().to_vec(), values: states },
-            chosen,
+            parameters: named_parameters(&chosen, &[]),
             t: times,
         })
     }
 }
 
 /// A list of values for every state.
-#[derive(Debug)]
-struct Histories {
+#[derive(Clone, Debug)]
+pub struct Histories {
     names: Vec<String>,
     values: Vec<Vec<f64>>,
 }
@@ -99,23 +100,62 @@ impl Serialize for Histories {
     }
 }
 
+impl<'de> Deserialize<'de> for Histories {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct InOrder;
+        impl<'de> Visitor<'de> for InOrder {
+            type Value = Histories;
+
+            fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                formatter.write_str("an object of lists of numbers")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Histories, A::Error> {
+                let mut histories = Histories { names: Vec::new(), values: Vec::new() };
+                while let Some((name, values)) = entries.next_entry()? {
+                    histories.names.push(name);
+                    histories.values.push(values);
+                }
+                Ok(histories)
+            }
+        }
+        deserializer.deserialize_map(InOrder)
+    }
+}
+
 /// A time history.
-#[derive(Debug, serde::Serialize)]
-struct HistoryReport {
-    #[serde(skip)]
-    chosen: ChosenModel,
-    model: StoredModel,
-    t: Vec<f64>,
-    states: Histories,
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct HistoryReport {
+    #[serde(skip_serializing)]
+    pub(crate) parameters: NamedNumbers,
+    /// The model.
+    pub model: StoredModel,
+    /// Times.
+    pub t: Vec<f64>,
+    /// For every state its values at these times.
+    pub states: Histories,
+}
+
+impl HistoryReport {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "arclength.simulate";
+    /// Label of the end, from which computations can start.
+    pub const END: &'static str = "END";
+
+    /// How long it lasts, and the state at its end.
+    pub fn end(&self) -> (f64, NamedNumbers) {
+        let states = self.states.iter().filter_map(|(name, values)| Some((name.clone(), *values.last()?)));
+        (self.t.last().copied().unwrap_or(0.0), NamedNumbers(states.collect()))
+    }
 }
 
 impl Report for HistoryReport {
     fn schema(&self) -> Schema {
-        Schema::first("arclength.simulate")
+        Schema::first(Self::SCHEMA)
     }
 
     fn parameters(&self) -> NamedNumbers {
-        self.chosen.named_parameters(None)
+        self.parameters.clone()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -1,5 +1,7 @@
 //! The program `arclength` as others run it, with models of the gallery and their published values.
 
+mod restarts;
+
 use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -149,7 +151,7 @@ fn options_that_make_no_sense() {
     let folder = Folder::with("pp2.ode");
     folder.fails("equilibria pp2.ode --along p9=0:1", 2, &["--along p9", "p1, p2, p3, p4"]);
     folder.fails("equilibria pp2.ode --along p1=1:1", 2, &["empty interval"]);
-    folder.fails("equilibria pp2.ode --along p1=0:inf", 2, &["p1"]);
+    folder.fails("equilibria pp2.ode --along p1=0:inf", 2, &["p1", "infinite"]);
     folder.fails("equilibria pp2.ode --along p1=0:1 -s q=1", 2, &["--set q", "p1, p2, p3, p4"]);
     folder.fails("equilibria pp2.ode --along p1=0:1 -s p2=nan", 2, &["--set p2=nan", "finite"]);
     folder.fails("equilibria pp2.ode --along p1=0:1 --start z=1", 2, &["--start z", "u1, u2"]);

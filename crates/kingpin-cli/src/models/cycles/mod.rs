@@ -1,0 +1,149 @@
+//! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result.
+
+mod report;
+
+pub use report::{CycleReport, CyclesReport, UnlocatedReport};
+
+use super::branch::{Origin, StepOptions};
+use super::model::ParameterOptions;
+use super::start::{LabelledPoint, What, read};
+use crate::failure::Failure;
+use crate::labels::kind;
+use crate::numbers::readable;
+use crate::options::OutputOptions;
+use crate::output::Output;
+use crate::progress::Progress;
+use crate::range::{Range, Values};
+use crate::stored::PointReference;
+use arclength::continuation::Settings;
+use arclength::cycle::{CycleStart, Orbit, Resolution, Role};
+use arclength::equilibrium::SpecialPoint;
+use clap::Args;
+use std::ops::ControlFlow;
+
+/// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json"
+)]
+pub struct Cycles {
+    /// Labelled point of a file that `equilibria`, `cycles` or `simulate` wrote, with its model and parameters
+    #[arg(long, value_name = "FILE.json:LABEL")]
+    from: PointReference,
+
+    /// Parameter and its interval
+    #[arg(long, value_name = "KEY=A:B")]
+    along: Range,
+
+    /// Values of the parameter at which cycles are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
+    #[command(flatten)]
+    parameters: ParameterOptions,
+    #[command(flatten)]
+    steps: StepOptions,
+    #[command(flatten)]
+    mesh: MeshOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// How finely cycles are resolved.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Steps")]
+struct MeshOptions {
+    /// Error estimate, relative to the amplitude, that no cycle exceeds; the mesh follows from it
+    #[arg(long, value_name = "E", default_value_t = Resolution::default().tolerance)]
+    tolerance: f64,
+
+    /// Most mesh intervals
+    #[arg(long, value_name = "N", default_value_t = 2000,
+          value_parser = clap::value_parser!(u32).range(4..=100_000))]
+    intervals: u32,
+}
+
+impl Cycles {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare(true)?;
+        let point = read(&self.from)?;
+        let mut chosen = point.chosen.clone();
+        chosen.set(&self.parameters)?;
+        let active = chosen.along("--along", &self.along)?;
+        chosen.starts_within("--along", &self.along, &point.label)?;
+        let at = chosen.values(active, &self.along, &self.at)?;
+        let (start, origin) = self.start(&point, &chosen.parameters, &output)?;
+        let name = &chosen.model.parameters()[active];
+        let progress = Progress::spinner("cycles", output.is_quiet());
+        let mut branch = arclength::cycle::Cycles::of(&chosen.model, start)
+            .parameters(&chosen.parameters)
+            .along(active, self.along.start..=self.along.end)
+            .at(&at)
+            .settings(self.steps.apply(Settings::default()))
+            .resolution(Resolution {
+                tolerance: self.mesh.tolerance,
+                most_intervals: self.mesh.intervals as usize,
+                ..Resolution::default()
+            })
+            .observer(|value, period| {
+                let (value, period) = (readable(value), readable(period));
+                progress.message(format!("cycles, {name} = {value}, period {period}"));
+                ControlFlow::Continue(())
+            })
+            .run()?;
+        drop(progress);
+        // The cycle at which the branch starts may be one of those asked for.
+        for cycle in &mut branch.points {
+            if cycle.role == Role::Step && at.contains(&cycle.value) {
+                cycle.role = Role::Requested;
+            }
+        }
+        let mut report = CyclesReport::new(&chosen, active, &self.along, origin, branch);
+        report.explain = self.explain;
+        for change in &report.unlocated {
+            output.warn(&change.text(name));
+        }
+        output.deliver(&report)
+    }
+
+    /// What the branch starts from.
+    fn start(
+        &self,
+        point: &LabelledPoint,
+        parameters: &[f64],
+        output: &Output,
+    ) -> Result<(CycleStart, Origin), Failure> {
+        let origin = |how: &str| Origin::labelled(&point.label, how);
+        match &point.what {
+            What::Cycle(orbit) => {
+                if matches!(kind(&point.label), "PD" | "BPC") {
+                    output.warn(&format!(
+                        "the branch of the cycle {} itself is followed, not the one that bifurcates there",
+                        point.label
+                    ));
+                }
+                Ok((CycleStart::Orbit(orbit.clone()), origin("the branch through it")))
+            }
+            What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
+                Ok((CycleStart::from(hopf), origin("the cycles that are born there")))
+            }
+            What::Motion { duration } => {
+                let model = &point.chosen.model;
+                let orbit = Orbit::from_time_history(model, parameters, &point.chosen.start, *duration)?;
+                Ok((CycleStart::Orbit(orbit), origin("the cycle on which the time history has settled")))
+            }
+            What::Equilibrium(_) => Err(self.from.failure(format!(
+                "no cycles start at {}; allowed: Hopf points (HB), cycles, and the end (END) of a time history on a cycle",
+                point.label
+            ))),
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! A curve of special equilibria in two parameters as a result.
+
+use crate::columns::Columns;
+use crate::document::{NamedNumbers, Schema};
+use crate::labels;
+use crate::models::branch::{
+    End, Origin, StoredModel, VaryingParameter, named_parameters, pairs, parameters, test_names, tests,
+};
+use crate::models::model::ChosenModel;
+use crate::models::normal_form;
+use crate::models::picture::{self, Curve};
+use crate::models::story::{self, Part};
+use crate::numbers::readable;
+use crate::range::Range;
+use crate::report::Report;
+use crate::table::{Cell, Table};
+use arclength::branch::SpecialKind;
+use arclength::locus::{CodimensionTwoPoint, EquilibriumLocusBranch, LocusPoint};
+use kingpin_figure::{Color, Figure, FigureError, palette};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// States that are shown in a table.
+const SHOWN_STATES: usize = 3;
+/// Digits of the parameters at labelled points.
+const DIGITS: usize = 12;
+
+/// A point of the curve in a result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct LocusPointReport {
+    /// Values of the two parameters.
+    pub values: [f64; 2],
+    /// The equilibrium.
+    pub state: NamedNumbers,
+    /// Eigenvalues by descending real part.
+    pub eigenvalues: Vec<[Option<f64>; 2]>,
+    /// Angular frequency of a Hopf point; nothing at a neutral saddle.
+    pub frequency: Option<f64>,
+    /// First Lyapunov coefficient of a Hopf point.
+    pub first_lyapunov: Option<f64>,
+    /// Of points of codimension two, of values asked for, of the ends.
+    pub label: Option<String>,
+    /// Test functions by the label of the point at which each changes its sign.
+    pub tests: NamedNumbers,
+    /// What is known about a point of codimension two.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub special: Option<CodimensionTwoPoint>,
+}
+
+/// A curve of special points in two parameters.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct LocusReport {
+    #[serde(skip_serializing)]
+    pub(crate) parameters: NamedNumbers,
+    /// What the curve consists of.
+    pub kind: SpecialKind,
+    /// The model.
+    pub model: StoredModel,
+    /// The parameters that vary.
+    #[serde(rename = "in")]
+    pub plane: [VaryingParameter; 2],
+    /// Where the curve starts.
+    pub from: Origin,
+    /// Why it ends, at its first and at its last point.
+    pub ends: [End; 2],
+    /// The points in the order of the curve.
+    pub points: Vec<LocusPointReport>,
+    /// Whether the story of the run is told.
+    #[serde(skip)]
+    pub explain: bool,
+}
+
+impl LocusReport {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "arclength.locus";
+
+    /// The result of a curve.
+    pub fn new(
+        chosen: &ChosenModel,
+        ranges: [&Range; 2],
+        from: Origin,
+        branch: &EquilibriumLocusBranch,
+    ) -> Self {
+        let point = |point: &LocusPoint| LocusPointReport {
+            values: point.values,
+            state: chosen.named_state(&point.state),
+            eigenvalues: pairs(&point.eigenvalues),
+            frequency: point.frequency,
+            first_lyapunov: point.first_lyapunov,
+            label: point.label.map(|label| label.to_string()),
+            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            special: point.special.as_deref().cloned(),
+        };
+        let mut points: Vec<LocusPointReport> = branch.points.iter().map(point).collect();
+        let keys = [ranges[0].key.as_str(), ranges[1].key.as_str()];
+        let last = |point: Option<&LocusPointReport>| {
+            let values = point.map(|point| {
+                let values = keys.iter().zip(point.values).map(|(key, value)| ((*key).to_owned(), value));
+                values.chain(point.state.0.iter().cloned()).collect()
+            });
+            NamedNumbers(values.unwrap_or_default())
+        };
+        let ends = [
+            End::of(&branch.backward_stop, &keys, last(points.first())),
+            End::of(&branch.forward_stop, &keys, last(points.last())),
+        ];
+        let count = points.len();
+        for (number, index) in [(1, 0), (2, count.saturating_sub(1))] {
+            if let Some(point) = points.get_mut(index).filter(|point| point.label.is_none()) {
+                point.label = Some(labels::end(number));
+            }
+        }
+        Self {
+            parameters: named_parameters(chosen, &branch.active),
+            kind: branch.kind,
+            model: chosen.stored.clone(),
+            plane: ranges.map(VaryingParameter::from),
+            from,
+            ends,
+            points,
+            explain: false,
+        }
+    }
+
+    /// Names of the states.
+    fn states(&self) -> Vec<&str> {
+        let first = self.points.first();
+        first.iter().flat_map(|point| point.state.0.iter().map(|(name, _)| name.as_str())).collect()
+    }
+
+    /// What is drawn in the plane of the parameters: neutral saddles on a curve of Hopf points are dashed.
+    pub fn curve(&self) -> Curve {
+        let (name, color): (&'static str, Color) = match self.kind {
+            SpecialKind::Fold => ("folds", palette::BLUE),
+            SpecialKind::Hopf => ("Hopf points", palette::VERMILION),
+            SpecialKind::BranchPoint => ("branch points", palette::GREEN),
+            _ => ("special points", palette::PURPLE),
+        };
+        Curve::of(
+            name,
+            color,
+            self.points.iter().map(|point| {
+                let real = self.kind != SpecialKind::Hopf || point.frequency.is_some();
+                ((point.values[0], point.values[1]), Some(real), point.label.as_deref())
+            }),
+        )
+    }
+
+    /// Names of the two parameters.
+    pub fn keys(&self) -> [&str; 2] {
+        [&self.plane[0].key, &self.plane[1].key]
+    }
+
+    fn story(&self) -> Vec<Part> {
+        let mut parts = vec![Part::new("start", self.from.text())];
+        parts.extend(story::ends(&self.ends));
+        let [one, two] = self.keys();
+        for point in &self.points {
+            if let Some(special) = &point.special {
+                let [first, second] = point.values.map(readable);
+                let label = point.label.clone().unwrap_or_default();
+                parts.push(Part::new(
+                    "course",
+                    format!(
+                        "{label} at {one} = {first}, {two} = {second}: {}",
+                        normal_form::of_codimension_two(special)
+                    ),
+                ));
+            }
+        }
+        parts.push(Part::new("steps", format!("{} points", self.points.len())));
+        let errors = self.points.iter().filter_map(|point| Some(point.special.as_ref()?.location_error));
+        let largest = errors.flatten().filter(|error| error.is_finite()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            parts.push(Part::new("errors", format!("points of codimension two: at most {largest:.1e}")));
+        }
+        parts
+    }
+}
+
+impl Report for LocusReport {
+    fn schema(&self) -> Schema {
+        Schema::first(Self::SCHEMA)
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        self.parameters.clone()
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let what = self.kind.name();
+        writeln!(out, "curve of {what}s of {} at {}", self.model.name, parameters(&self.parameters.0))?;
+        writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
+        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
+        let [one, two] = self.keys();
+        let hopf = self.kind == SpecialKind::Hopf;
+        let of_hopf = ["frequency", "l1"].into_iter().filter(|_| hopf);
+        let states = self.states().into_iter().take(SHOWN_STATES);
+        let mut table = Table::new(["label", one, two].into_iter().chain(states).chain(of_hopf).chain([""]));
+        for point in self.points.iter().filter(|point| point.label.is_some()) {
+            let mut cells: Vec<Cell> = vec![point.label.clone().into()];
+            cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
+            cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
+            if hopf {
+                cells.extend([point.frequency, point.first_lyapunov].map(Cell::from));
+            }
+            cells
+                .push(point.special.as_ref().map(normal_form::of_codimension_two).unwrap_or_default().into());
+            table.row(cells);
+        }
+        table.write(out)?;
+        if self.explain { story::write(&self.story(), out) } else { Ok(()) }
+    }
+
+    fn columns(&self) -> Columns {
+        let points = || self.points.iter();
+        let [one, two] = self.keys();
+        let mut columns = Columns::new()
+            .texts("label", points().map(|point| point.label.clone()))
+            .numbers(one, points().map(|point| point.values[0]))
+            .numbers(two, points().map(|point| point.values[1]))
+            .optional_numbers("frequency", points().map(|point| point.frequency))
+            .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov));
+        let states = self.states();
+        for (index, name) in states.iter().enumerate() {
+            columns = columns.optional_numbers(*name, points().map(|point| point.state.get(index)));
+        }
+        for number in 0..states.len() {
+            for (part, name) in ["real", "imaginary"].into_iter().enumerate() {
+                columns = columns.optional_numbers(
+                    format!("eigenvalue_{}_{name}", number + 1),
+                    points().map(|point| point.eigenvalues.get(number).and_then(|pair| pair[part])),
+                );
+            }
+        }
+        for name in test_names(points().map(|point| &point.tests)) {
+            let values = points().map(|point| point.tests.named(&name));
+            columns = columns.optional_numbers(format!("test_{name}"), values);
+        }
+        columns
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let [one, two] = self.keys();
+        let description = format!("{}s of {} in {one} and {two}", self.kind.name(), self.model.name);
+        Ok(Some(picture::plane(&description, [one, two], &[self.curve()])))
+    }
+}
