@@ -57,8 +57,42 @@ fn lure_period_doubling() {
         assert_relative_eq!(cycle.period, 6.364071339, max_relative = 1e-9);
     }
     let Stop::HopfPoint { parameter, frequency } = branch.stops.1 else { panic!("{}", branch.stops.1) };
-    assert_relative_eq!(parameter, -1.0, max_relative = 1e-5);
-    assert_relative_eq!(frequency, 1.0, max_relative = 1e-3);
+    assert_relative_eq!(parameter, -1.0, max_relative = 1e-12);
+    assert_relative_eq!(frequency, 1.0, max_relative = 1e-12);
+}
+
+#[test]
+fn lure_doubled_branch() {
+    let start = hopf_start(&Lure, &[0.0, 0.0, 0.0], &[1.0, 1.0]);
+    let branch = Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along(0, -1.1..=1.1).run().expect("exists");
+    let (_, doubling) =
+        branch.special_points().find(|(special, _)| *special == Special::Doubling).expect("a doubling");
+    let doubled = Cycles::of(&Lure, CycleStart::Branching(doubling.branching.clone().expect("a branch")))
+        .parameters(&[doubling.value, 1.0])
+        .along(0, -1.1..=1.1)
+        .run()
+        .expect("exists");
+    let found = |sought: Special| -> Vec<(f64, f64)> {
+        let points = doubled.special_points().filter(|(special, _)| *special == sought);
+        points.map(|(_, cycle)| (cycle.value, cycle.period)).collect()
+    };
+    let folds = found(Special::Fold);
+    assert_eq!(folds.len(), 2);
+    for (value, _) in &folds {
+        assert_relative_eq!(value.abs(), 0.0449491239, max_relative = 1e-8);
+    }
+    let doublings = found(Special::Doubling);
+    assert!(
+        doublings.iter().any(
+            |(value, period)| (value + 0.0447196616).abs() < 1e-9 && (period - 11.062836564).abs() < 1e-8
+        ),
+        "{doublings:?}"
+    );
+    // The other end is the doubling on the other side: reversing time mirrors the system.
+    let Stop::PeriodDoubling { parameter, period } = doubled.stops.1 else { panic!("{}", doubled.stops.1) };
+    assert_relative_eq!(parameter, -doubling.value, max_relative = 1e-9);
+    assert_relative_eq!(period, doubling.period, max_relative = 1e-9);
+    assert!(doubled.unlocated.is_empty());
 }
 
 #[test]

@@ -29,6 +29,18 @@ pub enum Stop {
         /// Angular frequency there.
         frequency: f64,
     },
+    /// The two halves of doubled cycles became equal: the branch ends at a period doubling.
+    PeriodDoubling {
+        /// Parameter value there.
+        parameter: f64,
+        /// Period of the single cycle there.
+        period: f64,
+    },
+    /// A curve of torus bifurcations ends at a strong resonance, where its multipliers meet.
+    StrongResonance {
+        /// 1 or 2: the power of the multipliers that is one.
+        order: u8,
+    },
     /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit.
     PeriodUnbounded {
         /// Period of the last cycle.
@@ -63,6 +75,15 @@ impl std::fmt::Display for Stop {
             Self::HopfPoint { parameter, frequency } => write!(
                 formatter,
                 "the cycles shrink to a Hopf point at {parameter} with angular frequency {frequency}"
+            ),
+            Self::PeriodDoubling { parameter, period } => write!(
+                formatter,
+                "the halves of the doubled cycles become equal at a period doubling at {parameter}, where the single \
+                 cycle has the period {period}"
+            ),
+            Self::StrongResonance { order } => write!(
+                formatter,
+                "the two multipliers on the unit circle meet: the curve ends at a 1:{order} resonance"
             ),
             Self::PeriodUnbounded { period, parameter } => write!(
                 formatter,

@@ -3,24 +3,23 @@
 use super::collocation::Collocation;
 use super::curve::{CycleCurve, CycleInspection, Resolution};
 use super::limit_cycle::LimitCycle;
+use super::locating::doubling_near;
 use super::orbit::Orbit;
 use super::special::{Special, Unlocated};
-use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use super::switching::{Branching, HopfStart, Start};
+use crate::continuation::{Bound, Curve, Followed, Origin, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::HopfPoint;
+use crate::equilibrium::locating::hopf_point_near;
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use num_complex::Complex64;
-use std::f64::consts::PI;
 use std::ops::{ControlFlow, RangeInclusive};
 
-/// Mesh intervals of the first cycle next to a Hopf point.
-const FIRST_INTERVALS: usize = 8;
-/// Amplitude of the first cycle, as part of the amplitude at which the normal form has moved the parameter by
-/// the length of its range.
-const FIRST_AMPLITUDE: f64 = 0.02;
-/// Largest amplitude of the first cycle relative to the size of the equilibrium, for want of a better measure.
-const LARGEST_FIRST_AMPLITUDE: f64 = 0.1;
+/// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there.
+const FIRST_DISTANCE: f64 = 0.02;
+/// Times that this distance is halved before a start is given up.
+const MOST_HALVINGS: usize = 6;
 
 /// A limit cycle of a branch.
 #[derive(Clone, Debug)]
@@ -45,6 +44,13 @@ pub struct CyclePoint {
     pub error_estimate: f64,
     /// Why the cycle is part of the branch.
     pub role: Role,
+    /// Coefficients of the normal form of a special cycle by name. Fold: `quadratic_coefficient` `b` of `dxi/dt = b xi^2`;
+    /// period doubling: `cubic_coefficient` `c` of `dxi/dt = c xi^3`; torus bifurcation: `argument` of the multipliers and
+    /// `cubic_coefficient`, the real part of `d` of `dxi/dt = i omega xi + d xi |xi|^2`, with its imaginary part. Negative
+    /// cubic coefficients mean that the new solutions are stable within the centre manifold.
+    pub normal_form: Vec<(&'static str, f64)>,
+    /// Start of the branch that leaves here: doubled cycles at a period doubling, the other branch at a branch point.
+    pub branching: Option<Branching>,
     /// Test functions by name: each changes sign at one kind of special cycle.
     pub tests: Vec<(&'static str, f64)>,
     /// The cycle itself.
@@ -94,6 +100,8 @@ pub enum CycleStart {
     },
     /// A cycle.
     Orbit(Orbit),
+    /// The branch that leaves another one at a bifurcation.
+    Branching(Branching),
 }
 
 impl From<&HopfPoint> for CycleStart {
@@ -223,54 +231,168 @@ impl<'a> Cycles<'a> {
             values: self.values.clone(),
             settings: self.settings,
         };
-        let (unknown, tangent, mesh, degree) = match self.start.clone() {
+        let width = self.range.1 - self.range.0;
+        let mut unlocated = Vec::new();
+        let degree = self.resolution.degree;
+        let (points, stops) = match self.start.clone() {
             CycleStart::Hopf { state, frequency, eigenvector, crossing_speed, cubic_coefficient } => {
-                self.near_hopf(&state, frequency, &eigenvector, crossing_speed, cubic_coefficient)
+                let hopf = HopfStart {
+                    state: &state,
+                    frequency,
+                    eigenvector: &eigenvector,
+                    crossing_speed,
+                    cubic_coefficient,
+                };
+                let start = hopf.cycle(self.parameters[self.active], width, degree);
+                let forward = self.follow(&start, &request, false, &mut unlocated)?;
+                (points_of(&forward, degree), (None, forward.stop))
             }
             CycleStart::Orbit(orbit) => {
                 let mut unknown = orbit.states.clone();
                 unknown.extend([orbit.period, self.parameters[self.active]]);
                 let mut tangent = vec![0.0; unknown.len()];
-                tangent[unknown.len() - 1] = self.range.1 - self.range.0;
-                (unknown, tangent, orbit.mesh.clone(), orbit.degree)
+                tangent[unknown.len() - 1] = width;
+                let mut start = Start { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree };
+                let forward = self.follow(&start, &request, false, &mut unlocated)?;
+                if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+                    (points_of(&forward, start.degree), (Some(Stop::Closed), forward.stop))
+                } else {
+                    start.tangent.iter_mut().for_each(|entry| *entry = -*entry);
+                    let backward = self.follow(&start, &request, false, &mut unlocated)?;
+                    let mut points = points_of(&backward, start.degree);
+                    points.reverse();
+                    points.pop();
+                    points.extend(points_of(&forward, start.degree));
+                    (points, (Some(backward.stop), forward.stop))
+                }
+            }
+            CycleStart::Branching(branching) => {
+                let forward = self.leave(&branching, 1.0, &request, &mut unlocated)?;
+                let degree = branching.orbit.degree;
+                if branching.doubled || matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+                    (points_of(&forward, degree), (None, forward.stop))
+                } else {
+                    let backward = self.leave(&branching, -1.0, &request, &mut unlocated)?;
+                    let mut points = points_of(&backward, degree);
+                    points.reverse();
+                    points.extend(points_of(&forward, degree));
+                    (points, (Some(backward.stop), forward.stop))
+                }
             }
         };
-        let from_hopf = matches!(self.start, CycleStart::Hopf { .. });
-        let problem = LimitCycle {
+        let mut branch = CycleBranch { parameter, points, stops, unlocated };
+        self.refine_ends(&mut branch);
+        Ok(branch)
+    }
+
+    fn problem(&self) -> LimitCycle<'a> {
+        LimitCycle {
             field: self.field,
             parameters: self.parameters.clone(),
             active: self.active,
             scales: vec![1.0; self.field.dimension()],
-        };
+        }
+    }
+
+    fn curve(&self, start: &Start) -> CycleCurve<'a> {
+        let collocation = Collocation::new(self.problem(), start.mesh.clone(), start.degree);
         let width = self.range.1 - self.range.0;
-        let mut unlocated = Vec::new();
-        let mut run = |tangent: Vec<f64>, settings: Settings| -> Result<_, Error> {
-            let collocation = Collocation::new(problem.clone(), mesh.clone(), degree);
-            let mut curve = CycleCurve::new(collocation, self.resolution, width, &unknown);
-            curve.settings = settings;
-            let observer = &mut self.observer;
-            let request = Request { settings, ..request.clone() };
-            let followed = follow(&mut curve, unknown.clone(), tangent, &request, &mut |solution| {
-                let end = solution.unknown.len();
-                observer(solution.unknown[end - 1], solution.unknown[end - 2])
-            })?;
-            unlocated.append(&mut curve.unlocated);
-            Ok(followed)
+        let mut curve = CycleCurve::new(collocation, self.resolution, width, &start.unknown);
+        curve.settings = self.settings;
+        curve
+    }
+
+    /// Follows the branch from a start in the direction of its tangent.
+    fn follow(
+        &mut self,
+        start: &Start,
+        request: &Request,
+        doubled: bool,
+        unlocated: &mut Vec<Unlocated>,
+    ) -> Result<Followed<CycleInspection>, Error> {
+        let mut curve = self.curve(start);
+        curve.doubled = doubled;
+        let observer = &mut self.observer;
+        let (unknown, tangent) = (start.unknown.clone(), start.tangent.clone());
+        let followed = follow(&mut curve, unknown, tangent, request, &mut |solution| {
+            let end = solution.unknown.len();
+            observer(solution.unknown[end - 1], solution.unknown[end - 2])
+        })?;
+        unlocated.append(&mut curve.unlocated);
+        Ok(followed)
+    }
+
+    /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.
+    fn leave(
+        &mut self,
+        branching: &Branching,
+        sign: f64,
+        request: &Request,
+        unlocated: &mut Vec<Unlocated>,
+    ) -> Result<Followed<CycleInspection>, Error> {
+        let Branching { orbit, direction, .. } = branching;
+        let mut start = Start {
+            unknown: orbit.states.clone(),
+            tangent: direction.clone(),
+            mesh: orbit.mesh.clone(),
+            degree: orbit.degree,
         };
-        let forward = run(tangent.clone(), self.settings)?;
-        let (points, stops) = if from_hopf {
-            (points_of(&forward, degree), (None, forward.stop))
-        } else if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
-            (points_of(&forward, degree), (Some(Stop::Closed), forward.stop))
-        } else {
-            let backward = run(tangent.iter().map(|entry| -entry).collect(), self.settings)?;
-            let mut points = points_of(&backward, degree);
-            points.reverse();
-            points.pop();
-            points.extend(points_of(&forward, degree));
-            (points, (Some(backward.stop), forward.stop))
-        };
-        Ok(CycleBranch { parameter, points, stops, unlocated })
+        start.unknown.extend([orbit.period, self.parameters[self.active]]);
+        start.tangent.extend([branching.period, branching.parameter]);
+        let mut curve = self.curve(&start);
+        curve.count_resting_states_fully();
+        let mut image = vec![0.0; start.tangent.len()];
+        curve.apply_metric(&start.tangent, &mut image);
+        let size = start.tangent.iter().zip(&image).map(|(a, b)| a * b).sum::<f64>().sqrt();
+        start.tangent.iter_mut().for_each(|entry| *entry *= sign / size);
+        let origin = start.unknown.clone();
+        let mut distance = FIRST_DISTANCE;
+        for halving in 0.. {
+            start.unknown.clone_from(&origin);
+            for (entry, slope) in start.unknown.iter_mut().zip(&start.tangent) {
+                *entry += distance * slope;
+            }
+            match self.follow(&start, request, branching.doubled, unlocated) {
+                Err(Error::NotFound { .. }) if halving < MOST_HALVINGS => distance *= 0.5,
+                result => return result,
+            }
+        }
+        unreachable!("the loop above returns")
+    }
+
+    /// Replaces extrapolated ends of a branch, at Hopf points and period doublings, by the points themselves where Newton's
+    /// method finds them.
+    fn refine_ends(&self, branch: &mut CycleBranch) {
+        let last = branch.points.len().saturating_sub(1);
+        let ends = [(0, branch.stops.0.as_mut()), (last, Some(&mut branch.stops.1))];
+        for (index, stop) in ends {
+            let (Some(stop), Some(point)) = (stop, branch.points.get(index)) else { continue };
+            match stop {
+                Stop::HopfPoint { parameter, frequency } => {
+                    let mean: Vec<f64> =
+                        point.max.iter().zip(&point.min).map(|(max, min)| 0.5 * (max + min)).collect();
+                    let mut parameters = self.parameters.clone();
+                    parameters[self.active] = *parameter;
+                    let found = hopf_point_near(self.field, &mean, &parameters, self.active, *frequency);
+                    if let Some((value, exact)) = found
+                        && (value - *parameter).abs() <= (point.value - *parameter).abs()
+                    {
+                        (*parameter, *frequency) = (value, exact);
+                    }
+                }
+                Stop::PeriodDoubling { parameter, period } => {
+                    let width = self.range.1 - self.range.0;
+                    let problem = self.problem();
+                    let found = doubling_near(&problem, &point.orbit, *parameter, width, &self.settings);
+                    if let Some((value, exact)) = found
+                        && (value - *parameter).abs() <= (point.value - *parameter).abs()
+                    {
+                        (*parameter, *period) = (value, exact);
+                    }
+                }
+                _ => {}
+            }
+        }
     }
 
     fn validate(&self) -> Result<(), Error> {
@@ -284,6 +406,11 @@ impl<'a> Cycles<'a> {
                 format!("{} values", self.parameters.len()),
                 &format!("{count} values"),
             );
+        }
+        match &self.start {
+            CycleStart::Orbit(orbit) => orbit.check(self.field.dimension())?,
+            CycleStart::Branching(branching) => branching.check(self.field.dimension())?,
+            CycleStart::Hopf { .. } => {}
         }
         if self.active >= count {
             return invalid(
@@ -311,49 +438,6 @@ impl<'a> Cycles<'a> {
             return invalid("tolerance", self.resolution.tolerance.to_string(), "between 1e-13 and 0.1");
         }
         Ok(())
-    }
-
-    /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
-    fn near_hopf(
-        &self,
-        state: &[f64],
-        frequency: f64,
-        eigenvector: &[Complex64],
-        crossing_speed: f64,
-        cubic_coefficient: f64,
-    ) -> (Vec<f64>, Vec<f64>, Vec<f64>, usize) {
-        let width = self.range.1 - self.range.0;
-        // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
-        let natural = (width * crossing_speed / cubic_coefficient).abs().sqrt();
-        let limit = state
-            .iter()
-            .zip(eigenvector)
-            .filter(|(value, _)| **value != 0.0)
-            .map(|(value, component)| LARGEST_FIRST_AMPLITUDE * value.abs() / component.norm().max(1e-300))
-            .fold(0.0, f64::max);
-        let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
-        let natural_start = FIRST_AMPLITUDE * natural;
-        let amplitude =
-            if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit };
-        let degree = self.resolution.degree;
-        let mesh: Vec<f64> =
-            (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
-        let gauss = super::gauss::Gauss::new(degree);
-        let (mut unknown, mut tangent) = (Vec::new(), Vec::new());
-        for pair in mesh.windows(2) {
-            let nodes = std::iter::once(0.0).chain(gauss.points.iter().copied());
-            for time in nodes.map(|node| pair[0] + node * (pair[1] - pair[0])) {
-                let phase = Complex64::from_polar(2.0 * amplitude, 2.0 * PI * time);
-                for (value, component) in state.iter().zip(eigenvector) {
-                    let deviation = (component * phase).re;
-                    unknown.push(value + deviation);
-                    tangent.push(deviation);
-                }
-            }
-        }
-        unknown.extend([2.0 * PI / frequency, self.parameters[self.active]]);
-        tangent.extend([0.0, 0.0]);
-        (unknown, tangent, mesh, degree)
     }
 }
 
@@ -383,6 +467,8 @@ fn point_of(solution: &Solution<CycleInspection>, origin: Origin, degree: usize)
             (None, Origin::Requested) => Role::Requested,
             _ => Role::Step,
         },
+        normal_form: inspection.normal_form.clone(),
+        branching: inspection.branching.clone(),
         tests: vec![
             ("fold", inspection.fold_test),
             ("branch point", solution.orientation),

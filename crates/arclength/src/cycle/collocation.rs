@@ -81,6 +81,11 @@ impl<P: PeriodicProblem> Collocation<P> {
         self.condensation.transfer()
     }
 
+    /// Derivatives of the field at the Gauss points of the last factorisation: for every point `n` by `n + E`, column-major.
+    pub fn derivatives(&self) -> &[f64] {
+        &self.condensation.derivatives
+    }
+
     /// Interior values, at the Gauss points of interval `interval`, of the linearised flow with start `start`
     /// at the interval's left end (of the last factorisation).
     pub fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {

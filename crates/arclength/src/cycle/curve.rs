@@ -7,6 +7,8 @@ use super::limit_cycle::LimitCycle;
 use super::mesh::{equidistribute, error_profile, intervals_needed};
 use super::problem::PeriodicProblem;
 use super::special;
+use super::switching::Branching;
+use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -36,12 +38,16 @@ const TARGET: f64 = 0.2;
 const EXCESS: f64 = 1.6;
 /// Part of its mean below which the amplitude of a state does not count as its size.
 const MEAN_PART: f64 = 0.01;
+/// Part of the size that the nonlinearity of the field gives a state below which it rests.
+const RESTING_PART: f64 = 1e-4;
 /// Noise floor of the error estimate: part of the mean that is rounding.
 const ROUNDING_PART: f64 = 1e-6;
 /// The period has to grow to this many times its start, and its rate of change in the parameter beyond
 /// [`HOMOCLINIC_SENSITIVITY`], to count as unbounded.
 const HOMOCLINIC_GROWTH: f64 = 5.0;
 const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
+/// Samples for the difference of the halves of a doubled cycle.
+const HALF_SAMPLES: usize = 64;
 
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
@@ -58,6 +64,10 @@ pub struct CycleInspection {
     pub fold_test: f64,
     /// What is special about the cycle.
     pub special: Option<special::Special>,
+    /// Coefficients of its normal form by name.
+    pub normal_form: Vec<(&'static str, f64)>,
+    /// The branch that leaves here.
+    pub branching: Option<Branching>,
 }
 
 impl CycleInspection {
@@ -90,7 +100,11 @@ pub struct CycleCurve<'a> {
     amplitudes: Vec<f64>,
     /// Largest amplitudes met on the branch.
     largest: Vec<f64>,
+    /// Sizes below which a state counts as one that rests.
+    resting: Vec<f64>,
     first_period: Option<f64>,
+    /// Whether the branch is one of doubled cycles, which ends where they become single again.
+    pub doubled: bool,
     error_estimate: f64,
     schur: Option<(usize, PeriodicSchur)>,
 }
@@ -105,6 +119,7 @@ impl<'a> CycleCurve<'a> {
     ) -> Self {
         collocation.set_reference(start);
         let n = collocation.problem.dimension();
+        let resting = resting_sizes(&collocation.problem, start);
         let mut curve = Self {
             collocation,
             resolution,
@@ -114,7 +129,9 @@ impl<'a> CycleCurve<'a> {
             period_scale: 1.0,
             amplitudes: vec![1.0; n],
             largest: vec![0.0; n],
+            resting,
             first_period: None,
+            doubled: false,
             error_estimate: f64::INFINITY,
             schur: None,
         };
@@ -136,12 +153,19 @@ impl<'a> CycleCurve<'a> {
             let amplitude = 0.5 * (largest - smallest);
             let mean = 0.5 * (largest + smallest).abs();
             self.largest[component] = self.largest[component].max(amplitude);
-            let positive = |size: f64| if size > 0.0 && size.is_finite() { size } else { 1.0 };
-            self.amplitudes[component] = positive(amplitude.max(ROUNDING_PART * mean));
+            let resting = self.resting[component];
+            self.amplitudes[component] = amplitude.max(ROUNDING_PART * mean).max(resting);
             self.collocation.problem.scales[component] =
-                positive(amplitude.max(MEAN_PART * mean).max(0.1 * self.largest[component]));
+                amplitude.max(MEAN_PART * mean).max(0.1 * self.largest[component]).max(resting);
         }
         self.period_scale = unknown[unknown.len() - 2].abs();
+    }
+
+    /// Gives states that rest the sizes that the nonlinearity of the field gives them, where a branch is left on which they do.
+    pub(super) fn count_resting_states_fully(&mut self) {
+        for (scale, resting) in self.collocation.problem.scales.iter_mut().zip(&self.resting) {
+            *scale = scale.max(resting / RESTING_PART);
+        }
     }
 
     /// Mean squares of the deviations of two solutions from their means, and the mean product of the two.
@@ -154,10 +178,7 @@ impl<'a> CycleCurve<'a> {
         };
         let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
         for component in 0..n {
-            let scale = self.largest[component];
-            if scale == 0.0 {
-                continue;
-            }
+            let scale = self.largest[component].max(self.resting[component]);
             let (mean_one, mean_other) = (mean(one, component), mean(other, component));
             let values = one[..end].iter().zip(&other[..end]).skip(component).step_by(n);
             for (a, b) in values {
@@ -169,6 +190,48 @@ impl<'a> CycleCurve<'a> {
         }
         (first, second, mixed)
     }
+}
+
+/// Sizes below which the amplitude of a state is as good as zero, from the nonlinearity of the field at the first point.
+pub(crate) fn resting_sizes(problem: &LimitCycle<'_>, start: &[f64]) -> Vec<f64> {
+    let n = problem.dimension();
+    let mut parameters = problem.parameters.clone();
+    parameters[problem.active] = start[start.len() - 1];
+    let natural = natural_scales(&problem.field, &start[..n], &parameters, &vec![0.0; n]);
+    natural.iter().map(|size| RESTING_PART * size).collect()
+}
+
+impl CycleCurve<'_> {
+    /// Parameter value at which the two halves of a doubled cycle become equal between two solutions.
+    fn single_again(&self, before: &[f64], after: &[f64]) -> Option<f64> {
+        let n = self.collocation.problem.dimension();
+        let half_difference = |unknown: &[f64]| -> Vec<f64> {
+            let (mut one, mut other) = (vec![0.0; n], vec![0.0; n]);
+            let mut differences = Vec::with_capacity(n * HALF_SAMPLES);
+            for sample in 0..HALF_SAMPLES {
+                let time = 0.5 * sample as f64 / HALF_SAMPLES as f64;
+                self.collocation.evaluate(unknown, time, &mut one);
+                self.collocation.evaluate(unknown, time + 0.5, &mut other);
+                let scaled = one.iter().zip(&other).zip(&self.collocation.problem.scales);
+                differences.extend(scaled.map(|((a, b), scale)| (a - b) / scale));
+            }
+            differences
+        };
+        let (one, other) = (half_difference(before), half_difference(after));
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (size_before, size_after) = (product(&one, &one), product(&other, &other));
+        if product(&one, &other) >= 0.0 {
+            return None;
+        }
+        let (a, b) = (before[before.len() - 1], after[after.len() - 1]);
+        Some(vanishing_point((a, size_before), (b, size_after)))
+    }
+}
+
+/// Parameter value at which an amplitude vanishes, from two values with the squared amplitudes there: close to a pitchfork
+/// these are linear in the parameter.
+fn vanishing_point((a, size_a): (f64, f64), (b, size_b): (f64, f64)) -> f64 {
+    if size_a == size_b { 0.5 * (a + b) } else { (a * size_b - b * size_a) / (size_b - size_a) }
 }
 
 impl Curve for CycleCurve<'_> {
@@ -244,6 +307,8 @@ impl Curve for CycleCurve<'_> {
             mesh: self.collocation.mesh().to_vec(),
             fold_test: tangent[tangent.len() - 1] / self.parameter_scale,
             special: None,
+            normal_form: Vec::new(),
+            branching: None,
         })
     }
 
@@ -258,7 +323,10 @@ impl Curve for CycleCurve<'_> {
     fn signature(&self, unknown: &[f64]) -> Vec<f64> {
         let n = self.collocation.problem.dimension();
         let mut signature = vec![unknown[unknown.len() - 2].ln()];
-        for (range, scale) in ranges(&self.collocation, unknown, n).iter().zip(&self.largest) {
+        for (range, scale) in
+            ranges(&self.collocation, unknown, n).iter().zip(self.largest.iter().zip(&self.resting))
+        {
+            let scale = scale.0.max(*scale.1);
             signature.extend([range.largest / scale, range.smallest / scale]);
         }
         signature
@@ -268,7 +336,7 @@ impl Curve for CycleCurve<'_> {
         &mut self,
         before: &Solution<CycleInspection>,
         after: &Solution<CycleInspection>,
-    ) -> Option<Ending> {
+    ) -> Option<Ending<Self::Point>> {
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let first = *self.first_period.get_or_insert(period);
@@ -277,16 +345,15 @@ impl Curve for CycleCurve<'_> {
         if period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY {
             return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
         }
+        if self.doubled
+            && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
+        {
+            return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));
+        }
         // Through amplitude zero the curve goes on to the same cycles half a period later.
         let (size_before, size_after, product) = self.deviation_products(&before.unknown, &after.unknown);
         if product < 0.0 {
-            let (a, b) = (before.unknown[end + 1], parameter);
-            // The squared amplitude is linear in the parameter next to a Hopf point.
-            let parameter = if size_before == size_after {
-                0.5 * (a + b)
-            } else {
-                (a * size_after - b * size_before) / (size_after - size_before)
-            };
+            let parameter = vanishing_point((before.unknown[end + 1], size_before), (parameter, size_after));
             let frequency = 2.0 * std::f64::consts::PI / period;
             return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
         }

@@ -19,23 +19,30 @@ pub enum Kind {
     Fold,
     /// Period doubling: `v' = T f_x v`, `v` antiperiodic; no own scalar.
     Doubling,
-    /// Torus bifurcation: `(v + i w)' = (T f_x - i theta)(v + i w)`, periodic; own scalar `theta`.
+    /// Torus bifurcation: `(v + i w)' = (T f_x - i theta)(v + i w) + (beta_1 + i beta_2) f`, periodic and orthogonal to
+    /// the flow; own scalars `theta`, `beta_1`, `beta_2`. Regular also at the strong resonances 1:1 and 1:2, where
+    /// `theta` passes 0 and pi.
     Torus,
+    /// Branch point: `u' = T f + b psi`, `psi' = -T f_x^T psi + sigma f`, periodic, with `psi` orthogonal to `f` and
+    /// to the derivative of `f` in the active parameter; own scalars `b` and `sigma`, both zero at the solution.
+    BranchPoint,
 }
 
 impl Kind {
     /// Number of own scalars.
     pub fn own_scalars(self) -> usize {
         match self {
-            Self::Fold | Self::Torus => 1,
             Self::Doubling => 0,
+            Self::Fold => 1,
+            Self::BranchPoint => 2,
+            Self::Torus => 3,
         }
     }
 
     /// Number of real eigenfunctions.
     pub fn eigenfunctions(self) -> usize {
         match self {
-            Self::Fold | Self::Doubling => 1,
+            Self::Fold | Self::Doubling | Self::BranchPoint => 1,
             Self::Torus => 2,
         }
     }
@@ -58,6 +65,8 @@ pub struct Defining<'a> {
     pub scales: Vec<f64>,
     /// Size of the period.
     pub period_scale: f64,
+    /// Size of the active parameter.
+    pub parameter_scale: f64,
 }
 
 impl PeriodicProblem for Defining<'_> {
@@ -80,6 +89,7 @@ impl PeriodicProblem for Defining<'_> {
     fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         match self.kind {
             Kind::Torus => self.variational::<T, 2>(state, scalars, derivative),
+            Kind::BranchPoint => self.adjoint(state, scalars, derivative),
             Kind::Fold | Kind::Doubling => self.variational::<T, 1>(state, scalars, derivative),
         }
     }
@@ -92,9 +102,12 @@ impl PeriodicProblem for Defining<'_> {
             (0..n).map(|index| a(index) * b(index) / (self.scales[index] * self.scales[index])).sum()
         };
         let v = |index: usize| state[n + index];
+        if self.kind == Kind::BranchPoint {
+            return self.adjoint_conditions(state, scalars, values);
+        }
         values[1] = product(&v, &v) - 1.0;
         match self.kind {
-            Kind::Doubling => {}
+            Kind::Doubling | Kind::BranchPoint => {}
             Kind::Fold => {
                 let beta = scalars[1] / self.period_scale;
                 values[1] += beta * beta;
@@ -105,16 +118,93 @@ impl PeriodicProblem for Defining<'_> {
                 values[1] += product(&w, &w);
                 values[2] = product(&v, &|index| T::from(reference.state[2 * n + index]))
                     - product(&w, &|index| T::from(reference.state[n + index]));
+                values[3] = product(&v, &|index| T::from(reference.slope[index]));
+                values[4] = product(&w, &|index| T::from(reference.slope[index]));
             }
         }
     }
 }
 
 impl Defining<'_> {
+    /// The active parameters in place of their values.
+    #[inline]
+    fn with_active<T: Scalar, R>(&self, scalars: &[T], lift: impl Fn(T) -> R, action: impl FnOnce(&[R]))
+    where
+        R: Scalar,
+    {
+        let own = self.kind.own_scalars();
+        let first = (self.active, lift(scalars[1 + own]));
+        match self.second {
+            Some(index) => {
+                let replaced = [first, (index, lift(scalars[2 + own]))];
+                with_parameters(&self.parameters, &replaced, action);
+            }
+            None => with_parameters(&self.parameters, &[first], action),
+        }
+    }
+
+    /// The field with its derivative in the direction `direction` of the state, or in the first active parameter for the
+    /// index behind the states.
+    #[inline]
+    fn derivative_in<T: Scalar>(
+        &self,
+        direction: usize,
+        state: &[T],
+        scalars: &[T],
+        values: &mut [Dual<T, 1>],
+    ) {
+        let n = self.scales.len();
+        let duals: Vec<Dual<T, 1>> =
+            (0..n).map(|index| Dual::variable(state[index], usize::from(index != direction))).collect();
+        self.with_active(scalars, Dual::constant, |parameters: &[Dual<T, 1>]| {
+            if direction == n {
+                let mut parameters = parameters.to_vec();
+                parameters[self.active].derivatives[0] = T::one();
+                self.field.evaluate(&duals, &parameters, values);
+            } else {
+                self.field.evaluate(&duals, parameters, values);
+            }
+        });
+    }
+
+    #[inline]
+    fn adjoint<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        let n = self.scales.len();
+        let (period, perturbation, multiple) = (scalars[0], scalars[1], scalars[2]);
+        let mut values = vec![Dual::<T, 1>::zero(); n];
+        for direction in 0..n {
+            self.derivative_in(direction, state, scalars, &mut values);
+            let sum: T = (0..n).map(|row| state[n + row] * values[row].derivatives[0]).sum();
+            derivative[n + direction] = -(sum * period);
+        }
+        for index in 0..n {
+            let square = self.scales[index] * self.scales[index];
+            derivative[index] = values[index].value * period + perturbation * state[n + index] * square;
+            derivative[n + index] += multiple * values[index].value / square;
+        }
+    }
+
+    #[inline]
+    fn adjoint_conditions<T: Scalar>(&self, state: &[T], scalars: &[T], values: &mut [T]) {
+        let n = self.scales.len();
+        let mut slopes = vec![Dual::<T, 1>::zero(); n];
+        self.derivative_in(n, state, scalars, &mut slopes);
+        let mut sums = [T::zero(); 3];
+        for index in 0..n {
+            let psi = state[n + index];
+            let scaled = psi * self.scales[index];
+            sums[0] += scaled * scaled;
+            sums[1] += psi * slopes[index].value * self.period_scale;
+            sums[2] += psi * slopes[index].derivatives[0] * self.period_scale * self.parameter_scale;
+        }
+        values[1] = sums[0] - 1.0;
+        values[2] = sums[1];
+        values[3] = sums[2];
+    }
+
     #[inline]
     fn variational<T: Scalar, const K: usize>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let n = self.scales.len();
-        let own = self.kind.own_scalars();
         let mut values = vec![Dual::<T, K>::zero(); n];
         let duals: Vec<Dual<T, K>> = (0..n)
             .map(|index| {
@@ -125,21 +215,7 @@ impl Defining<'_> {
                 dual
             })
             .collect();
-        let first = (self.active, Dual::constant(scalars[1 + own]));
-        let second = self.second.map(|index| (index, Dual::constant(scalars[2 + own])));
-        let both;
-        let one;
-        let replaced: &[(usize, Dual<T, K>)] = match second {
-            Some(second) => {
-                both = [first, second];
-                &both
-            }
-            None => {
-                one = [first];
-                &one
-            }
-        };
-        with_parameters(&self.parameters, replaced, |parameters| {
+        self.with_active(scalars, Dual::constant, |parameters: &[Dual<T, K>]| {
             self.field.evaluate(&duals, parameters, &mut values);
         });
         let period = scalars[0];
@@ -149,12 +225,13 @@ impl Defining<'_> {
                 derivative[(direction + 1) * n + index] = values[index].derivatives[direction] * period;
             }
             match self.kind {
-                Kind::Doubling => {}
+                Kind::Doubling | Kind::BranchPoint => {}
                 Kind::Fold => derivative[n + index] += scalars[1] * values[index].value,
                 Kind::Torus => {
                     let theta = scalars[1];
-                    derivative[n + index] += theta * state[2 * n + index];
-                    derivative[2 * n + index] -= theta * state[n + index];
+                    let flow = values[index].value;
+                    derivative[n + index] += theta * state[2 * n + index] + scalars[2] * flow;
+                    derivative[2 * n + index] += scalars[3] * flow - theta * state[n + index];
                 }
             }
         }

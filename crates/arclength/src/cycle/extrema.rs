@@ -9,13 +9,13 @@ const MOST_ITERATIONS: usize = 60;
 
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Range {
-    pub(super) largest: f64,
-    pub(super) smallest: f64,
+pub(crate) struct Range {
+    pub(crate) largest: f64,
+    pub(crate) smallest: f64,
 }
 
 /// Range of every component among the first `count`.
-pub(super) fn ranges<P: PeriodicProblem>(
+pub(crate) fn ranges<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     count: usize,

@@ -46,7 +46,7 @@ impl Floquet {
 }
 
 /// Multipliers from the blocks of the last factorisation at `unknown`, `scales` being the sizes of the states.
-pub(super) fn floquet<P: PeriodicProblem>(
+pub(crate) fn floquet<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     scales: &[f64],

@@ -48,7 +48,7 @@ impl PeriodicProblem for LimitCycle<'_> {
 
 /// Integrand of the phase condition: `(u - u_ref) . u_ref'` in scaled variables.
 #[inline(always)]
-pub(super) fn phase_integrand<T: Scalar>(state: &[T], reference: Reference<'_>, scales: &[f64]) -> T {
+pub(crate) fn phase_integrand<T: Scalar>(state: &[T], reference: Reference<'_>, scales: &[f64]) -> T {
     let mut sum = T::zero();
     for (index, scale) in scales.iter().enumerate() {
         sum += (state[index] - reference.state[index]) * (reference.slope[index] / (scale * scale));
@@ -58,7 +58,7 @@ pub(super) fn phase_integrand<T: Scalar>(state: &[T], reference: Reference<'_>, 
 
 /// Calls `action` with the parameters, some of them replaced, without allocating for the usual numbers of them.
 #[inline(always)]
-pub(super) fn with_parameters<T: Scalar, R>(
+pub(crate) fn with_parameters<T: Scalar, R>(
     parameters: &[f64],
     replaced: &[(usize, T)],
     action: impl FnOnce(&[T]) -> R,

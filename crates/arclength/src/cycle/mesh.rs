@@ -16,7 +16,7 @@ const DENSITY_FLOOR: f64 = 0.2;
 const SAMPLES: usize = 200;
 
 /// Largest error of the polynomial on each interval, relative to `scales`.
-pub(super) fn error_profile<P: PeriodicProblem>(
+pub(crate) fn error_profile<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     scales: &[f64],
@@ -72,13 +72,13 @@ fn largest_integral<P: PeriodicProblem>(collocation: &Collocation<P>) -> f64 {
 }
 
 /// Number of intervals of an equidistributed mesh that would have the error `target`.
-pub(super) fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
+pub(crate) fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
     let power = 1.0 / (degree as f64 + 1.0);
     errors.iter().map(|error| (error / target).powf(power)).sum()
 }
 
 /// A mesh of `intervals` intervals on which the error is about the same everywhere.
-pub(super) fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
+pub(crate) fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
     let power = 1.0 / (degree as f64 + 1.0);
     let total: f64 = errors.iter().map(|error| error.powf(power)).sum();
     // Mass of every old interval; the floor keeps quiet stretches from being starved.

@@ -1,21 +1,27 @@
 //! Limit cycles: collocation, meshes, Floquet multipliers, special points.
 
 mod branch;
-mod collocation;
+pub(crate) mod collocation;
 mod condensation;
-mod curve;
+pub(crate) mod curve;
 mod cyclic;
-mod defining;
-mod extrema;
-mod floquet;
+pub(crate) mod defining;
+pub(crate) mod eigenfunctions;
+pub(crate) mod extrema;
+pub(crate) mod floquet;
 mod gauss;
-mod limit_cycle;
-mod mesh;
+pub(crate) mod limit_cycle;
+mod linear_problem;
+pub(crate) mod locating;
+pub(crate) mod mesh;
+pub(crate) mod normal_form;
 mod orbit;
-mod problem;
+pub(crate) mod problem;
 mod special;
+mod switching;
 
 pub use branch::{CycleBranch, CyclePoint, CycleStart, Cycles, Role};
 pub use curve::Resolution;
 pub use orbit::Orbit;
 pub use special::{Special, Unlocated};
+pub use switching::Branching;

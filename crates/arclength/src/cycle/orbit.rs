@@ -92,6 +92,39 @@ impl Orbit {
         Ok(Self { mesh, degree: HISTORY_DEGREE, dimension, states, period })
     }
 
+    /// That the numbers fit together and belong to a field of `dimension` states.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] with what does not fit.
+    pub fn check(&self, dimension: usize) -> Result<(), Error> {
+        let invalid = |name: &str, value: String, allowed: String| {
+            Err(Error::Invalid { name: format!("{name} of the orbit"), value, allowed })
+        };
+        if self.dimension != dimension {
+            return invalid(
+                "dimension",
+                self.dimension.to_string(),
+                format!("{dimension}, that of the field"),
+            );
+        }
+        if !(2..=16).contains(&self.degree) {
+            return invalid("degree", self.degree.to_string(), "2 to 16".into());
+        }
+        let ends = self.mesh.first() == Some(&0.0) && self.mesh.last() == Some(&1.0);
+        if !(ends && self.mesh.windows(2).all(|pair| pair[0] < pair[1])) {
+            return invalid("mesh", format!("{} points", self.mesh.len()), "ascending from 0 to 1".into());
+        }
+        let expected = (self.mesh.len() - 1) * (self.degree + 1) * dimension;
+        if self.states.len() != expected || self.states.iter().any(|value| !value.is_finite()) {
+            let allowed = format!("{expected} finite numbers");
+            return invalid("states", format!("{} numbers", self.states.len()), allowed);
+        }
+        if !(self.period > 0.0 && self.period.is_finite()) {
+            return invalid("period", self.period.to_string(), "a positive number".into());
+        }
+        Ok(())
+    }
+
     /// States at `count` equidistant times `0, T/count, ...`, with the times.
     pub fn sample(&self, count: usize) -> Vec<(f64, Vec<f64>)> {
         let gauss = Gauss::new(self.degree);

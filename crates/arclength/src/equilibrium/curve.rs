@@ -171,7 +171,11 @@ impl Curve for EquilibriumCurve<'_> {
         events::special_points(self, before, after)
     }
 
-    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+    fn ending(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<Self::Point>> {
         let n = self.dimension();
         let range = self.system.scales[n];
         let parameter = after.unknown[n];

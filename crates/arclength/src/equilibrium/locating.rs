@@ -7,10 +7,12 @@ use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::{NeutralSaddle, SpecialPoint};
 use super::spectrum::critical_pair;
-use crate::algebraic::{Solved, length, position, solve_square};
+use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, finish, locate};
+use crate::erased::ErasedField;
 use crate::error::Error;
+use crate::linear::eigenvalues::eigenvalues;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
 
@@ -236,6 +238,36 @@ pub(crate) fn normals(first: &[f64], second: &[f64], scales: &[f64]) -> Option<(
     let size = length(&rest, scales);
     let conormal: Vec<f64> = dual(&rest).iter().map(|entry| entry / size).collect();
     conormal.iter().all(|entry| entry.is_finite()).then_some((normal, conormal))
+}
+
+/// Parameter value and frequency of the Hopf point close to an approximate equilibrium and frequency, by Newton's method.
+pub(crate) fn hopf_point_near(
+    field: ErasedField<'_>,
+    state: &[f64],
+    parameters: &[f64],
+    active: usize,
+    frequency: f64,
+) -> Option<(f64, f64)> {
+    let n = state.len();
+    let problem = super::problem::EquilibriumProblem::new(field, parameters, &[active]);
+    let unknown = [state, &[parameters[active]]].concat();
+    let mut matrix = vec![0.0; n * (n + 1)];
+    let mut residual = vec![0.0; n];
+    Differentiator::default().jacobian(&problem, &unknown, &mut residual, &mut matrix, n);
+    let scale = |value: &f64| if *value == 0.0 { 1.0 } else { value.abs() };
+    let scales: Vec<f64> = unknown.iter().map(scale).collect();
+    let target = Complex64::new(0.0, frequency);
+    let nearest = eigenvalues(&matrix[..n * n], n)
+        .ok()?
+        .into_iter()
+        .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))?;
+    let pair = [nearest, nearest.conj()];
+    let (system, start) =
+        HopfSystem::from_pair(problem, &unknown, &matrix[..n * n], pair, &scales).ok()??;
+    let sizes = [&scales[..n], &scales[..n], &scales[..n], &[1.0], &scales[n..]].concat();
+    let solved = solve_square(&system, &start, &sizes).ok()?;
+    let kappa = solved.unknown[3 * n];
+    (kappa > 0.0).then(|| (solved.unknown[3 * n + 1], system.rate * kappa.sqrt()))
 }
 
 /// The branch point between two solutions.

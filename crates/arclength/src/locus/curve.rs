@@ -147,7 +147,11 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         states.chain(last).collect()
     }
 
-    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+    fn ending(
+        &mut self,
+        _before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<Self::Point>> {
         if K::KIND != SpecialKind::BranchPoint {
             return None;
         }

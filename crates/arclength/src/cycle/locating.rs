@@ -1,0 +1,255 @@
+//! Newton's method on the defining system of a special cycle.
+
+use super::collocation::Collocation;
+use super::curve::{CycleCurve, CycleInspection, state_metric};
+use super::defining::{Defining, Kind};
+use super::eigenfunctions::{Eigenfunctions, critical};
+use super::gauss::Gauss;
+use super::limit_cycle::LimitCycle;
+use super::linear_problem::Nodes;
+use super::orbit::Orbit;
+use super::problem::PeriodicProblem;
+use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
+use crate::error::Error;
+
+/// A curve made of a defining system, as far as Newton's method needs it.
+pub(crate) struct DefiningCurve<'a> {
+    pub collocation: Collocation<Defining<'a>>,
+    /// Sizes of the components: states and eigenfunctions.
+    pub scales: Vec<f64>,
+    /// Sizes of the two parameters.
+    pub parameter_scales: [f64; 2],
+}
+
+impl Curve for DefiningCurve<'_> {
+    type Point = ();
+
+    fn unknowns(&self) -> usize {
+        self.collocation.unknowns()
+    }
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.collocation.residual(unknown, residual);
+    }
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.collocation.factorize(unknown, border, residual)
+    }
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.collocation.solve(right_hand_side);
+    }
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        state_metric(&self.collocation, &self.scales, vector, image);
+        let end = vector.len() - self.collocation.problem.scalars();
+        image[end..].copy_from_slice(&vector[end..]);
+        let scale = self.collocation.problem.period_scale;
+        image[end] /= scale * scale;
+        // The own scalars that multiply the flow are times.
+        let times = match self.collocation.problem.kind {
+            Kind::Fold => end + 1..end + 2,
+            Kind::Torus => end + 2..end + 4,
+            Kind::Doubling | Kind::BranchPoint => end..end,
+        };
+        image[times].iter_mut().for_each(|entry| *entry /= scale * scale);
+        let last = vector.len() - 2;
+        for (entry, scale) in image[last..].iter_mut().zip(self.parameter_scales) {
+            *entry /= scale * scale;
+        }
+    }
+    fn adapt(
+        &mut self,
+        _unknown: &mut Vec<f64>,
+        _vectors: &mut [&mut Vec<f64>],
+    ) -> Result<Adaptation, Error> {
+        Ok(Adaptation::Unchanged)
+    }
+    fn inspect(&mut self, _unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<(), Error> {
+        Ok(())
+    }
+    fn special_points(
+        &mut self,
+        _before: &Solution<()>,
+        _after: &Solution<()>,
+    ) -> Result<Vec<Solution<()>>, Error> {
+        Ok(Vec::new())
+    }
+    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+        unknown.to_vec()
+    }
+}
+
+/// A located special cycle: a solution of the branch and the critical eigenfunctions with their scalars.
+pub(crate) struct Located {
+    pub solution: Solution<CycleInspection>,
+    pub eigenfunctions: Eigenfunctions,
+}
+
+/// Newton's method on the defining system from a nearby solution of the branch.
+///
+/// `tangent` is the direction of the branch nearby. `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
+/// multipliers met on the unit circle's side of it.
+pub(crate) fn converge(
+    curve: &mut CycleCurve<'_>,
+    tangent: &[f64],
+    start: &Solution<CycleInspection>,
+    kind: Kind,
+) -> Result<Option<Located>, Error> {
+    let multipliers = start.point.floquet.multipliers();
+    let Some(eigenfunctions) = critical(&mut curve.collocation, &start.unknown, &multipliers, kind)? else {
+        return Ok(None);
+    };
+    let problem = &curve.collocation.problem;
+    let n = problem.dimension();
+    let states = start.unknown.len() - 2;
+    let unknown = join(&start.unknown, n, &eigenfunctions);
+    let defining = Defining {
+        field: problem.field,
+        kind,
+        parameters: problem.parameters.clone(),
+        active: problem.active,
+        second: None,
+        scales: problem.scales.clone(),
+        period_scale: start.unknown[states],
+        parameter_scale: curve.parameter_scale,
+    };
+    let mut collocation =
+        Collocation::new(defining, curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
+    collocation.set_reference(&unknown);
+    let mut defining_curve = DefiningCurve {
+        scales: component_scales(&problem.scales, kind, 1.0),
+        collocation,
+        parameter_scales: [curve.parameter_scale, 1.0],
+    };
+    let mut unknown = unknown;
+    // The scalar of the second parameter has no effect and stays zero.
+    let mut border = vec![0.0; unknown.len()];
+    if let Some(last) = border.last_mut() {
+        *last = 1.0;
+    }
+    if correct(&mut defining_curve, &mut unknown, &border, &curve.settings).is_err() {
+        return Ok(None);
+    }
+    let (mut base, eigenfunctions) = split(&unknown, n, kind);
+    base.pop();
+    let solution = if kind == Kind::BranchPoint {
+        // The Jacobian bordered by the tangent is singular here: the tangent is that of the branch nearby.
+        let mut residual = vec![0.0; base.len()];
+        curve.factorize(&base, tangent, &mut residual);
+        let point = curve.inspect(&base, tangent, 0.0)?;
+        Solution { unknown: base, tangent: tangent.to_vec(), orientation: 0.0, point }
+    } else {
+        finish(curve, base, tangent)?
+    };
+    Ok(Some(Located { solution, eigenfunctions }))
+}
+
+/// Sizes of all components of a defining system; `weight` multiplies those of the eigenfunctions.
+pub(crate) fn component_scales(states: &[f64], kind: Kind, weight: f64) -> Vec<f64> {
+    let mut scales = states.to_vec();
+    for _ in 0..kind.eigenfunctions() {
+        scales.extend(states.iter().map(|scale| match kind {
+            Kind::BranchPoint => weight / scale,
+            _ => weight * scale,
+        }));
+    }
+    scales
+}
+
+/// Unknowns of a defining system from those of a cycle `(states, T, p)` and its eigenfunctions, the second parameter zero.
+pub(crate) fn join(cycle: &[f64], n: usize, (functions, own): &Eigenfunctions) -> Vec<f64> {
+    let states = cycle.len() - 2;
+    let mut unknown = Vec::with_capacity(states * (1 + functions.len()) + own.len() + 3);
+    for (node, state) in cycle[..states].chunks_exact(n).enumerate() {
+        unknown.extend_from_slice(state);
+        for function in functions {
+            unknown.extend_from_slice(&function[node * n..(node + 1) * n]);
+        }
+    }
+    unknown.push(cycle[states]);
+    unknown.extend(own);
+    unknown.extend([cycle[states + 1], 0.0]);
+    unknown
+}
+
+/// The cycle `(states, T, p, second p)` of a solution of a defining system, and its eigenfunctions.
+pub(crate) fn split(unknown: &[f64], n: usize, kind: Kind) -> (Vec<f64>, Eigenfunctions) {
+    let width = n * (1 + kind.eigenfunctions());
+    let (nodes, scalars) = unknown.split_at(unknown.len() - 3 - kind.own_scalars());
+    let part = |index: usize| -> Vec<f64> {
+        nodes
+            .chunks_exact(width)
+            .flat_map(|state| state[index * n..(index + 1) * n].iter().copied())
+            .collect()
+    };
+    let mut cycle = part(0);
+    let end = scalars.len() - 2;
+    cycle.extend([scalars[0], scalars[end], scalars[end + 1]]);
+    let functions = (1..=kind.eigenfunctions()).map(part).collect();
+    (cycle, (functions, scalars[1..end].to_vec()))
+}
+
+/// Parameter value and period of the single cycle at the period doubling where the two halves of doubled cycles like `orbit`
+/// become equal, by Newton's method.
+pub(crate) fn doubling_near(
+    problem: &LimitCycle<'_>,
+    orbit: &Orbit,
+    parameter: f64,
+    parameter_scale: f64,
+    settings: &Settings,
+) -> Option<(f64, f64)> {
+    let n = orbit.dimension;
+    // The points of both halves in one mesh of the single cycle.
+    let mut mesh: Vec<f64> =
+        orbit.mesh.iter().map(|time| (2.0 * time).rem_euclid(1.0)).chain([0.0, 1.0]).collect();
+    mesh.sort_by(f64::total_cmp);
+    mesh.dedup_by(|later, earlier| *later - *earlier < CLOSE_POINTS);
+    *mesh.last_mut()? = 1.0;
+    let gauss = Gauss::new(orbit.degree);
+    let (mut cycle, mut eigenfunction) = (Vec::new(), Vec::new());
+    for pair in mesh.windows(2) {
+        for node in std::iter::once(0.0).chain(gauss.points.iter().copied()) {
+            let time = 0.5 * (pair[0] + node * (pair[1] - pair[0]));
+            let [one, other] = [time, time + 0.5].map(|time| orbit.state_at(time * orbit.period));
+            cycle.extend(one.iter().zip(&other).map(|(a, b)| 0.5 * (a + b)));
+            eigenfunction.extend(one.iter().zip(&other).map(|(a, b)| 0.5 * (a - b)));
+        }
+    }
+    cycle.extend([0.5 * orbit.period, parameter]);
+    let mut problem = problem.clone();
+    let states = cycle.len() - 2;
+    for (component, scale) in problem.scales.iter_mut().enumerate() {
+        let values = cycle[..states].iter().skip(component).step_by(n);
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+        *scale = if high > low { 0.5 * (high - low) } else { *scale };
+    }
+    let nodes = Nodes { mesh: &mesh, gauss: &gauss };
+    let weighted: Vec<f64> = eigenfunction
+        .iter()
+        .enumerate()
+        .map(|(index, value)| value / problem.scales[index % n].powi(2))
+        .collect();
+    let size = nodes.product(&eigenfunction, &weighted).sqrt();
+    eigenfunction.iter_mut().for_each(|value| *value /= size);
+    let mut unknown = join(&cycle, n, &(vec![eigenfunction], Vec::new()));
+    let defining = Defining {
+        field: problem.field,
+        kind: Kind::Doubling,
+        parameters: problem.parameters.clone(),
+        active: problem.active,
+        second: None,
+        scales: problem.scales.clone(),
+        period_scale: cycle[states],
+        parameter_scale,
+    };
+    let mut collocation = Collocation::new(defining, mesh.clone(), orbit.degree);
+    collocation.set_reference(&unknown);
+    let scales = component_scales(&problem.scales, Kind::Doubling, 1.0);
+    let mut curve = DefiningCurve { collocation, scales, parameter_scales: [parameter_scale, 1.0] };
+    let mut border = vec![0.0; unknown.len()];
+    *border.last_mut()? = 1.0;
+    correct(&mut curve, &mut unknown, &border, settings).ok()?;
+    let (cycle, _) = split(&unknown, n, Kind::Doubling);
+    Some((cycle[states + 1], cycle[states]))
+}
+
+/// Mesh points closer than this count as one.
+const CLOSE_POINTS: f64 = 1e-6;

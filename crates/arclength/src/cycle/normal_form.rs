@@ -1,0 +1,204 @@
+//! Normal-form coefficients of special cycles.
+//!
+//! The motion near a cycle `u(tau)` is written with a slow amplitude `xi`, for instance `u(tau) + xi v(tau) + ...` with
+//! `d tau/dt = 1 + a xi^2`, `d xi/dt = c xi^3`. Powers of `xi` give linear periodic problems one after the other; each is
+//! bordered by the function it is not solvable for, and the coefficient comes out as the border's scalar. No adjoint
+//! functions are needed. Source: Kuznetsov, Govaerts, Doedel and Dhooge, "Numerical periodic normalization for codim 1
+//! bifurcations of limit cycles", *SIAM J. Numer. Anal.* 43 (2005).
+
+use super::eigenfunctions::{Eigenfunctions, Linearization};
+use super::linear_problem::{LinearProblem, NodeFunction};
+use crate::equilibrium::multilinear::MultilinearForms;
+use crate::erased::ErasedField;
+
+/// A critical cycle.
+pub(crate) struct CriticalCycle<'a> {
+    pub field: ErasedField<'a>,
+    pub parameters: &'a [f64],
+    /// States on all nodes.
+    pub states: &'a [f64],
+    pub period: f64,
+    pub linearization: Linearization<'a>,
+}
+
+/// The relative size of the shift along the cycle below which a fold's coefficient is not scaled by it.
+const SMALLEST_SHIFT: f64 = 1e-6;
+
+impl CriticalCycle<'_> {
+    /// `T` times a sum of multilinear forms at every Gauss point: every entry is a factor and its directions.
+    fn forms(&self, terms: &[(f64, &[&[f64]])]) -> NodeFunction {
+        let n = self.linearization.scales.len();
+        let mut values = vec![0.0; self.states.len()];
+        for (_, node, _) in self.linearization.nodes.gauss_points() {
+            let range = node * n..(node + 1) * n;
+            let forms = MultilinearForms {
+                field: self.field,
+                state: &self.states[range.clone()],
+                parameters: self.parameters,
+            };
+            for (factor, directions) in terms {
+                let here: Vec<&[f64]> = directions.iter().map(|function| &function[range.clone()]).collect();
+                for (entry, value) in values[range.clone()].iter_mut().zip(forms.real(&here)) {
+                    *entry += self.period * factor * value;
+                }
+            }
+        }
+        values
+    }
+
+    /// Fold: `b` of `d tau/dt = 1 + kappa xi`, `d xi/dt = b xi^2` for the null function `v' = T f_x v + beta f` of unit size
+    /// (`kappa = -beta / T`), and `b / kappa`, its value when `v` is scaled to `kappa = 1`; the latter is what MatCont prints.
+    pub fn fold(&self, (functions, own): &Eigenfunctions) -> Option<(f64, Option<f64>)> {
+        let linear = &self.linearization;
+        let (null, beta) = (functions.first()?, *own.first()?);
+        // The normalisation of the defining system counts beta; here the function itself has unit size.
+        let size = linear.nodes.product(null, &linear.dual(null)).sqrt();
+        let null: NodeFunction = null.iter().map(|value| value / size).collect();
+        let beta = beta / size;
+        let kappa = -beta / self.period;
+        let mut source = self.forms(&[(1.0, &[&null, &null])]);
+        let slope = linear.image(&null);
+        for ((entry, slope), flow) in source.iter_mut().zip(&slope).zip(&linear.flow) {
+            *entry -= 2.0 * kappa * (slope + beta * flow);
+        }
+        let signs = vec![1.0; linear.scales.len()];
+        let rows = [linear.dual(&linear.flow), linear.dual(&null)];
+        let columns: [&[f64]; 2] = [&linear.flow, &null];
+        let mut problem =
+            LinearProblem::new(linear.nodes, signs, &linear.matrices, &columns, &[&rows[0], &rows[1]])?;
+        let (_, scalars) = problem.solve(&source, &[0.0, 0.0])?;
+        let coefficient = -scalars[1] / (2.0 * self.period);
+        let scaled = (kappa.abs() > SMALLEST_SHIFT * size / self.period).then(|| coefficient / kappa);
+        Some((coefficient, scaled))
+    }
+
+    /// The second-order response along the cycle: `h' = T f_x h - a T f + source`; returns `h` and `a`.
+    fn periodic_response(&self, source: &[f64]) -> Option<(NodeFunction, f64)> {
+        let linear = &self.linearization;
+        let row = linear.dual(&linear.flow);
+        let signs = vec![1.0; linear.scales.len()];
+        let mut problem =
+            LinearProblem::new(linear.nodes, signs, &linear.matrices, &[&linear.flow], &[&row])?;
+        let (function, scalars) = problem.solve(source, &[0.0])?;
+        Some((function, -scalars[0] / self.period))
+    }
+
+    /// Period doubling: `c` of `d xi/dt = c xi^3` for the eigenfunction with the integral of `<v, v>` over the period of the
+    /// cycle equal to one.
+    pub fn doubling(&self, (functions, _): &Eigenfunctions) -> Option<f64> {
+        let linear = &self.linearization;
+        let function = functions.first()?;
+        let size = linear.nodes.product(function, function).sqrt();
+        let function: NodeFunction = function.iter().map(|value| value / size).collect();
+        let (second, twice_a) = self.periodic_response(&self.forms(&[(1.0, &[&function, &function])]))?;
+        let mut source =
+            self.forms(&[(3.0, &[&function, &second]), (1.0, &[&function, &function, &function])]);
+        for (entry, slope) in source.iter_mut().zip(linear.image(&function)) {
+            *entry -= 3.0 * twice_a * slope;
+        }
+        let row = linear.dual(&function);
+        let signs = vec![-1.0; linear.scales.len()];
+        let mut problem = LinearProblem::new(linear.nodes, signs, &linear.matrices, &[&function], &[&row])?;
+        let (_, scalars) = problem.solve(&source, &[0.0])?;
+        Some(-scalars[0] / (6.0 * self.period))
+    }
+
+    /// Torus bifurcation: real and imaginary part of `d` of `d xi/dt = i omega xi + d xi |xi|^2` for the eigenfunction with
+    /// the integral of `<v, v>` over the unit interval equal to one.
+    pub fn torus(&self, (functions, own): &Eigenfunctions) -> Option<[f64; 2]> {
+        let linear = &self.linearization;
+        let n = linear.scales.len();
+        let [first, second] = &functions[..] else { return None };
+        let [angle, beta_first, beta_second] = own[..] else { return None };
+        // The component along the flow that the defining system has taken out: kappa = i beta / theta.
+        let with_flow = |function: &[f64], share: f64| -> NodeFunction {
+            function.iter().zip(&linear.flow).map(|(value, flow)| value + share * flow).collect()
+        };
+        let mut x = with_flow(first, -beta_second / angle);
+        let mut y = with_flow(second, beta_first / angle);
+        let size = (linear.nodes.product(&x, &x) + linear.nodes.product(&y, &y)).sqrt();
+        x.iter_mut().chain(&mut y).for_each(|value| *value /= size);
+        let (mixed, a) = self.periodic_response(&self.forms(&[(1.0, &[&x, &x]), (1.0, &[&y, &y])]))?;
+        // h20' = (T f_x - 2 i theta) h20 + T B(q, q)
+        let double = self.rotating_matrices(2.0 * angle);
+        let source = interleave(
+            &self.forms(&[(1.0, &[&x, &x]), (-1.0, &[&y, &y])]),
+            &self.forms(&[(2.0, &[&x, &y])]),
+            n,
+        );
+        let signs = vec![1.0; 2 * n];
+        let mut problem = LinearProblem::new(linear.nodes, signs.clone(), &double, &[], &[])?;
+        let (response, _) = problem.solve(&source, &[])?;
+        let [h_x, h_y] = separate(&response, n);
+        // h21' = (T f_x - i theta) h21 + T (2 B(q, h11) + B(conj q, h20) + C(q, q, conj q)) - 2 a q' - 2 d T q
+        let mut real = self.forms(&[
+            (2.0, &[&x, &mixed]),
+            (1.0, &[&x, &h_x]),
+            (1.0, &[&y, &h_y]),
+            (1.0, &[&x, &x, &x]),
+            (1.0, &[&x, &y, &y]),
+        ]);
+        let mut imaginary = self.forms(&[
+            (2.0, &[&y, &mixed]),
+            (1.0, &[&x, &h_y]),
+            (-1.0, &[&y, &h_x]),
+            (1.0, &[&x, &x, &y]),
+            (1.0, &[&y, &y, &y]),
+        ]);
+        let (slope_x, slope_y) = (linear.image(&x), linear.image(&y));
+        for node in 0..real.len() {
+            real[node] -= 2.0 * a * (slope_x[node] + angle * y[node]);
+            imaginary[node] -= 2.0 * a * (slope_y[node] - angle * x[node]);
+        }
+        let source = interleave(&real, &imaginary, n);
+        let one = interleave(&x, &y, n);
+        let minus_y: NodeFunction = y.iter().map(|value| -value).collect();
+        let other = interleave(&minus_y, &x, n);
+        let single = self.rotating_matrices(angle);
+        let rows = [self.complex_dual(&one, n), self.complex_dual(&other, n)];
+        let mut problem =
+            LinearProblem::new(linear.nodes, signs, &single, &[&one, &other], &[&rows[0], &rows[1]])?;
+        let (_, scalars) = problem.solve(&source, &[0.0, 0.0])?;
+        Some([-scalars[0] / (2.0 * self.period), -scalars[1] / (2.0 * self.period)])
+    }
+
+    fn complex_dual(&self, function: &[f64], n: usize) -> NodeFunction {
+        let scales = self.linearization.scales;
+        function.iter().enumerate().map(|(index, value)| value / scales[index % n].powi(2)).collect()
+    }
+
+    /// `T f_x - i angle` at every Gauss point as real matrices for real and imaginary parts.
+    fn rotating_matrices(&self, angle: f64) -> Vec<f64> {
+        let n = self.linearization.scales.len();
+        let mut matrices = Vec::with_capacity(4 * self.linearization.matrices.len());
+        for block in self.linearization.matrices.chunks_exact(n * n) {
+            for column in 0..2 * n {
+                for row in 0..2 * n {
+                    matrices.push(match (row < n, column < n) {
+                        (true, true) => block[row + n * column],
+                        (false, false) => block[row - n + n * (column - n)],
+                        (true, false) if row == column - n => angle,
+                        (false, true) if row - n == column => -angle,
+                        _ => 0.0,
+                    });
+                }
+            }
+        }
+        matrices
+    }
+}
+
+/// A function with real and imaginary parts of every state one after the other.
+fn interleave(real: &[f64], imaginary: &[f64], n: usize) -> NodeFunction {
+    real.chunks_exact(n)
+        .zip(imaginary.chunks_exact(n))
+        .flat_map(|(a, b)| a.iter().chain(b).copied())
+        .collect()
+}
+
+fn separate(function: &[f64], n: usize) -> [NodeFunction; 2] {
+    let part = |offset: usize| {
+        function.chunks_exact(2 * n).flat_map(|state| state[offset..offset + n].iter().copied()).collect()
+    };
+    [part(0), part(n)]
+}

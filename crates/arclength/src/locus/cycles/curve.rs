@@ -1,0 +1,406 @@
+//! A curve of special cycles as continuation sees it.
+
+use super::monitor;
+use crate::branch::SpecialKind;
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use crate::cycle::Resolution;
+use crate::cycle::collocation::Collocation;
+use crate::cycle::defining::Kind;
+use crate::cycle::eigenfunctions::{Eigenfunctions, Linearization};
+use crate::cycle::extrema::{Range, ranges};
+use crate::cycle::floquet::{Floquet, floquet};
+use crate::cycle::limit_cycle::LimitCycle;
+use crate::cycle::locating::{DefiningCurve, component_scales, split};
+use crate::cycle::mesh::{equidistribute, error_profile, intervals_needed};
+use crate::cycle::normal_form::CriticalCycle;
+use crate::cycle::problem::PeriodicProblem;
+use crate::error::Error;
+use crate::linear::periodic_schur::PeriodicSchur;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// Sizes of eigenfunctions in the metric, so that they count less than states and parameters.
+const EIGENFUNCTION_WEIGHT: f64 = 10.0;
+/// A new mesh aims at this part of the tolerance; it is made coarser when it has `EXCESS` times the intervals needed.
+const TARGET: f64 = 0.2;
+const EXCESS: f64 = 1.6;
+/// Fewest mesh intervals.
+const FEWEST_INTERVALS: usize = 4;
+/// Part of its mean below which the amplitude of a state does not count as its size.
+const MEAN_PART: f64 = 0.01;
+/// The sizes are measured anew when one has changed by this factor.
+const SIZE_CHANGE: f64 = 1.5;
+/// The period has to grow to this many times its start, and its logarithm this much faster than the parameters over their
+/// ranges, to count as unbounded.
+const HOMOCLINIC_GROWTH: f64 = 5.0;
+const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
+/// Part of a bracket to which a point of codimension two is located by the secant method.
+const LOCATION: f64 = 1e-12;
+/// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
+const POLE: f64 = 1e-3;
+
+/// What is known about a point of the curve.
+#[derive(Clone, Debug)]
+pub(super) struct Inspection {
+    pub error_estimate: f64,
+    pub floquet: Floquet,
+    pub ranges: Vec<Range>,
+    pub mesh: Vec<f64>,
+    pub tests: Vec<(SpecialKind, f64)>,
+    /// Coefficient of the normal form.
+    pub coefficient: Option<f64>,
+    /// Argument of the multipliers of a torus bifurcation.
+    pub argument: Option<f64>,
+    /// A point of codimension two, with error estimates of the two parameters.
+    pub special: Option<(SpecialKind, [f64; 2])>,
+}
+
+/// The curve of one kind of special cycles in two parameters.
+pub(super) struct CycleLocusCurve<'a> {
+    pub system: DefiningCurve<'a>,
+    /// The cycle alone, for its multipliers and normal form.
+    base: Collocation<LimitCycle<'a>>,
+    resolution: Resolution,
+    settings: Settings,
+    states: usize,
+    second: usize,
+    largest: Vec<f64>,
+    resting: Vec<f64>,
+    first_period: Option<f64>,
+    error_estimate: f64,
+    schur: Option<(usize, PeriodicSchur)>,
+}
+
+impl<'a> CycleLocusCurve<'a> {
+    pub fn new(
+        mut system: DefiningCurve<'a>,
+        base: Collocation<LimitCycle<'a>>,
+        resting: Vec<f64>,
+        second: usize,
+        resolution: Resolution,
+        settings: Settings,
+    ) -> Self {
+        let states = system.collocation.problem.scales.len();
+        let kind = system.collocation.problem.kind;
+        system.scales = component_scales(&system.collocation.problem.scales, kind, EIGENFUNCTION_WEIGHT);
+        Self {
+            system,
+            base,
+            resolution,
+            settings,
+            states,
+            second,
+            largest: vec![0.0; states],
+            resting,
+            first_period: None,
+            error_estimate: f64::INFINITY,
+            schur: None,
+        }
+    }
+
+    pub fn kind(&self) -> Kind {
+        self.system.collocation.problem.kind
+    }
+
+    /// Measures the sizes of the states; whether they have changed so much that the normalisation has to follow.
+    fn rescale(&mut self, cycle: &[f64]) -> bool {
+        let states = &cycle[..cycle.len() - 3];
+        let mut changed = false;
+        for component in 0..self.states {
+            let values = states.iter().skip(component).step_by(self.states);
+            let (smallest, largest) = values
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+            let amplitude = 0.5 * (largest - smallest);
+            let mean = 0.5 * (largest + smallest).abs();
+            self.largest[component] = self.largest[component].max(amplitude);
+            let size = amplitude
+                .max(MEAN_PART * mean)
+                .max(0.1 * self.largest[component])
+                .max(self.resting[component]);
+            let old = self.system.collocation.problem.scales[component];
+            if size > 0.0 && size.is_finite() && (size / old > SIZE_CHANGE || old / size > SIZE_CHANGE) {
+                self.system.collocation.problem.scales[component] = size;
+                changed = true;
+            }
+        }
+        if changed {
+            let scales = self.system.collocation.problem.scales.clone();
+            self.system.scales = component_scales(&scales, self.kind(), EIGENFUNCTION_WEIGHT);
+            self.base.problem.scales = scales;
+        }
+        changed
+    }
+
+    /// Sizes against which errors count: of the states their own, of eigenfunctions their largest one in units of the states.
+    fn error_scales(&self, functions: &Eigenfunctions) -> Vec<f64> {
+        let scales = &self.system.collocation.problem.scales;
+        let mut all = scales.clone();
+        for function in &functions.0 {
+            let largest = function
+                .chunks_exact(self.states)
+                .flat_map(|state| state.iter().zip(scales).map(|(value, scale)| (value / scale).abs()))
+                .fold(0.0, f64::max)
+                .max(f64::MIN_POSITIVE);
+            all.extend(scales.iter().map(|scale| scale * largest));
+        }
+        all
+    }
+
+    /// Coefficient of the normal form; the base has just been factorised.
+    fn coefficient(&self, cycle: &[f64], eigenfunctions: &Eigenfunctions) -> Option<f64> {
+        let problem = &self.base.problem;
+        let end = cycle.len() - 3;
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = cycle[end + 1];
+        let critical = CriticalCycle {
+            field: problem.field,
+            parameters: &parameters,
+            states: &cycle[..end],
+            period: cycle[end],
+            linearization: Linearization::of(&self.base, &cycle[..end + 2]),
+        };
+        match self.kind() {
+            Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
+            Kind::Doubling => critical.doubling(eigenfunctions),
+            Kind::Torus => critical.torus(eigenfunctions).map(|[real, _]| real),
+            Kind::BranchPoint => None,
+        }
+    }
+
+    /// The point at which a test function vanishes between two solutions.
+    fn zero(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+        test: impl Fn(&Solution<Inspection>) -> Option<f64>,
+    ) -> Result<Option<(Solution<Inspection>, [f64; 2])>, Error> {
+        let settings = self.settings;
+        let found = match locate(self, before, after, &settings, LOCATION, |_, solution| test(solution)) {
+            Ok(Some(found)) => found,
+            Ok(None) | Err(Error::NotFound { .. }) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        let value = |solution: &Solution<Inspection>| test(solution).map_or(f64::INFINITY, f64::abs);
+        let (ends, nearer) = (value(before).max(value(after)), value(before).min(value(after)));
+        let smallest = value(&found);
+        if smallest > POLE * nearer {
+            return Ok(None);
+        }
+        // The parameters are known as well as the test function: its slope along the bracket gives the error.
+        let end = found.unknown.len();
+        let part = LOCATION.max(smallest / ends.max(f64::MIN_POSITIVE));
+        let error = [2, 1].map(|place| {
+            let change = (after.unknown[end - place] - before.unknown[end - place]).abs();
+            (part * change).max(f64::EPSILON * found.unknown[end - place].abs())
+        });
+        Ok(Some((found, error)))
+    }
+
+    /// Whether the amplitude passes zero between two solutions, and where.
+    fn vanishes(&self, before: &[f64], after: &[f64]) -> Option<f64> {
+        let (one, _) = split(before, self.states, self.kind());
+        let (other, _) = split(after, self.states, self.kind());
+        let end = one.len() - 3;
+        let nodes = (end / self.states) as f64;
+        let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
+        for component in 0..self.states {
+            let scale = self.largest[component].max(self.resting[component]);
+            let mean =
+                |cycle: &[f64]| cycle[..end].iter().skip(component).step_by(self.states).sum::<f64>() / nodes;
+            let (mean_one, mean_other) = (mean(&one), mean(&other));
+            for (a, b) in one[..end].iter().zip(&other[..end]).skip(component).step_by(self.states) {
+                let (a, b) = ((a - mean_one) / scale, (b - mean_other) / scale);
+                first += a * a;
+                second += b * b;
+                mixed += a * b;
+            }
+        }
+        let (a, b) = (one[end + 1], other[end + 1]);
+        (mixed < 0.0).then(|| {
+            // Next to the end both parameters depend on the amplitude through its square.
+            if first == second { 0.5 * (a + b) } else { (a * second - b * first) / (second - first) }
+        })
+    }
+}
+
+fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
+    solution.point.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
+}
+
+impl Curve for CycleLocusCurve<'_> {
+    type Point = Inspection;
+
+    fn unknowns(&self) -> usize {
+        self.system.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.system.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.system.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.system.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        self.system.apply_metric(vector, image);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        let (cycle, eigenfunctions) = split(unknown, self.states, self.kind());
+        self.system.collocation.problem.period_scale = cycle[cycle.len() - 3].abs();
+        let rescaled = self.rescale(&cycle);
+        let scales = self.error_scales(&eigenfunctions);
+        let errors = error_profile(&self.system.collocation, unknown, &scales);
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        if !worst.is_finite() {
+            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: f64::MAX });
+        }
+        self.error_estimate = worst;
+        let degree = self.resolution_degree();
+        let intervals = self.system.collocation.intervals();
+        let needed = intervals_needed(&errors, degree, TARGET * self.resolution.tolerance);
+        let wanted = (needed.ceil() as usize).max(FEWEST_INTERVALS);
+        let too_coarse = worst > self.resolution.tolerance;
+        if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
+            self.system.collocation.set_reference(unknown);
+            return Ok(if rescaled { Adaptation::Changed } else { Adaptation::Unchanged });
+        }
+        if wanted > self.resolution.most_intervals {
+            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: worst });
+        }
+        let count = wanted.min(2 * intervals);
+        let count = if too_coarse { count.max(intervals + 1) } else { count };
+        let mesh = equidistribute(self.system.collocation.mesh(), &errors, degree, count);
+        *unknown = self.system.collocation.carry(unknown, &mesh);
+        for vector in vectors.iter_mut() {
+            **vector = self.system.collocation.carry(vector, &mesh);
+        }
+        self.system.collocation.set_mesh(mesh, unknown);
+        Ok(Adaptation::Changed)
+    }
+
+    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+        let kind = self.kind();
+        let (cycle, eigenfunctions) = split(unknown, self.states, kind);
+        let end = cycle.len() - 3;
+        self.base.problem.parameters[self.second] = cycle[end + 2];
+        let base = &cycle[..end + 2];
+        self.base.set_mesh(self.system.collocation.mesh().to_vec(), base);
+        let mut border = vec![0.0; base.len()];
+        border[end + 1] = 1.0;
+        let mut residual = vec![0.0; base.len()];
+        self.base.factorize(base, &border, &mut residual);
+        let floquet = floquet(&self.base, base, &self.base.problem.scales, &mut self.schur)?;
+        let coefficient = self.coefficient(&cycle, &eigenfunctions);
+        let angle = eigenfunctions.1.first().copied().unwrap_or(0.0);
+        let multipliers: Vec<Complex64> =
+            floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
+        Ok(Inspection {
+            error_estimate: self.error_estimate,
+            ranges: ranges(&self.base, base, self.states),
+            mesh: self.base.mesh().to_vec(),
+            tests: monitor::tests(kind, &multipliers, coefficient, angle),
+            coefficient,
+            argument: (kind == Kind::Torus).then_some(angle),
+            special: None,
+            floquet,
+        })
+    }
+
+    fn special_points(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Result<Vec<Solution<Inspection>>, Error> {
+        let mut found = Vec::new();
+        for (kind, value) in before.point.tests.clone() {
+            if !test_value(after, kind).is_some_and(|other| (value > 0.0) != (other > 0.0)) {
+                continue;
+            }
+            let Some((mut solution, error)) =
+                self.zero(before, after, |solution| test_value(solution, kind))?
+            else {
+                continue;
+            };
+            let multipliers: Vec<Complex64> =
+                solution.point.floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
+            if monitor::is_genuine(kind, self.kind(), &multipliers) {
+                solution.point.special = Some((kind, error));
+                found.push(solution);
+            }
+        }
+        let mut image = vec![0.0; before.tangent.len()];
+        self.apply_metric(&before.tangent, &mut image);
+        let position = |solution: &Solution<Inspection>| -> f64 {
+            let offset = solution.unknown.iter().zip(&before.unknown).zip(&image);
+            offset.map(|((there, here), weight)| (there - here) * weight).sum()
+        };
+        found.sort_by(|a, b| position(a).total_cmp(&position(b)));
+        Ok(found)
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+        let (cycle, _) = split(unknown, self.states, self.kind());
+        let end = cycle.len() - 3;
+        let mut signature = vec![cycle[end].ln(), cycle[end + 2] / self.system.parameter_scales[1]];
+        for (range, scale) in ranges(&self.base, &cycle[..end + 2], self.states)
+            .iter()
+            .zip(self.largest.iter().zip(&self.resting))
+        {
+            let scale = scale.0.max(*scale.1);
+            signature.extend([range.largest / scale, range.smallest / scale]);
+        }
+        signature
+    }
+
+    fn ending(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<Inspection>> {
+        let end = after.unknown.len() - self.system.collocation.problem.scalars();
+        let period = after.unknown[end];
+        let first = *self.first_period.get_or_insert(period);
+        let last = after.tangent.len() - 2;
+        let [one, other] =
+            [0, 1].map(|index| after.tangent[last + index] / self.system.parameter_scales[index]);
+        let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
+        if period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY {
+            let parameter = after.unknown[last];
+            return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
+        }
+        if let Some(parameter) = self.vanishes(&before.unknown, &after.unknown) {
+            let frequency = 2.0 * PI / period;
+            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
+        }
+        let angle = |solution: &Solution<Inspection>| solution.point.argument;
+        let (from, to) = (angle(before)?, angle(after)?);
+        let ends = [(0.0, SpecialKind::Resonance1, 1), (PI, SpecialKind::Resonance2, 2)];
+        for (resonance, kind, order) in ends {
+            if (from - resonance) * (to - resonance) < 0.0 {
+                let stop = Stop::StrongResonance { order };
+                let found =
+                    self.zero(before, after, |solution| angle(solution).map(|value| value - resonance));
+                return Some(match found {
+                    Ok(Some((mut solution, error))) => {
+                        solution.point.special = Some((kind, error));
+                        Ending::At(Box::new(solution), stop)
+                    }
+                    _ => Ending::Between(stop),
+                });
+            }
+        }
+        None
+    }
+}
+
+impl CycleLocusCurve<'_> {
+    fn resolution_degree(&self) -> usize {
+        self.system.collocation.gauss().degree()
+    }
+}

@@ -1,0 +1,13 @@
+//! Curves of special cycles in two parameters.
+//!
+//! The unknowns are those of the [defining system](crate::cycle) of a fold, a period doubling or a torus bifurcation with a
+//! second parameter set free. Points of codimension two are zeros of test functions along the curve that are regular there,
+//! located by a secant method to the accuracy of the curve itself.
+
+mod branch;
+mod curve;
+mod monitor;
+mod run;
+
+pub use branch::{CycleLocusBranch, CycleLocusPoint};
+pub use run::CycleLocus;

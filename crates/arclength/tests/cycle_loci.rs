@@ -1,0 +1,229 @@
+//! Curves of special cycles in two parameters against systems in which they are known.
+
+mod common;
+
+use approx::assert_relative_eq;
+use arclength::branch::SpecialKind;
+use arclength::continuation::Stop;
+use arclength::cycle::{CycleStart, Cycles, Orbit, Special};
+use arclength::locus::{CycleLocus, CycleLocusBranch};
+use arclength::{Scalar, VectorField};
+
+macro_rules! names {
+    ($($name:literal),*) => { vec![$($name.into()),*] };
+}
+
+/// Circles of radius `sqrt(1 + s)` with `a + b s - s^3 = 0`: folds at `a = -2 s^3`, `b = 3 s^2` with a cusp at the origin.
+struct CuspOfCycles;
+
+impl VectorField for CuspOfCycles {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["a", "b"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [x, y] = [state[0], state[1]];
+        let s = x * x + y * y - 1.0;
+        let growth = parameters[0] + parameters[1] * s - s * s * s;
+        let speed = s * 0.4 + 1.0;
+        derivative[0] = growth * x - speed * y;
+        derivative[1] = growth * y + speed * x;
+    }
+}
+
+fn found(branch: &CycleLocusBranch) -> Vec<(SpecialKind, [f64; 2])> {
+    branch.special_points().map(|(kind, point)| (kind, point.values)).collect()
+}
+
+fn assert_at(branch: &CycleLocusBranch, kind: SpecialKind, exact: [f64; 2], tolerance: f64) {
+    let points = found(branch);
+    let near = points
+        .iter()
+        .any(|(other, values)| *other == kind && (0..2).all(|k| (values[k] - exact[k]).abs() < tolerance));
+    assert!(near, "{kind:?} at {exact:?} among {points:?}");
+}
+
+#[test]
+fn cusp_of_cycles() {
+    // Three cycles at a = 0, b = 0.27: s = 0 and +-0.3 sqrt(3).
+    let s = 0.27_f64.sqrt();
+    let parameters = [0.0, 0.27];
+    let orbit =
+        Orbit::from_time_history(&CuspOfCycles, &parameters, &[(1.0 + s).sqrt(), 0.0], 7.0).expect("a cycle");
+    let branch = Cycles::of(&CuspOfCycles, CycleStart::Orbit(orbit))
+        .parameters(&parameters)
+        .along(0, -0.2..=0.2)
+        .run()
+        .expect("exists");
+    let (_, fold) = branch.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    let folds = CycleLocus::of(&CuspOfCycles)
+        .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 0.27])
+        .along("a", -0.2..=0.2)
+        .and("b", -0.1..=0.4)
+        .run()
+        .expect("exists");
+    for point in &folds.points {
+        let s = point.max[0].powi(2) - 1.0;
+        assert!(
+            (point.values[0] + 2.0 * s.powi(3)).abs() < 1e-8 && (point.values[1] - 3.0 * s * s).abs() < 1e-8
+        );
+    }
+    assert_at(&folds, SpecialKind::CuspOfCycles, [0.0, 0.0], 1e-9);
+}
+
+/// A revolution with `xi' = eta`, `eta' = mu + nu eta - xi^2 - xi eta / 2` beside it: folds at `mu = 0`; torus bifurcations at
+/// `nu = sqrt(mu) / 2`, `xi = sqrt(mu)` with the angle `2 pi sqrt(2 sqrt(mu))`; both meet in a 1:1 resonance.
+struct Resonances;
+
+impl VectorField for Resonances {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y", "p", "q"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["mu", "nu"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [x, y] = [state[0], state[1]];
+        let (xi, eta) = (state[2] - x * 0.3, state[3] - x * y * 0.2);
+        let growth = -(x * x + y * y) + 1.0;
+        let (dx, dy) = (growth * x - y, growth * y + x);
+        let curved = parameters[0] + parameters[1] * eta - xi * xi - xi * eta * 0.5;
+        derivative[0] = dx;
+        derivative[1] = dy;
+        derivative[2] = eta + dx * 0.3;
+        derivative[3] = curved + (dx * y + dy * x) * 0.2;
+    }
+}
+
+#[test]
+fn strong_resonances_of_tori() {
+    let mu = 1e-3_f64;
+    let parameters = [mu, 0.5 * mu.sqrt()];
+    let orbit = Orbit::from_time_history(&Resonances, &parameters, &[1.0, 0.0, 0.3 + mu.sqrt(), 0.0], 7.0)
+        .expect("a cycle");
+    let tori = CycleLocus::of(&Resonances)
+        .from_cycle(SpecialKind::Torus, &orbit, &parameters)
+        .along("mu", -0.01..=0.01)
+        .and("nu", -0.1..=0.1)
+        .run()
+        .expect("exists");
+    for point in &tori.points {
+        let [mu, nu] = point.values;
+        assert!((nu * nu - 0.25 * mu).abs() < 1e-8, "{mu} {nu}");
+    }
+    // The normal form of the planar Hopf point with the square of the frequency 2 s: a = 1 / (16 s).
+    for point in tori.points.iter().filter(|point| point.values[0] > 1e-5) {
+        let s = point.values[0].sqrt();
+        let exact = 1.0 / (8.0 * s * (1.0 + 2.0 * s));
+        assert_relative_eq!(point.coefficient.expect("a coefficient"), exact, max_relative = 1e-6);
+    }
+    assert!(matches!(tori.backward_stop, Stop::StrongResonance { order: 1 }), "{}", tori.backward_stop);
+    let at = |angle: f64| {
+        let root = 0.5 * (angle / (2.0 * std::f64::consts::PI)).powi(2);
+        [root * root, 0.5 * root]
+    };
+    use std::f64::consts::PI;
+    assert_at(&tori, SpecialKind::Resonance1, [0.0, 0.0], 1e-8);
+    assert_at(&tori, SpecialKind::Resonance3, at(2.0 * PI / 3.0), 1e-8);
+    assert_at(&tori, SpecialKind::Resonance4, at(0.5 * PI), 1e-8);
+    assert_eq!(found(&tori).len(), 3, "{:?}", found(&tori));
+}
+
+#[test]
+fn the_one_to_one_resonance_on_the_folds() {
+    let mu = 0.01_f64;
+    let parameters = [mu, 0.05];
+    let orbit = Orbit::from_time_history(&Resonances, &parameters, &[1.0, 0.0, 0.3 + mu.sqrt(), 0.0], 7.0)
+        .expect("a cycle");
+    let branch = Cycles::of(&Resonances, CycleStart::Orbit(orbit))
+        .parameters(&parameters)
+        .along(0, -0.1..=0.1)
+        .run()
+        .expect("exists");
+    let (_, fold) = branch.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    let folds = CycleLocus::of(&Resonances)
+        .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 0.05])
+        .along("mu", -0.1..=0.1)
+        .and("nu", -0.1..=0.1)
+        .run()
+        .expect("exists");
+    assert!(folds.points.iter().all(|point| point.values[0].abs() < 1e-8));
+    assert_at(&folds, SpecialKind::Resonance1, [0.0, 0.0], 1e-8);
+}
+
+/// The turning frame of a Moebius band with `xi' = eta + k xi`, `eta' = mu xi + (nu - k) eta + c xi^3 - xi^5`: period
+/// doublings where the determinant `-mu + k (nu - k)` vanishes.
+struct DoublingBand;
+
+impl VectorField for DoublingBand {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y", "z"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["mu", "nu", "c"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [x, y, z] = [state[0], state[1], state[2]];
+        let [mu, nu, c] = [parameters[0], parameters[1], parameters[2]];
+        let r = (x * x + y * y).sqrt();
+        let (cos, sin) = (x / r, y / r);
+        let a = r - 1.0;
+        // xi e^(i phi/2) and eta e^(i phi/2); the latter is -i times the part of w against the turning axis.
+        let p = [(a + a * cos + z * sin) * 0.5, (z + a * sin - z * cos) * 0.5];
+        let q = [z - p[1], -(a - p[0])];
+        let square = p[0] * p[0] + p[1] * p[1];
+        let stiffness = mu + c * square - square * square;
+        let first = q;
+        let second = [stiffness * p[0] + nu * q[0], stiffness * p[1] + nu * q[1]];
+        // w' = (xi' + i eta') e^(i phi/2) + (i/2) w
+        let radial = first[0] - second[1] - z * 0.5;
+        let vertical = first[1] + second[0] + a * 0.5;
+        derivative[0] = radial * cos - y;
+        derivative[1] = radial * sin + x;
+        derivative[2] = vertical;
+    }
+}
+
+#[test]
+fn resonance_and_degenerate_doubling_on_doublings() {
+    let orbit = |parameters: &[f64]| {
+        Orbit::from_time_history(&DoublingBand, parameters, &[1.0, 0.0, 0.0], 7.0).expect("a cycle")
+    };
+    // Doublings at mu = 0; a second multiplier -1 at nu = 0.
+    let parameters = [0.0, -0.3, -1.0];
+    let doublings = CycleLocus::of(&DoublingBand)
+        .from_cycle(SpecialKind::PeriodDoubling, &orbit(&parameters), &parameters)
+        .along("mu", -0.2..=0.2)
+        .and("nu", -0.5..=0.5)
+        .run()
+        .expect("exists");
+    assert!(doublings.points.iter().all(|point| point.values[0].abs() < 1e-8));
+    assert_at(&doublings, SpecialKind::Resonance2, [0.0, 0.0], 1e-8);
+    // The cubic coefficient vanishes with c.
+    let doublings = CycleLocus::of(&DoublingBand)
+        .from_cycle(SpecialKind::PeriodDoubling, &orbit(&parameters), &parameters)
+        .along("mu", -0.2..=0.2)
+        .and("c", -1.5..=1.5)
+        .run()
+        .expect("exists");
+    assert_at(&doublings, SpecialKind::GeneralizedPeriodDoubling, [0.0, 0.0], 1e-8);
+}
+
+#[test]
+fn tori_of_a_moebius_band_end_at_the_one_to_two_resonance() {
+    // Torus bifurcations at nu = 0 with the angle pi - 2 pi sqrt(-mu).
+    let parameters = [-0.04, 0.0, -1.0];
+    let orbit = Orbit::from_time_history(&DoublingBand, &parameters, &[1.0, 0.0, 0.0], 7.0).expect("a cycle");
+    let tori = CycleLocus::of(&DoublingBand)
+        .from_cycle(SpecialKind::Torus, &orbit, &parameters)
+        .along("mu", -0.1..=0.1)
+        .and("nu", -0.1..=0.1)
+        .run()
+        .expect("exists");
+    assert!(matches!(tori.forward_stop, Stop::StrongResonance { order: 2 }), "{}", tori.forward_stop);
+    assert_at(&tori, SpecialKind::Resonance2, [0.0, 0.0], 1e-8);
+    assert_at(&tori, SpecialKind::Resonance3, [-1.0 / 36.0, 0.0], 1e-8);
+    assert_at(&tori, SpecialKind::Resonance4, [-1.0 / 16.0, 0.0], 1e-8);
+}
