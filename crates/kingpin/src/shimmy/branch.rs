@@ -17,12 +17,14 @@ const MOST_SEGMENTS: usize = 1000;
 pub struct SlidingBranchOptions {
     /// Parameter values at which motions are wanted exactly.
     pub at: Vec<f64>,
+    /// Whether to go on beyond a grazing where the motion goes on with another sequence of phases.
+    pub through_grazings: bool,
     /// Settings of the continuation.
     pub settings: Settings,
 }
 
 impl Default for SlidingBranchOptions {
-    /// Steps as for other branches; corrections to what the integration resolves.
+    /// Steps as for other branches, corrections to what the integration resolves, an end at the first grazing.
     fn default() -> Self {
         let settings = Settings {
             corrector_tolerance: 1e-8,
@@ -32,7 +34,7 @@ impl Default for SlidingBranchOptions {
             most_steps: 500,
             ..Settings::default()
         };
-        Self { at: Vec::new(), settings }
+        Self { at: Vec::new(), through_grazings: false, settings }
     }
 }
 
@@ -45,6 +47,8 @@ pub enum SlidingRole {
     Requested,
     /// A bifurcation.
     Bifurcation(SlidingBifurcation),
+    /// The last motion before the sequence of phases changes; the next one has another sequence.
+    Grazing(Grazing),
 }
 
 /// A motion of a branch.
@@ -83,7 +87,7 @@ impl std::fmt::Display for SlidingBranchEnd {
     }
 }
 
-/// A branch of periodic motions with sliding phases, all with the same sequence of phases.
+/// A branch of periodic motions with sliding phases, all with the same sequence of phases between grazings.
 #[derive(Debug)]
 pub struct SlidingBranch {
     /// The parameter and its interval.
@@ -158,13 +162,14 @@ impl PeriodicSliding {
         if let Some(last) = tangent.last_mut() {
             *last = direction * curve.range;
         }
-        let mut request = Request {
+        let request = Request {
             bounds: vec![Bound { from_end: 1, lower, upper }],
             values: options.at.iter().map(|value| along.convert(*value)).collect(),
             settings: options.settings,
         };
         let mut points: Vec<SlidingBranchPoint> = Vec::new();
         let mut interrupted = false;
+        let mut crosses = false;
         for _ in 0..MOST_SEGMENTS {
             let mut watch = |solution: &Solution<CurvePoint>| {
                 let value = along.convert(solution.unknown[solution.unknown.len() - 1]);
@@ -173,7 +178,8 @@ impl PeriodicSliding {
                 flow
             };
             let followed = follow(&mut curve, unknown, tangent, &request, &mut watch)?;
-            let first = usize::from(!points.is_empty());
+            // A renewed start repeats the last motion.
+            let first = usize::from(!points.is_empty() && !std::mem::take(&mut crosses));
             points.extend(followed.solutions.iter().skip(first).map(|(solution, origin)| point(along, solution, *origin)));
             let Some((last, _)) = followed.solutions.last() else { break };
             let end = match followed.stop {
@@ -182,6 +188,15 @@ impl PeriodicSliding {
                     Some(Refusal::Grazing(change)) => {
                         let at = last.unknown[last.unknown.len() - 1];
                         let tried = curve.map.wheel.get(along.followed());
+                        let crossed = options.through_grazings.then(|| curve.cross(last, (lower, upper))).flatten();
+                        if let Some(beyond) = crossed {
+                            if let Some(point) = points.last_mut() {
+                                point.role = SlidingRole::Grazing(change);
+                            }
+                            (unknown, tangent) = beyond;
+                            crosses = true;
+                            continue;
+                        }
                         Some(SlidingBranchEnd::Grazing {
                             change,
                             value: along.convert(at),
@@ -195,7 +210,6 @@ impl PeriodicSliding {
             if let Some(end) = end {
                 return Ok((points, end));
             }
-            request.settings.initial_step = options.settings.initial_step;
             (unknown, tangent) = curve.renew(last).map_err(|cause| ShimmyError::NotConverged { cause })?;
         }
         Ok((points, SlidingBranchEnd::Continuation(Stop::MostSteps)))

@@ -3,6 +3,7 @@
 //! The unknowns are the scaled states at the start, the scaled period and the parameter.
 
 use super::error::Refusal;
+use super::passage::difference;
 use super::return_map::{Return, ReturnMap, Start};
 use super::variation::{DIRECTIONS, PARAMETER, STATES};
 use super::{PeriodicSliding, SAMPLES_PER_PERIOD, middle_of_longest_passage, search};
@@ -18,6 +19,10 @@ use std::f64::consts::TAU;
 const LOCATED: f64 = 1e-6;
 /// Part of its phase that has to lie on both sides of the start.
 const MARGIN: f64 = 0.2;
+/// Distances beyond a grazing, as parts of the range, at which the motion is looked for.
+const CROSSINGS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
+/// A motion beyond a grazing is on the same branch when it differs by less than this part of its size.
+const NEAR_GRAZING: f64 = 0.03;
 /// Growth of the period after which everything is scaled anew.
 const RESCALE: f64 = 1.3;
 
@@ -69,6 +74,8 @@ pub(super) struct SlidingCurve {
     last: Option<(Vec<f64>, Return)>,
     /// Why the map was last not defined.
     pub refusal: Option<Refusal>,
+    /// Whether the map was defined where it was last evaluated.
+    is_defined: bool,
     /// Whether the start has to be moved away from the events.
     pub wants_new_start: bool,
     settings: Settings,
@@ -85,6 +92,7 @@ impl SlidingCurve {
             pivots: Vec::new(),
             last: None,
             refusal: None,
+            is_defined: false,
             wants_new_start: false,
             settings,
         }
@@ -111,6 +119,7 @@ impl SlidingCurve {
             self.map.wheel = wheel;
             self.map.evaluate(&self.start(unknown), with_derivatives)
         });
+        self.is_defined = image.is_ok();
         match image {
             Ok(image) => Some(image),
             Err(refusal) => {
@@ -166,6 +175,41 @@ impl SlidingCurve {
         Ok((self.unknown(&start, value), tangent))
     }
 
+    /// The motion beyond a grazing: at a parameter value near that of the last solution, with another sequence of phases. Returns
+    /// the unknowns and a tangent.
+    pub fn cross(&mut self, solution: &Solution<CurvePoint>, range: (f64, f64)) -> Option<(Vec<f64>, Vec<f64>)> {
+        let slope = &solution.tangent;
+        let last = slope.len() - 1;
+        let old = solution.point.motion.map.expected.clone()?;
+        for distance in CROSSINGS {
+            for side in [1.0, -1.0] {
+                let direction = side * slope[last].signum();
+                let value = solution.unknown[last] + direction * distance * self.range;
+                if !(range.0..=range.1).contains(&value) {
+                    continue;
+                }
+                let Ok(wheel) = solution.point.motion.map.wheel.with(self.key, value) else { continue };
+                let mut map =
+                    ReturnMap { wheel, expected: None, parameter: None, ..solution.point.motion.map.clone() };
+                let start = self.start(&solution.unknown);
+                let Ok((found, _)) = map.solve(&start) else { continue };
+                let far = map.free().iter().any(|&i| {
+                    ((found.state.state[i] - start.state.state[i]) / map.scales[i]).abs() > NEAR_GRAZING
+                });
+                let unchanged = map.expected.as_ref().is_none_or(|new| difference(&old, new).is_none());
+                if far || unchanged || (found.period / start.period - 1.0).abs() > NEAR_GRAZING {
+                    continue;
+                }
+                self.map = ReturnMap { parameter: Some((self.key, 1.0)), ..map };
+                let unknown = self.unknown(&found, value);
+                let mut tangent = vec![0.0; unknown.len()];
+                tangent[last] = direction * self.range;
+                return Some((unknown, tangent));
+            }
+        }
+        None
+    }
+
     fn is_start_near_event(&self, motion: &PeriodicSliding) -> bool {
         let [first, .., last] = &motion.phases[..] else { return false };
         let (before, after) = (last.end - last.start, first.end - first.start);
@@ -189,7 +233,7 @@ impl Curve for SlidingCurve {
     fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
         match self.evaluate(unknown, false) {
             Some(image) => residual[..image.residual.len()].copy_from_slice(&image.residual),
-            None => residual.fill(f64::NAN),
+            None => residual.fill(f64::INFINITY),
         }
     }
 
@@ -197,8 +241,7 @@ impl Curve for SlidingCurve {
         let n = unknown.len();
         self.last = None;
         let Some(image) = self.evaluate(unknown, true) else {
-            // The update is then not finite, so that the corrector gives up.
-            residual.fill(f64::NAN);
+            residual.fill(f64::INFINITY);
             return 1.0;
         };
         residual[..n - 1].copy_from_slice(&image.residual);
@@ -213,8 +256,9 @@ impl Curve for SlidingCurve {
     }
 
     fn solve(&mut self, right_hand_side: &mut [f64]) {
-        if self.last.is_none() {
-            right_hand_side.fill(f64::NAN);
+        if !self.is_defined {
+            // An update that is not finite makes the corrector give up.
+            right_hand_side.fill(f64::INFINITY);
             return;
         }
         lu::solve(&self.matrix, right_hand_side.len(), &self.pivots, right_hand_side);

@@ -19,6 +19,10 @@ pub(super) const PSI: usize = 2;
 const FREE_WHILE_ROLLING: [usize; 5] = [0, 1, PSI, 3, 5];
 /// The states that are free where it slides.
 const FREE_WHILE_SLIDING: [usize; 7] = [0, 1, 2, 3, 4, 5, 6];
+/// Most repetitions of a motion in what is taken for its period.
+const MOST_REPETITIONS: i32 = 12;
+/// States that differ by less than this part of their size are the same.
+const SAME: f64 = 1e-6;
 /// Most updates of Newton's method.
 const MOST_UPDATES: usize = 15;
 /// An update, relative to the size of the motion, at which Newton's method has converged.
@@ -134,6 +138,19 @@ impl ReturnMap {
         }
         let state = self.follow(&Start { period: time, ..start.clone() }, &[])?.1;
         Ok(Start { state, period: start.period })
+    }
+
+    /// How often the motion repeats itself in what is taken for its period, where that is more than once.
+    pub fn repetitions(&self, start: &Start) -> Option<i32> {
+        (2..=MOST_REPETITIONS).rev().filter(|parts| self.turns % parts == 0).find(|&parts| {
+            let part = Start { period: start.period / f64::from(parts), ..start.clone() };
+            let Ok((_, end)) = self.follow(&part, &[]) else { return false };
+            end.contact == start.state.contact
+                && self.free().iter().all(|&i| {
+                    let turn = if i == PSI { TAU * f64::from(self.turns / parts) } else { 0.0 };
+                    ((end.state[i] - start.state.state[i] - turn) / self.scales[i]).abs() < SAME
+                })
+        })
     }
 
     /// The map at a start, with the derivatives unless only the residual is wanted.

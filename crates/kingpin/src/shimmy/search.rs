@@ -20,7 +20,7 @@ const NEAR: f64 = 0.1;
 /// The first return counts unless a later one is so many times nearer.
 const MUCH_NEARER: f64 = 4.0;
 /// Distance below which interpolation cannot tell returns apart.
-const RESOLUTION: f64 = 2e-3;
+const RESOLUTION: f64 = 5e-4;
 /// A motion whose caster angle varies by less than this, in rad, has died out.
 const AT_REST: f64 = 1e-3;
 
@@ -92,7 +92,14 @@ impl Wheel {
         let (passages, _) = map.follow(&start, &[]).map_err(refused)?;
         let start = map.start_after(&start, middle_of_longest_passage(&passages, start.period)).map_err(refused)?;
         let mut map = ReturnMap::new(self, &start, scales, turns, search.tolerance).map_err(refused)?;
-        let (start, image) = map.solve(&start).map_err(refused)?;
+        let (mut start, mut image) = map.solve(&start).map_err(refused)?;
+        if let Some(parts) = map.repetitions(&start) {
+            // The return that was found is not the first.
+            map.turns /= parts;
+            start.period /= f64::from(parts);
+            map.period_scale = start.period;
+            (start, image) = map.solve(&start).map_err(refused)?;
+        }
         let motion = PeriodicSliding::describe(&map, &start, &image).map_err(refused)?;
         let range = motion.psi_max - motion.psi_min;
         if range < AT_REST {
@@ -147,12 +154,11 @@ impl Wheel {
         for pair in samples.windows(2) {
             let [(start, before), (end, after)] = pair else { continue };
             let (p, n) = (position(&before.state), position(&after.state));
-            if !(p < 0.0 && n >= 0.0) || before.contact != settled.contact {
+            if !(p < 0.0 && n >= 0.0) || before.contact != settled.contact || after.contact != settled.contact {
                 continue;
             }
             let fraction = p / (p - n);
-            let state: SlipState =
-                std::array::from_fn(|i| before.state[i] + fraction * (after.state[i] - before.state[i]));
+            let state = interpolate(sliding, before, after, end - start, fraction);
             let distance = difference(&state).iter().fold(0.0_f64, |most, x| most.max(x.abs()));
             let time = start + fraction * (end - start);
             if time <= search.longest_period {
@@ -176,6 +182,17 @@ struct Recurrence {
     start: Start,
     scales: [f64; STATES],
     turns: i32,
+}
+
+/// The cubic between two samples in the same phase with the right rates.
+fn interpolate(wheel: &SlidingWheel, before: &HybridState, after: &HybridState, step: f64, x: f64) -> SlipState {
+    let (start, end) = (wheel.rate(before), wheel.rate(after));
+    let rise = x * x * (3.0 - 2.0 * x);
+    let (departure, arrival) = (x * (1.0 - x) * (1.0 - x) * step, x * x * (x - 1.0) * step);
+    std::array::from_fn(|i| {
+        let difference = after.state[i] - before.state[i];
+        before.state[i] + rise * difference + departure * start[i] + arrival * end[i]
+    })
 }
 
 /// Half the range of each state; the caster angle at most half a turn, the slip as the velocities.

@@ -125,7 +125,7 @@ fn event(equations: &Equations<Varied>, regime: Regime, state: &[Varied; STATES]
     match regime {
         Regime::Rolling => equations.static_reserve(state),
         Regime::Onset if slip_squared(state).value < (NEARLY * ONSET_SLIP).powi(2) => {
-            equations.sliding_reserve(state)
+            equations.slip_along_limit_direction(state)
         }
         Regime::Onset | Regime::Sliding => slip_squared(state),
     }

@@ -26,16 +26,19 @@
 //! it at the rate `(lambda + mu_d N e'.B e')/|s|`, `e'` across `e`. It opposes `T*` exactly only where `lambda = 0` (`mu_d = mu_s` at the onset) or where `B` is
 //! isotropic; otherwise the more mobile direction, along the caster, is preferred. From `s = 0` the first instants follow this
 //! slow manifold, `e` being a function of the rest of the state, until `|s|` reaches [`ONSET_SLIP`]; the error is
-//! of second order in it. Sliding ends when `|s|` falls to [`VANISHING_SLIP`] and is followed to zero along the straight line
+//! of second order in it. Where the force only grazes the static limit the slip may shrink again before: `lambda` is negative then, and
+//! the slow manifold leads back to zero. Sliding ends when `|s|` falls to [`VANISHING_SLIP`] and is followed to zero along the straight line
 //! of its limit direction. There the wheel rolls on if `|T*| <= mu_s N`; otherwise it slides on, out along the one
 //! growing limit direction.
 
 mod history;
 pub(crate) mod model;
+mod smoothed;
 #[cfg(test)]
 mod tests;
 
 pub use history::SlidingHistory;
+pub use smoothed::SmoothedSlidingWheel;
 
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
@@ -262,18 +265,20 @@ impl SlidingWheel {
         let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
             equations.derivative(state, equations.incipient_force(state), derivative);
         });
-        let slip = |x: &[f64]| x[S1].hypot(x[S2]);
         let mut events = [
-            Event::new(|_, x| slip(x) - ONSET_SLIP).rising().terminal(),
-            // Slip that had hardly begun shrinks again.
-            Event::new(|_, x| equations.sliding_reserve(x)).rising().terminal(),
+            Event::new(|_, x| slip_squared(x) - ONSET_SLIP * ONSET_SLIP).rising().terminal(),
+            Event::new(|_, x| equations.slip_along_limit_direction(x)).falling().terminal(),
         ];
-        let solution = self.while_sliding.with_events(system, start, state, end, times, &mut events)?;
+        let mut solution = self.while_sliding.with_events(system, start, state, end, times, &mut events)?;
         let state = as_slip_state(&solution.state);
-        if slip(&state) > VANISHING_SLIP {
-            return Ok((solution, HybridState { contact: Contact::Sliding, state }));
+        if solution.ended_by != Some(1) {
+            let slips = slip_squared(&state) > 0.0;
+            let contact = if slips { Contact::Sliding } else { Contact::Rolling };
+            return Ok((solution, HybridState { contact, state }));
         }
-        Ok((solution, HybridState { contact: Contact::Rolling, state: stuck(state) }))
+        let state = stuck(state);
+        solution.state = state.to_vec();
+        Ok((solution, HybridState { contact: Contact::Rolling, state }))
     }
 
     /// Slides until the slip vanishes; the crossing is where its straight way to zero begins.

@@ -140,6 +140,13 @@ impl<T: Scalar> Equations<T> {
         limit.direction.map(|e| -self.sliding_friction * e)
     }
 
+    /// Slip speed along the limit direction.
+    #[inline]
+    pub fn slip_along_limit_direction(&self, state: &[T]) -> T {
+        let [along, across] = self.limit_direction(self.holding_force(state)).direction;
+        along * state[S1] + across * state[S2]
+    }
+
     /// Square of the static limit less that of the holding force.
     #[inline]
     pub fn static_reserve(&self, state: &[T]) -> T {

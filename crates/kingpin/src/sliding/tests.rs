@@ -220,3 +220,78 @@ fn bad_input_is_refused() {
     assert!(sliding.simulate(&[0.0; 5], 1.0, 1).is_err());
     assert!(sliding.simulate(&[f64::NAN; 5], 1.0, 2).is_err());
 }
+
+/// The largest rolling force, relative to the normal force, of a motion that would roll for 0.2 s, and when.
+fn largest_rolling_force(wheel: &Wheel) -> (f64, f64) {
+    let history = wheel.simulate_from(&start(wheel), 0.2, 2_000_001).unwrap();
+    let forces = history.contact_forces.iter().map(|force| force.friction() / force.normal);
+    let (index, force) = forces.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+    (force, history.times[index])
+}
+
+#[test]
+fn a_force_that_just_misses_or_just_touches_the_static_limit() {
+    let (needed, time) = largest_rolling_force(&loaded(100.0, 100.0));
+    assert!(time > 0.001 && time < 0.199);
+    let run = |mu_s: f64, mu_d: f64| {
+        let wheel = loaded(mu_s, mu_d);
+        wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2).unwrap()
+    };
+    let rolling = run(100.0, 100.0);
+    for distance in [1e-4, 1e-6, 1e-8] {
+        let missed = run(needed * (1.0 + distance), needed * (1.0 + distance));
+        assert_eq!(missed.phases.len(), 1);
+        assert_eq!(missed.states[1], rolling.states[1]);
+        // Equal coefficients: slip for a moment of the order of the root of the distance, and next to no effect.
+        let touched = run(needed * (1.0 - distance), needed * (1.0 - distance));
+        let kinds: Vec<Contact> = touched.phases.iter().map(|phase| phase.contact).collect();
+        assert_eq!(kinds, [Contact::Rolling, Contact::Sliding, Contact::Rolling], "{distance}: {:?}", touched.phases);
+        let slip = touched.phases[1];
+        assert!(slip.start < time && slip.end > time - 1e-6);
+        assert!(slip.end - slip.start < 0.2 * distance.sqrt(), "{distance}: {slip:?}");
+        let effect = touched.states[1].iter().zip(&rolling.states[1]);
+        let effect = effect.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(effect < 300.0 * distance, "{distance}: {effect}");
+    }
+    // A smaller coefficient of sliding: once it slips, it slips for a finite time; no chattering.
+    let torn = run(needed * (1.0 - 1e-8), 0.8 * needed);
+    assert!(torn.phases.len() <= 5, "{:?}", torn.phases);
+    assert!((torn.phases[0].end - time).abs() < 1e-4);
+    assert!(torn.phases[1].end - torn.phases[1].start > 1e-3);
+}
+
+#[test]
+fn growing_friction_tends_to_rolling() {
+    // The part of the time that is slid falls to zero and the motion becomes that of the rolling wheel.
+    let rolling = loaded(100.0, 100.0).simulate_from(&start(&loaded(100.0, 100.0)), 0.2, 2).unwrap().states[1];
+    let mut before = f64::INFINITY;
+    for mu in [1.0, 1.5, 2.0, 4.0] {
+        let wheel = loaded(mu, mu);
+        let end = wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2).unwrap().states[1];
+        let distance = [0, 1, 2, 3, 5].into_iter().zip(0..5).map(|(a, b)| (end[a] - rolling[b]).abs()).fold(0.0, f64::max);
+        assert!(distance <= before, "{mu}: {distance} {before}");
+        before = distance;
+    }
+    assert!(before < 1e-8, "{before}");
+}
+
+#[test]
+fn smoothed_friction_dissipates_and_tends_to_coulomb_friction() {
+    let wheel = loaded(0.8, 0.8);
+    let state = [0.01, -0.02, 0.3, 3.0, 0.4, 2.0, 2.5];
+    let sliding = wheel.sliding().unwrap();
+    let inner = [0.01, -0.02, 0.3, 3.0, 0.4, 2.0, 0.5];
+    let exact = sliding.rate(&HybridState { contact: Contact::Sliding, state: inner });
+    let mut errors = Vec::new();
+    for smoothing in [1e-2, 1e-3] {
+        let smoothed = wheel.smoothed_sliding(&[Key::V], smoothing).unwrap();
+        let mut rate = [0.0; 7];
+        arclength::VectorField::evaluate(&smoothed, &state, &[4.0], &mut rate);
+        let error = (0..6).map(|i| (rate[i] - exact[i]).abs()).fold(0.0, f64::max);
+        errors.push(error.max((rate[3] - rate[6] - exact[6]).abs()));
+    }
+    // Away from zero slip the difference is of second order in the smoothing speed.
+    assert!(errors[0] < 0.1 && (errors[0] / errors[1] - 100.0).abs() < 1.0, "{errors:?}");
+    assert!(wheel.smoothed_sliding(&[], 0.0).is_err());
+    assert!(loaded(0.5, 0.8).smoothed_sliding(&[], 1e-3).is_err());
+}
