@@ -39,6 +39,9 @@ const LOCATION: f64 = 1e-12;
 /// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
 const POLE: f64 = 1e-3;
 
+/// A point at which a test function vanishes, with error estimates of the two parameters.
+type Zero = (Solution<Inspection>, [f64; 2]);
+
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
 pub(super) struct Inspection {
@@ -173,7 +176,7 @@ impl<'a> CycleLocusCurve<'a> {
         before: &Solution<Inspection>,
         after: &Solution<Inspection>,
         test: impl Fn(&Solution<Inspection>) -> Option<f64>,
-    ) -> Result<Option<(Solution<Inspection>, [f64; 2])>, Error> {
+    ) -> Result<Option<Zero>, Error> {
         let settings = self.settings;
         let found = match locate(self, before, after, &settings, LOCATION, |_, solution| test(solution)) {
             Ok(Some(found)) => found,
@@ -319,7 +322,7 @@ impl Curve for CycleLocusCurve<'_> {
     ) -> Result<Vec<Solution<Inspection>>, Error> {
         let mut found = Vec::new();
         for (kind, value) in before.point.tests.clone() {
-            if !test_value(after, kind).is_some_and(|other| (value > 0.0) != (other > 0.0)) {
+            if test_value(after, kind).is_none_or(|other| (value > 0.0) == (other > 0.0)) {
                 continue;
             }
             let Some((mut solution, error)) =
