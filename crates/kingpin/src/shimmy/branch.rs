@@ -1,9 +1,9 @@
 //! Branches of periodic motions with sliding phases along a parameter.
 
+use super::PeriodicSliding;
 pub use super::curve::SlidingBifurcation;
 use super::curve::{CurvePoint, SlidingCurve};
 use super::error::{Grazing, Refusal, ShimmyError};
-use super::PeriodicSliding;
 use crate::branches::Along;
 use crate::error::KingpinError;
 use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, follow};
@@ -136,8 +136,9 @@ impl PeriodicSliding {
         for direction in [-1.0, 1.0] {
             halves.push(self.half(along, direction, options, &mut observer)?);
         }
-        let [(backward, first), (forward, last)] =
-            <[_; 2]>::try_from(halves).map_err(|_| Refusal::Singular).map_err(|cause| ShimmyError::NotConverged { cause })?;
+        let [(backward, first), (forward, last)] = <[_; 2]>::try_from(halves)
+            .map_err(|_| Refusal::Singular)
+            .map_err(|cause| ShimmyError::NotConverged { cause })?;
         let mut points: Vec<SlidingBranchPoint> = backward;
         points.reverse();
         points.pop();
@@ -156,7 +157,8 @@ impl PeriodicSliding {
         let range = along.range();
         let (lower, upper) = (*range.start(), *range.end());
         let value = along.convert(self.wheel.get(along.key()));
-        let mut curve = SlidingCurve::new(self.map.clone(), along.followed(), upper - lower, options.settings);
+        let mut curve =
+            SlidingCurve::new(self.map.clone(), along.followed(), upper - lower, options.settings);
         let mut unknown = curve.unknown(&self.start, value);
         let mut tangent = vec![0.0; unknown.len()];
         if let Some(last) = tangent.last_mut() {
@@ -180,7 +182,13 @@ impl PeriodicSliding {
             let followed = follow(&mut curve, unknown, tangent, &request, &mut watch)?;
             // A renewed start repeats the last motion.
             let first = usize::from(!points.is_empty() && !std::mem::take(&mut crosses));
-            points.extend(followed.solutions.iter().skip(first).map(|(solution, origin)| point(along, solution, *origin)));
+            points.extend(
+                followed
+                    .solutions
+                    .iter()
+                    .skip(first)
+                    .map(|(solution, origin)| point(along, solution, *origin)),
+            );
             let Some((last, _)) = followed.solutions.last() else { break };
             let end = match followed.stop {
                 Stop::Interrupted if curve.wants_new_start && !interrupted => None,
@@ -188,7 +196,8 @@ impl PeriodicSliding {
                     Some(Refusal::Grazing(change)) => {
                         let at = last.unknown[last.unknown.len() - 1];
                         let tried = curve.map.wheel.get(along.followed());
-                        let crossed = options.through_grazings.then(|| curve.cross(last, (lower, upper))).flatten();
+                        let crossed =
+                            options.through_grazings.then(|| curve.cross(last, (lower, upper))).flatten();
                         if let Some(beyond) = crossed {
                             if let Some(point) = points.last_mut() {
                                 point.role = SlidingRole::Grazing(change);

@@ -45,13 +45,17 @@ impl SlidingBifurcation {
         let nontrivial: Vec<Complex64> = solution.point.motion.nontrivial().collect();
         match self {
             Self::Fold => solution.tangent.last().copied().unwrap_or(0.0),
-            Self::PeriodDoubling => nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re,
+            Self::PeriodDoubling => {
+                nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re
+            }
             // Real pairs with product 1 are no bifurcation.
             Self::Torus => nontrivial
                 .iter()
                 .filter(|multiplier| multiplier.im > 0.0)
                 .map(|multiplier| multiplier.norm() - 1.0)
-                .fold(-1.0, |product, factor| if factor.abs() < 0.5 { product * -factor.signum() * factor.abs() } else { product }),
+                .fold(-1.0, |product, factor| {
+                    if factor.abs() < 0.5 { product * -factor.signum() * factor.abs() } else { product }
+                }),
         }
     }
 }
@@ -115,10 +119,13 @@ impl SlidingCurve {
 
     fn evaluate(&mut self, unknown: &[f64], with_derivatives: bool) -> Option<Return> {
         let value = unknown[unknown.len() - 1];
-        let image = self.map.wheel.with(self.key, value).map_err(|error| Refusal::from_wheel(&error)).and_then(|wheel| {
-            self.map.wheel = wheel;
-            self.map.evaluate(&self.start(unknown), with_derivatives)
-        });
+        let image =
+            self.map.wheel.with(self.key, value).map_err(|error| Refusal::from_wheel(&error)).and_then(
+                |wheel| {
+                    self.map.wheel = wheel;
+                    self.map.evaluate(&self.start(unknown), with_derivatives)
+                },
+            );
         self.is_defined = image.is_ok();
         match image {
             Ok(image) => Some(image),
@@ -151,8 +158,12 @@ impl SlidingCurve {
         let start = map.start_after(&start, time)?;
         let sampling: Vec<f64> =
             (0..SAMPLES_PER_PERIOD).map(|i| start.period * i as f64 / SAMPLES_PER_PERIOD as f64).collect();
-        let samples: Vec<SlipState> =
-            map.follow(&start, &sampling)?.0.iter().flat_map(|passage| passage.samples.iter().map(|s| s.1)).collect();
+        let samples: Vec<SlipState> = map
+            .follow(&start, &sampling)?
+            .0
+            .iter()
+            .flat_map(|passage| passage.samples.iter().map(|s| s.1))
+            .collect();
         let period_slope = slope[free.len()] * map.period_scale;
         map.scales = search::sizes(&map.wheel, &samples);
         map.period_scale = start.period;
@@ -177,7 +188,11 @@ impl SlidingCurve {
 
     /// The motion beyond a grazing: at a parameter value near that of the last solution, with another sequence of phases. Returns
     /// the unknowns and a tangent.
-    pub fn cross(&mut self, solution: &Solution<CurvePoint>, range: (f64, f64)) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub fn cross(
+        &mut self,
+        solution: &Solution<CurvePoint>,
+        range: (f64, f64),
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
         let slope = &solution.tangent;
         let last = slope.len() - 1;
         let old = solution.point.motion.map.expected.clone()?;
@@ -271,7 +286,11 @@ impl Curve for SlidingCurve {
         }
     }
 
-    fn adapt(&mut self, _unknown: &mut Vec<f64>, _vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+    fn adapt(
+        &mut self,
+        _unknown: &mut Vec<f64>,
+        _vectors: &mut [&mut Vec<f64>],
+    ) -> Result<Adaptation, Error> {
         Ok(Adaptation::Unchanged)
     }
 
@@ -324,7 +343,8 @@ impl Curve for SlidingCurve {
     fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
-        self.wants_new_start = self.is_start_near_event(motion) || !(RESCALE.recip()..RESCALE).contains(&ratio);
+        self.wants_new_start =
+            self.is_start_near_event(motion) || !(RESCALE.recip()..RESCALE).contains(&ratio);
         self.wants_new_start.then_some(Ending::After(Stop::Interrupted))
     }
 }

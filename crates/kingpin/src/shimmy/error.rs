@@ -8,7 +8,9 @@ use arclength::integration::IntegrationError;
 #[derive(Debug, thiserror::Error)]
 pub enum ShimmyError {
     /// The motion dies out: the wheel rolls or slides steadily in the end.
-    #[error("the motion dies out: in the last {window} s the caster angle varies by {range:e} rad only; start from a larger disturbance")]
+    #[error(
+        "the motion dies out: in the last {window} s the caster angle varies by {range:e} rad only; start from a larger disturbance"
+    )]
     DiesOut {
         /// Time in s that was looked at.
         window: f64,
@@ -28,8 +30,20 @@ pub enum ShimmyError {
         /// Smallest distance of a return, relative to the size of the motion.
         nearest: f64,
     },
+    /// The motion passes near an unstable periodic one, on which it will not stay.
+    #[error(
+        "the motion has not settled after {settling_time} s: it passes an unstable periodic motion of period {period} s,          on which it will not stay; let it settle for longer; it may be irregular"
+    )]
+    NotSettled {
+        /// Time in s for which it was left to settle.
+        settling_time: f64,
+        /// Period of the unstable motion in s.
+        period: f64,
+    },
     /// Newton's method did not converge from the motion that was found.
-    #[error("Newton's method does not converge to a periodic motion: {cause}; let the motion settle for longer")]
+    #[error(
+        "Newton's method does not converge to a periodic motion: {cause}; let the motion settle for longer"
+    )]
     NotConverged {
         /// What happened.
         cause: Refusal,
@@ -84,10 +98,14 @@ impl From<IntegrationError> for Refusal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Grazing {
     /// The friction force of a rolling phase touches the static limit: a sliding phase appears.
-    #[error("the friction force of a rolling phase touches the static limit, where another sliding phase begins")]
+    #[error(
+        "the friction force of a rolling phase touches the static limit, where another sliding phase begins"
+    )]
     StaticLimitReached,
     /// The friction force of a rolling phase no longer reaches the static limit: a sliding phase disappears.
-    #[error("the friction force of a rolling phase no longer reaches the static limit, so that a sliding phase is lost")]
+    #[error(
+        "the friction force of a rolling phase no longer reaches the static limit, so that a sliding phase is lost"
+    )]
     StaticLimitMissed,
     /// Slip that did not vanish passes through zero.
     #[error("the slip of a sliding phase passes through zero, where another phase begins")]
@@ -96,7 +114,9 @@ pub enum Grazing {
     #[error("the slip of a sliding phase misses zero, so that the phase after it is lost")]
     SlipMissesZero,
     /// Where slip vanishes the static friction no longer holds the wheel.
-    #[error("where slip vanishes the static friction no longer holds the wheel: it slides on instead of rolling")]
+    #[error(
+        "where slip vanishes the static friction no longer holds the wheel: it slides on instead of rolling"
+    )]
     HoldsNoLonger,
     /// Where slip vanishes the static friction now holds the wheel.
     #[error("where slip vanishes the static friction holds the wheel: it rolls instead of sliding on")]

@@ -19,7 +19,10 @@ mod search;
 mod tests;
 mod variation;
 
-pub use branch::{SlidingBifurcation, SlidingBranch, SlidingBranchEnd, SlidingBranchOptions, SlidingBranchPoint, SlidingRole};
+pub use branch::{
+    SlidingBifurcation, SlidingBranch, SlidingBranchEnd, SlidingBranchOptions, SlidingBranchPoint,
+    SlidingRole,
+};
 pub use error::{Grazing, Refusal, ShimmyError};
 pub use search::SlidingMotionSearch;
 
@@ -74,7 +77,7 @@ impl PeriodicSliding {
     /// Part of the period in which the wheel slides.
     pub fn sliding_fraction(&self) -> f64 {
         let slides = |phase: &&Phase| phase.contact == Contact::Sliding;
-        self.phases.iter().filter(slides).map(|phase| phase.end - phase.start).sum::<f64>() / self.period
+        self.phases.iter().filter(slides).fold(0.0, |sum, phase| sum + phase.end - phase.start) / self.period
     }
 
     /// State at the start, as [`SLIDING_STATE_NAMES`](crate::sliding::SLIDING_STATE_NAMES).
@@ -142,7 +145,8 @@ fn multipliers(map: &ReturnMap, image: &Return) -> Result<(Vec<Complex64>, f64),
     let d = map.free().len();
     let mut monodromy = Vec::with_capacity(d * d);
     for (column, entries) in image.jacobian.chunks_exact(d + 1).take(d).enumerate() {
-        monodromy.extend(entries[..d].iter().enumerate().map(|(row, entry)| entry + f64::from(row == column)));
+        monodromy
+            .extend(entries[..d].iter().enumerate().map(|(row, entry)| entry + f64::from(row == column)));
     }
     let mut list = eigenvalues(&monodromy, d).map_err(|error| Refusal::Integration(error.to_string()))?;
     list.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));

@@ -187,7 +187,9 @@ impl ReturnMap {
             for (column, entries) in jacobian.chunks_exact_mut(d + 1).enumerate() {
                 for (row, &i) in free.iter().enumerate() {
                     entries[row] = match column {
-                        _ if column < d => columns[i][free[column]] / self.scales[i] - f64::from(row == column),
+                        _ if column < d => {
+                            columns[i][free[column]] / self.scales[i] - f64::from(row == column)
+                        }
                         _ if column == d => rate[i] * self.period_scale / self.scales[i],
                         _ => columns[i][PARAMETER] / self.scales[i],
                     };

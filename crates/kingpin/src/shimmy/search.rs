@@ -44,7 +44,8 @@ impl Default for SlidingMotionSearch {
 
 impl SlidingMotionSearch {
     fn check(&self) -> Result<(), SimulationError> {
-        for (name, value) in [("settling_time", self.settling_time), ("longest_period", self.longest_period)] {
+        for (name, value) in [("settling_time", self.settling_time), ("longest_period", self.longest_period)]
+        {
             if !(value > 0.0 && value.is_finite()) {
                 return Err(SimulationError::out_of_range(name, value, "positive and finite, in s"));
             }
@@ -90,7 +91,8 @@ impl Wheel {
         let Recurrence { start, scales, turns } = recurrence;
         let map = ReturnMap::new(self, &start, scales, turns, search.tolerance).map_err(refused)?;
         let (passages, _) = map.follow(&start, &[]).map_err(refused)?;
-        let start = map.start_after(&start, middle_of_longest_passage(&passages, start.period)).map_err(refused)?;
+        let start =
+            map.start_after(&start, middle_of_longest_passage(&passages, start.period)).map_err(refused)?;
         let mut map = ReturnMap::new(self, &start, scales, turns, search.tolerance).map_err(refused)?;
         let (mut start, mut image) = map.solve(&start).map_err(refused)?;
         if let Some(parts) = map.repetitions(&start) {
@@ -104,6 +106,10 @@ impl Wheel {
         let range = motion.psi_max - motion.psi_min;
         if range < AT_REST {
             return Err(ShimmyError::DiesOut { window: search.longest_period, range });
+        }
+        if motion.stable == Some(false) {
+            let settling_time = search.settling_time;
+            return Err(ShimmyError::NotSettled { settling_time, period: motion.period });
         }
         Ok(motion)
     }
@@ -129,9 +135,10 @@ impl Wheel {
         })?;
         let states: Vec<SlipState> = samples.iter().map(|(_, sample)| sample.state).collect();
         let scales = sizes(self, &states);
-        let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, sample)| {
-            (low.min(sample.state[PSI]), high.max(sample.state[PSI]))
-        });
+        let (low, high) =
+            samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), (_, sample)| {
+                (low.min(sample.state[PSI]), high.max(sample.state[PSI]))
+            });
         if high - low < AT_REST {
             return Err(ShimmyError::DiesOut { window, range: high - low });
         }
@@ -154,7 +161,8 @@ impl Wheel {
         for pair in samples.windows(2) {
             let [(start, before), (end, after)] = pair else { continue };
             let (p, n) = (position(&before.state), position(&after.state));
-            if !(p < 0.0 && n >= 0.0) || before.contact != settled.contact || after.contact != settled.contact {
+            if !(p < 0.0 && n >= 0.0) || before.contact != settled.contact || after.contact != settled.contact
+            {
                 continue;
             }
             let fraction = p / (p - n);
@@ -185,7 +193,13 @@ struct Recurrence {
 }
 
 /// The cubic between two samples in the same phase with the right rates.
-fn interpolate(wheel: &SlidingWheel, before: &HybridState, after: &HybridState, step: f64, x: f64) -> SlipState {
+fn interpolate(
+    wheel: &SlidingWheel,
+    before: &HybridState,
+    after: &HybridState,
+    step: f64,
+    x: f64,
+) -> SlipState {
     let (start, end) = (wheel.rate(before), wheel.rate(after));
     let rise = x * x * (3.0 - 2.0 * x);
     let (departure, arrival) = (x * (1.0 - x) * (1.0 - x) * step, x * x * (x - 1.0) * step);

@@ -33,13 +33,13 @@ impl SlidingHistory {
 
     /// Part of the time in which the wheel slides.
     pub fn sliding_fraction(&self) -> f64 {
-        let total: f64 = self.phases.iter().map(|phase| phase.end - phase.start).sum();
-        let sliding: f64 = self
-            .phases
-            .iter()
-            .filter(|phase| phase.contact == Contact::Sliding)
-            .map(|phase| phase.end - phase.start)
-            .sum();
+        let time = |wanted: &dyn Fn(&Phase) -> bool| {
+            self.phases
+                .iter()
+                .filter(|phase| wanted(phase))
+                .fold(0.0, |sum, phase| sum + phase.end - phase.start)
+        };
+        let (total, sliding) = (time(&|_| true), time(&|phase| phase.contact == Contact::Sliding));
         if total > 0.0 { sliding / total } else { 0.0 }
     }
 }

@@ -245,7 +245,12 @@ fn a_force_that_just_misses_or_just_touches_the_static_limit() {
         // Equal coefficients: slip for a moment of the order of the root of the distance, and next to no effect.
         let touched = run(needed * (1.0 - distance), needed * (1.0 - distance));
         let kinds: Vec<Contact> = touched.phases.iter().map(|phase| phase.contact).collect();
-        assert_eq!(kinds, [Contact::Rolling, Contact::Sliding, Contact::Rolling], "{distance}: {:?}", touched.phases);
+        assert_eq!(
+            kinds,
+            [Contact::Rolling, Contact::Sliding, Contact::Rolling],
+            "{distance}: {:?}",
+            touched.phases
+        );
         let slip = touched.phases[1];
         assert!(slip.start < time && slip.end > time - 1e-6);
         assert!(slip.end - slip.start < 0.2 * distance.sqrt(), "{distance}: {slip:?}");
@@ -263,12 +268,17 @@ fn a_force_that_just_misses_or_just_touches_the_static_limit() {
 #[test]
 fn growing_friction_tends_to_rolling() {
     // The part of the time that is slid falls to zero and the motion becomes that of the rolling wheel.
-    let rolling = loaded(100.0, 100.0).simulate_from(&start(&loaded(100.0, 100.0)), 0.2, 2).unwrap().states[1];
+    let rolling =
+        loaded(100.0, 100.0).simulate_from(&start(&loaded(100.0, 100.0)), 0.2, 2).unwrap().states[1];
     let mut before = f64::INFINITY;
     for mu in [1.0, 1.5, 2.0, 4.0] {
         let wheel = loaded(mu, mu);
         let end = wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2).unwrap().states[1];
-        let distance = [0, 1, 2, 3, 5].into_iter().zip(0..5).map(|(a, b)| (end[a] - rolling[b]).abs()).fold(0.0, f64::max);
+        let distance = [0, 1, 2, 3, 5]
+            .into_iter()
+            .zip(0..5)
+            .map(|(a, b)| (end[a] - rolling[b]).abs())
+            .fold(0.0, f64::max);
         assert!(distance <= before, "{mu}: {distance} {before}");
         before = distance;
     }
