@@ -9,6 +9,8 @@ use crate::error::KingpinError;
 use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, follow};
 use std::ops::ControlFlow;
 
+/// Motions whose period and extrema differ by less than this part are the same.
+const SAME: f64 = 1e-3;
 /// Most renewals of the start on one branch.
 const MOST_SEGMENTS: usize = 1000;
 
@@ -17,7 +19,9 @@ const MOST_SEGMENTS: usize = 1000;
 pub struct SlidingBranchOptions {
     /// Parameter values at which motions are wanted exactly.
     pub at: Vec<f64>,
-    /// Whether to go on beyond a grazing where the motion goes on with another sequence of phases.
+    /// Whether to go on beyond a grazing with a motion of another sequence of phases, where there is one that differs by less
+    /// than three hundredths of its size. With `mu_s > mu_d` the motion may jump there: a wheel that just sticks is held
+    /// for a finite time, while one that just misses is not.
     pub through_grazings: bool,
     /// Settings of the continuation.
     pub settings: Settings,
@@ -196,8 +200,13 @@ impl PeriodicSliding {
                     Some(Refusal::Grazing(change)) => {
                         let at = last.unknown[last.unknown.len() - 1];
                         let tried = curve.map.wheel.get(along.followed());
-                        let crossed =
-                            options.through_grazings.then(|| curve.cross(last, (lower, upper))).flatten();
+                        let known = |value: f64, motion: &PeriodicSliding| {
+                            is_known(&points, along.convert(value), motion)
+                        };
+                        let crossed = match options.through_grazings {
+                            true => curve.cross(last, (lower, upper), &known),
+                            false => None,
+                        };
                         if let Some(beyond) = crossed {
                             if let Some(point) = points.last_mut() {
                                 point.role = SlidingRole::Grazing(change);
@@ -223,6 +232,26 @@ impl PeriodicSliding {
         }
         Ok((points, SlidingBranchEnd::Continuation(Stop::MostSteps)))
     }
+}
+
+/// Whether the branch has been at this motion: between two neighbouring points with as many phases.
+fn is_known(points: &[SlidingBranchPoint], value: f64, motion: &PeriodicSliding) -> bool {
+    points.windows(2).any(|pair| {
+        let [before, after] = pair else { return false };
+        let span = after.value - before.value;
+        let fraction = (value - before.value) / span;
+        let same_phases = before.motion.phases.len() == motion.phases.len();
+        if span == 0.0 || !(0.0..=1.0).contains(&fraction) || !same_phases {
+            return false;
+        }
+        let size = motion.psi_max - motion.psi_min;
+        let difference = |of: &dyn Fn(&PeriodicSliding) -> f64| {
+            (of(&before.motion) + fraction * (of(&after.motion) - of(&before.motion)) - of(motion)).abs()
+        };
+        difference(&|motion| motion.period) < SAME * motion.period
+            && difference(&|motion| motion.psi_max) < SAME * size
+            && difference(&|motion| motion.psi_min) < SAME * size
+    })
 }
 
 fn point(along: Along, solution: &Solution<CurvePoint>, origin: Origin) -> SlidingBranchPoint {

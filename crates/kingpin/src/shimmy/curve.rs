@@ -186,12 +186,13 @@ impl SlidingCurve {
         Ok((self.unknown(&start, value), tangent))
     }
 
-    /// The motion beyond a grazing: at a parameter value near that of the last solution, with another sequence of phases. Returns
-    /// the unknowns and a tangent.
+    /// The motion beyond a grazing: at a parameter value near that of the last solution, with another sequence of phases and
+    /// not `known` at this value. Returns the unknowns and a tangent.
     pub fn cross(
         &mut self,
         solution: &Solution<CurvePoint>,
         range: (f64, f64),
+        known: &dyn Fn(f64, &PeriodicSliding) -> bool,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
         let slope = &solution.tangent;
         let last = slope.len() - 1;
@@ -207,12 +208,16 @@ impl SlidingCurve {
                 let mut map =
                     ReturnMap { wheel, expected: None, parameter: None, ..solution.point.motion.map.clone() };
                 let start = self.start(&solution.unknown);
-                let Ok((found, _)) = map.solve(&start) else { continue };
+                let Ok((found, image)) = map.solve(&start) else { continue };
                 let far = map.free().iter().any(|&i| {
                     ((found.state.state[i] - start.state.state[i]) / map.scales[i]).abs() > NEAR_GRAZING
                 });
                 let unchanged = map.expected.as_ref().is_none_or(|new| difference(&old, new).is_none());
                 if far || unchanged || (found.period / start.period - 1.0).abs() > NEAR_GRAZING {
+                    continue;
+                }
+                let Ok(motion) = PeriodicSliding::describe(&map, &found, &image) else { continue };
+                if known(value, &motion) {
                     continue;
                 }
                 self.map = ReturnMap { parameter: Some((self.key, 1.0)), ..map };

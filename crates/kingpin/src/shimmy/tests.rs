@@ -8,6 +8,7 @@ use crate::Key;
 use crate::branches::Along;
 use crate::sliding::{HybridState, as_slip_state};
 use std::ops::ControlFlow;
+use std::sync::OnceLock;
 
 fn wheel(changes: &[(Key, f64)]) -> Wheel {
     changes.iter().try_fold(Wheel::default(), |wheel, &(key, value)| wheel.with(key, value)).unwrap()
@@ -29,15 +30,19 @@ fn settled(wheel: &Wheel, kick: f64, search: &SlidingMotionSearch) -> PeriodicSl
 }
 
 fn short_caster_motion() -> PeriodicSliding {
-    settled(
-        &short_caster(),
-        0.2,
-        &SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() },
-    )
+    static FOUND: OnceLock<PeriodicSliding> = OnceLock::new();
+    let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
+    FOUND.get_or_init(|| settled(&short_caster(), 0.2, &search)).clone()
 }
 
-fn loaded_motion(v: f64) -> PeriodicSliding {
-    settled(&loaded(v), 0.8, &SlidingMotionSearch { settling_time: 12.0, ..SlidingMotionSearch::default() })
+fn loaded_motion() -> PeriodicSliding {
+    static FOUND: OnceLock<PeriodicSliding> = OnceLock::new();
+    FOUND.get_or_init(|| loaded_motion_at(7.0)).clone()
+}
+
+fn loaded_motion_at(v: f64) -> PeriodicSliding {
+    let search = SlidingMotionSearch { settling_time: 12.0, ..SlidingMotionSearch::default() };
+    settled(&loaded(v), 0.8, &search)
 }
 
 /// The motion with another start.
@@ -58,7 +63,7 @@ fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) 
 
 #[test]
 fn long_simulation_settles_on_the_motion() {
-    for (motion, kick) in [(short_caster_motion(), 0.2), (loaded_motion(7.0), 0.8)] {
+    for (motion, kick) in [(short_caster_motion(), 0.2), (loaded_motion(), 0.8)] {
         assert_eq!(motion.stable, Some(true));
         let start = motion.wheel.perturbed_uniform_motion(&[("psi", kick)]).unwrap();
         let settling = 20.0;
@@ -85,7 +90,7 @@ fn long_simulation_settles_on_the_motion() {
 
 #[test]
 fn perturbations_decay_as_the_multipliers_say() {
-    let motion = loaded_motion(7.0);
+    let motion = loaded_motion();
     let largest = motion.nontrivial().map(|multiplier| multiplier.norm()).fold(0.0, f64::max);
     let sliding = motion.wheel.sliding().unwrap().tolerance(1e-12);
     let mut perturbed = motion.start.state;
@@ -109,7 +114,7 @@ fn perturbations_decay_as_the_multipliers_say() {
 
 #[test]
 fn derivatives_of_the_return_map_are_those_of_finite_differences() {
-    for motion in [short_caster_motion(), loaded_motion(7.0)] {
+    for motion in [short_caster_motion(), loaded_motion()] {
         for contact in [Contact::Rolling, Contact::Sliding] {
             let (mut map, start) = started_in(&motion, contact);
             map.parameter = Some((Key::V, 1.0));
@@ -146,7 +151,7 @@ fn derivatives_of_the_return_map_are_those_of_finite_differences() {
 
 #[test]
 fn multipliers_do_not_depend_on_the_start() {
-    for motion in [short_caster_motion(), loaded_motion(7.0)] {
+    for motion in [short_caster_motion(), loaded_motion()] {
         for contact in [Contact::Rolling, Contact::Sliding] {
             let (map, start) = started_in(&motion, contact);
             let other =
@@ -217,7 +222,7 @@ fn branch_meets_motions_found_otherwise() {
 #[test]
 fn grazing_ends_the_branch_where_simulation_changes() {
     let along = Along::new(Key::V, 6.9, 7.1).unwrap();
-    let motion = loaded_motion(7.0);
+    let motion = loaded_motion();
     let branch =
         motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(())).unwrap();
     let SlidingBranchEnd::Grazing { change, value, located_within } = branch.ends[1] else {
@@ -260,12 +265,12 @@ fn grazing_ends_the_branch_where_simulation_changes() {
 fn branch_goes_on_beyond_grazings() {
     let along = Along::new(Key::V, 6.98, 7.02).unwrap();
     let options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
-    let branch = loaded_motion(7.0).along(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
+    let branch = loaded_motion().along(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
     let grazings = branch.points.iter().filter(|point| matches!(point.role, SlidingRole::Grazing(_)));
     assert!(grazings.count() >= 2);
     let last = branch.points.last().unwrap();
     assert_eq!(last.value, 7.02);
-    let found = loaded_motion(7.02);
+    let found = loaded_motion_at(7.02);
     assert!((last.motion.period / found.period - 1.0).abs() < 1e-8);
     assert_eq!(last.motion.phases.len(), found.phases.len());
     // Period and amplitude are continuous along the branch.
@@ -277,7 +282,7 @@ fn branch_goes_on_beyond_grazings() {
 
 #[test]
 fn energy_is_balanced_along_every_passage() {
-    let motion = loaded_motion(7.0);
+    let motion = loaded_motion();
     let equations = Equations::new(&motion.wheel).unwrap();
     let (list, _) = motion.map.follow(&motion.start, &[]).unwrap();
     assert!(list.len() > 6);
