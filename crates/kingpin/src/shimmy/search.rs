@@ -57,6 +57,8 @@ impl SlidingMotionSearch {
 impl Wheel {
     /// The periodic motion with sliding phases on which the motion from a state `(u, q, psi, V, Omega)` without slip settles.
     ///
+    /// Whole turns that the caster has made before are taken off, so that it swings about an angle between -pi and pi.
+    ///
     /// # Errors
     /// [`ShimmyError`]: the motion dies out, does not repeat itself, or cannot be followed.
     ///
@@ -143,7 +145,9 @@ impl Wheel {
             return Err(ShimmyError::DiesOut { window, range: high - low });
         }
         let rate = sliding.rate(&settled);
+        // Without a spring about the king pin whole turns make no difference.
         let turned = self.get(Key::KPsi) == 0.0;
+        let all_turns = if turned { TAU * (0.5 * (low + high) / TAU).round() } else { 0.0 };
         let whole_turns = |state: &SlipState| {
             if turned { ((state[PSI] - settled.state[PSI]) / TAU).round() } else { 0.0 }
         };
@@ -181,7 +185,9 @@ impl Wheel {
             settling_time: search.settling_time,
             nearest,
         })?;
-        Ok(Recurrence { start: Start { state: settled, period }, scales, turns })
+        let mut state = settled;
+        state.state[PSI] -= all_turns;
+        Ok(Recurrence { start: Start { state, period }, scales, turns })
     }
 }
 

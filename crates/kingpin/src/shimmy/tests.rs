@@ -351,28 +351,68 @@ fn refusals_say_why() {
 
 #[test]
 fn smoothed_friction_has_the_same_motion_in_the_limit() {
-    use arclength::cycle::Orbit;
+    use arclength::cycle::{CycleStart, Cycles, Orbit};
     use arclength::integration::{Integrator, autonomous};
     let wheel = short_caster().with(Key::MuS, 0.8).unwrap();
     let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
     let exact = settled(&wheel, 0.2, &search);
-    let [u, q, psi, speed, lateral, yaw, rim] = exact.state();
-    let periods: Vec<f64> = [4e-3, 2e-3, 1e-3, 5e-4]
+    let smoothed = |smoothing: f64| {
+        let field = wheel.smoothed_sliding(&[Key::V], smoothing).unwrap();
+        let parameters = field.parameters();
+        let settled = Integrator::with_tolerance(1e-9)
+            .integrate(autonomous(&field, &parameters), 0.0, &exact.state(), 3.0)
+            .unwrap()
+            .state;
+        let orbit = Orbit::from_time_history(&field, &parameters, &settled, 1.2 * exact.period).unwrap();
+        (field, orbit)
+    };
+    let errors: Vec<f64> = [4e-3, 2e-3, 1e-3, 5e-4]
         .into_iter()
-        .map(|smoothing| {
-            let field = wheel.smoothed_sliding(&[Key::V], smoothing).unwrap();
-            let parameters = field.parameters();
-            let settled = Integrator::with_tolerance(1e-9)
-                .integrate(autonomous(&field, &parameters), 0.0, &[u, q, psi, speed, lateral, yaw, rim], 3.0)
-                .unwrap()
-                .state;
-            Orbit::from_time_history(&field, &parameters, &settled, 1.2 * exact.period).unwrap().period
-        })
+        .map(|smoothing| (smoothed(smoothing).1.period / exact.period - 1.0).abs())
         .collect();
-    let errors: Vec<f64> = periods.iter().map(|period| (period / exact.period - 1.0).abs()).collect();
     // The orders tend to 4/5 from below.
     let orders: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     assert!(orders.windows(2).all(|pair| pair[0] < pair[1]), "{orders:?}");
     assert!(orders.iter().all(|order| (0.7..0.82).contains(order)), "{orders:?}");
     assert!(errors[3] < 1e-3, "{errors:?}");
+    // Collocation of the smooth field knows no events: its multipliers tend to those of the jumps.
+    let distances = [4e-3, 1e-3].map(|smoothing| {
+        let (field, orbit) = smoothed(smoothing);
+        let branch = Cycles::of(&field, CycleStart::Orbit(orbit))
+            .parameters(&field.parameters())
+            .along(0, 0.49..=0.5)
+            .run()
+            .unwrap();
+        let cycle = branch.points.iter().find(|cycle| cycle.value == 0.5).unwrap();
+        assert_eq!(cycle.stable, exact.stable);
+        let nearest = |multiplier: Complex64| {
+            cycle.multipliers.iter().map(|other| (other - multiplier).norm()).fold(f64::INFINITY, f64::min)
+        };
+        exact.multipliers.iter().map(|multiplier| nearest(*multiplier)).fold(0.0, f64::max)
+    });
+    assert!(distances[1] < 0.04 && distances[1] < 0.5 * distances[0], "{distances:?}");
+}
+
+/// The paper's wheel at l = 0.08 m, r = 1 m under a load of 100 N, without dampers.
+#[test]
+fn large_shimmy_of_the_papers_wheel_beside_stable_uniform_motion() {
+    let wheel = wheel(&[(Key::V, 8.4), (Key::FAz, -100.0)]);
+    let uniform = wheel.uniform_motion().unwrap();
+    assert!(uniform.is_stable() && uniform.rolls());
+    let search = SlidingMotionSearch { settling_time: 40.0, ..SlidingMotionSearch::default() };
+    let motion = settled(&wheel, 1.2, &search);
+    assert_eq!((motion.stable, motion.turns), (Some(true), 0));
+    assert!((motion.period - 0.299137986).abs() < 1e-8, "{}", motion.period);
+    assert!((motion.psi_max - 0.430465).abs() < 1e-6 && (motion.psi_min + 2.805369).abs() < 1e-6);
+    assert!((motion.sliding_fraction() - 0.4747).abs() < 1e-4);
+    // It ends where the rolling phase is lost; there is no shimmy of this kind far below the boundary of stability.
+    let along = Along::new(Key::V, 7.0, 8.5).unwrap();
+    let branch =
+        motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(())).unwrap();
+    let [first, last] = &branch.ends;
+    assert!(matches!(first, SlidingBranchEnd::Grazing { change: Grazing::SlipVanishes, value, .. }
+        if (value - 8.160952).abs() < 1e-5));
+    assert!(matches!(last, SlidingBranchEnd::Grazing { change: Grazing::StaticLimitReached, value, .. }
+        if (value - 8.455932).abs() < 1e-5));
+    assert!(branch.points.iter().all(|point| point.motion.stable == Some(true)));
 }
