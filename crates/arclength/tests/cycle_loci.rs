@@ -227,3 +227,28 @@ fn tori_of_a_moebius_band_end_at_the_one_to_two_resonance() {
     assert_at(&tori, SpecialKind::Resonance3, [-1.0 / 36.0, 0.0], 1e-8);
     assert_at(&tori, SpecialKind::Resonance4, [-1.0 / 16.0, 0.0], 1e-8);
 }
+
+#[test]
+fn the_doublings_of_lure_form_a_closed_curve() {
+    let start = common::hopf_start(&common::Lure, &[0.0; 3], &[1.0, 1.0]);
+    let branch = Cycles::of(&common::Lure, start)
+        .parameters(&[1.0, 1.0])
+        .along(0, 0.0..=1.1)
+        .run()
+        .expect("exists");
+    let (_, doubling) =
+        branch.special_points().find(|(special, _)| *special == Special::Doubling).expect("a doubling");
+    let doublings = CycleLocus::of(&common::Lure)
+        .from_cycle(SpecialKind::PeriodDoubling, &doubling.orbit, &[doubling.value, 1.0])
+        .along("alpha", -2.0..=2.0)
+        .and("beta", 0.2..=2.0)
+        .run()
+        .expect("exists");
+    assert!(matches!(doublings.forward_stop, Stop::Closed), "{}", doublings.forward_stop);
+    // With alpha = 0 the system is reversible and multipliers come in reciprocal pairs: two of them are -1.
+    let points = found(&doublings);
+    assert_eq!(points.len(), 2, "{points:?}");
+    for (kind, values) in points {
+        assert!(kind == SpecialKind::Resonance2 && values[0].abs() < 1e-8);
+    }
+}

@@ -14,6 +14,8 @@ const COUPLED_SHARE: f64 = 1e-2;
 const NONLINEAR_SHARE: f64 = 1e-3;
 /// and their sizes are this part of it.
 const AT_ZERO: f64 = 0.1;
+/// An influence of one state on another below this part of the fastest rate of their group is that of rounding.
+const NO_INFLUENCE: f64 = 1e-10;
 /// Sweeps of balancing.
 const SWEEPS: usize = 30;
 
@@ -27,8 +29,7 @@ pub(crate) fn natural_scales<F: VectorField>(
 ) -> Vec<f64> {
     let n = state.len();
     let (jacobian, lengths) = derivatives(field, state, parameters, speed);
-    let group = strongly_coupled(&jacobian, n);
-    let units = balance(&jacobian, n, &group);
+    let (group, units) = groups_and_units(&jacobian, n);
     let nonlinear = nonlinear_lengths(&jacobian, &lengths, &units, n, speed);
     (0..n)
         .map(|index| {
@@ -137,6 +138,30 @@ fn nonlinear_lengths(
         .collect()
 }
 
+/// Groups of states that influence each other, and the units of all states. An influence that balancing leaves below
+/// [`NO_INFLUENCE`] is none: at an invariant subspace rounding couples states that are not coupled.
+fn groups_and_units(jacobian: &[f64], n: usize) -> (Vec<usize>, Vec<f64>) {
+    let mut coupling = jacobian.to_vec();
+    loop {
+        let group = strongly_coupled(&coupling, n);
+        let units = balance(&coupling, n, &group);
+        let balanced = |entry: usize| (jacobian[entry] * units[entry / n] / units[entry % n]).abs();
+        let in_group = |entry: usize| group[entry % n] == group[entry / n];
+        let mut changed = false;
+        for entry in (0..n * n).filter(|&entry| in_group(entry) && entry % n != entry / n) {
+            let members = |other: &usize| in_group(*other) && group[other % n] == group[entry % n];
+            let rate = (0..n * n).filter(members).map(balanced).fold(0.0, f64::max);
+            if coupling[entry] != 0.0 && balanced(entry) < NO_INFLUENCE * rate {
+                coupling[entry] = 0.0;
+                changed = true;
+            }
+        }
+        if !changed {
+            return (group, units);
+        }
+    }
+}
+
 /// Numbers the groups of states that influence each other, directly or through others.
 fn strongly_coupled(jacobian: &[f64], n: usize) -> Vec<usize> {
     let mut reaches: Vec<bool> =
@@ -204,6 +229,34 @@ mod tests {
             derivative[0] = rate * a;
             derivative[1] = (-angle.sin() * 4.0 - rate * 0.1 + current) * b;
             derivative[2] = (parameters[0] - current * 3.0 - rate) * c;
+        }
+    }
+
+    /// Predator and prey: without predators nothing changes that.
+    struct Invariant;
+
+    impl VectorField for Invariant {
+        fn state_names(&self) -> Vec<String> {
+            ["prey", "predator"].map(String::from).to_vec()
+        }
+        fn parameter_names(&self) -> Vec<String> {
+            vec!["rate".into()]
+        }
+        fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+            let [prey, predator] = [state[0], state[1]];
+            derivative[0] = prey * (-prey + 1.0) - prey * predator - parameters[0] * prey;
+            derivative[1] = predator * prey * 3.0 - predator;
+        }
+    }
+
+    #[test]
+    fn rounding_next_to_an_invariant_subspace_does_not_count() {
+        let exact = natural_scales(&Invariant, &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
+        for predator in [1e-36, -1e-25] {
+            let scales = natural_scales(&Invariant, &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
+            for (scale, reference) in scales.iter().zip(&exact) {
+                assert!((scale / reference - 1.0).abs() < 1e-6, "{scales:?} {exact:?}");
+            }
         }
     }
 

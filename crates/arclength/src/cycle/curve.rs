@@ -12,6 +12,7 @@ use crate::algebraic::scales::natural_scales;
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
+use std::cell::OnceCell;
 
 /// How finely cycles are resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,6 +103,8 @@ pub struct CycleCurve<'a> {
     largest: Vec<f64>,
     /// Sizes below which a state counts as one that rests.
     resting: Vec<f64>,
+    /// Sizes of the states where the branch starts.
+    signature_scales: OnceCell<Vec<f64>>,
     first_period: Option<f64>,
     /// Whether the branch is one of doubled cycles, which ends where they become single again.
     pub doubled: bool,
@@ -130,6 +133,7 @@ impl<'a> CycleCurve<'a> {
             amplitudes: vec![1.0; n],
             largest: vec![0.0; n],
             resting,
+            signature_scales: OnceCell::new(),
             first_period: None,
             doubled: false,
             error_estimate: f64::INFINITY,
@@ -323,10 +327,11 @@ impl Curve for CycleCurve<'_> {
     fn signature(&self, unknown: &[f64]) -> Vec<f64> {
         let n = self.collocation.problem.dimension();
         let mut signature = vec![unknown[unknown.len() - 2].ln()];
-        for (range, scale) in
-            ranges(&self.collocation, unknown, n).iter().zip(self.largest.iter().zip(&self.resting))
-        {
-            let scale = scale.0.max(*scale.1);
+        // Sizes grow along the branch: signatures are compared in those of the first one.
+        let scales = self.signature_scales.get_or_init(|| {
+            self.largest.iter().zip(&self.resting).map(|(largest, resting)| largest.max(*resting)).collect()
+        });
+        for (range, scale) in ranges(&self.collocation, unknown, n).iter().zip(scales) {
             signature.extend([range.largest / scale, range.smallest / scale]);
         }
         signature

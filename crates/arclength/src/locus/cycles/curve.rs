@@ -17,6 +17,7 @@ use crate::cycle::problem::PeriodicProblem;
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 
 /// Sizes of eigenfunctions in the metric, so that they count less than states and parameters.
@@ -69,6 +70,7 @@ pub(super) struct CycleLocusCurve<'a> {
     second: usize,
     largest: Vec<f64>,
     resting: Vec<f64>,
+    signature_scales: OnceCell<Vec<f64>>,
     first_period: Option<f64>,
     error_estimate: f64,
     schur: Option<(usize, PeriodicSchur)>,
@@ -95,6 +97,7 @@ impl<'a> CycleLocusCurve<'a> {
             second,
             largest: vec![0.0; states],
             resting,
+            signature_scales: OnceCell::new(),
             first_period: None,
             error_estimate: f64::INFINITY,
             schur: None,
@@ -351,11 +354,11 @@ impl Curve for CycleLocusCurve<'_> {
         let (cycle, _) = split(unknown, self.states, self.kind());
         let end = cycle.len() - 3;
         let mut signature = vec![cycle[end].ln(), cycle[end + 2] / self.system.parameter_scales[1]];
-        for (range, scale) in ranges(&self.base, &cycle[..end + 2], self.states)
-            .iter()
-            .zip(self.largest.iter().zip(&self.resting))
-        {
-            let scale = scale.0.max(*scale.1);
+        // Sizes grow along the curve: signatures are compared in those of the first one.
+        let scales = self.signature_scales.get_or_init(|| {
+            self.largest.iter().zip(&self.resting).map(|(largest, resting)| largest.max(*resting)).collect()
+        });
+        for (range, scale) in ranges(&self.base, &cycle[..end + 2], self.states).iter().zip(scales) {
             signature.extend([range.largest / scale, range.smallest / scale]);
         }
         signature
