@@ -45,6 +45,13 @@ fn loaded_motion_at(v: f64) -> PeriodicSliding {
     settled(&loaded(v), 0.8, &search)
 }
 
+/// Locates grazings less sharply than the default, which saves most of the time.
+fn quick() -> SlidingBranchOptions {
+    let mut options = SlidingBranchOptions::default();
+    options.settings.smallest_step = 1e-6;
+    options
+}
+
 /// The motion with another start.
 fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) {
     let (list, _) = motion.map.follow(&motion.start, &[]).unwrap();
@@ -263,11 +270,11 @@ fn grazing_ends_the_branch_where_simulation_changes() {
 
 #[test]
 fn branch_goes_on_beyond_grazings() {
-    let along = Along::new(Key::V, 6.98, 7.02).unwrap();
-    let options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
+    let along = Along::new(Key::V, 7.0, 7.02).unwrap();
+    let options = SlidingBranchOptions { through_grazings: true, ..quick() };
     let branch = loaded_motion().along(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
     let grazings = branch.points.iter().filter(|point| matches!(point.role, SlidingRole::Grazing(_)));
-    assert!(grazings.count() >= 2);
+    assert!(grazings.count() >= 1);
     let last = branch.points.last().unwrap();
     assert_eq!(last.value, 7.02);
     let found = loaded_motion_at(7.02);
@@ -399,16 +406,15 @@ fn large_shimmy_of_the_papers_wheel_beside_stable_uniform_motion() {
     let wheel = wheel(&[(Key::V, 8.4), (Key::FAz, -100.0)]);
     let uniform = wheel.uniform_motion().unwrap();
     assert!(uniform.is_stable() && uniform.rolls());
-    let search = SlidingMotionSearch { settling_time: 40.0, ..SlidingMotionSearch::default() };
+    let search = SlidingMotionSearch { settling_time: 25.0, ..SlidingMotionSearch::default() };
     let motion = settled(&wheel, 1.2, &search);
     assert_eq!((motion.stable, motion.turns), (Some(true), 0));
     assert!((motion.period - 0.299137986).abs() < 1e-8, "{}", motion.period);
     assert!((motion.psi_max - 0.430465).abs() < 1e-6 && (motion.psi_min + 2.805369).abs() < 1e-6);
     assert!((motion.sliding_fraction() - 0.4747).abs() < 1e-4);
     // It ends where the rolling phase is lost; there is no shimmy of this kind far below the boundary of stability.
-    let along = Along::new(Key::V, 7.0, 8.5).unwrap();
-    let branch =
-        motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(())).unwrap();
+    let along = Along::new(Key::V, 8.0, 8.5).unwrap();
+    let branch = motion.along(along, &quick(), |_, _| ControlFlow::Continue(())).unwrap();
     let [first, last] = &branch.ends;
     assert!(matches!(first, SlidingBranchEnd::Grazing { change: Grazing::SlipVanishes, value, .. }
         if (value - 8.160952).abs() < 1e-5));
