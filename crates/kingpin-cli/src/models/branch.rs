@@ -101,6 +101,20 @@ impl End {
                 ),
                 None,
             ),
+            Stop::PeriodDoubling { parameter, period } => (
+                format!(
+                    "the doubled cycles end at a period doubling at {key} = {}, where the single cycle has the period {}",
+                    readable(*parameter),
+                    readable(*period)
+                ),
+                None,
+            ),
+            Stop::StrongResonance { order } => (
+                format!(
+                    "the curve of torus bifurcations ends at a 1:{order} resonance, where its multipliers meet"
+                ),
+                None,
+            ),
             Stop::PeriodUnbounded { period, parameter } => (
                 format!(
                     "the period grows without bound ({} at {key} = {}): a homoclinic or heteroclinic orbit is near",

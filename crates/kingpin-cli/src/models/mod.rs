@@ -8,7 +8,7 @@ pub mod model;
 mod normal_form;
 pub mod picture;
 pub mod result_file;
-mod show;
+pub mod show;
 pub mod simulate;
 mod start;
 mod story;

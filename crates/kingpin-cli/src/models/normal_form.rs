@@ -1,9 +1,9 @@
 //! Normal-form coefficients in words, by the names that users of AUTO and MatCont know.
 
 use crate::document::NamedNumbers;
+use crate::labels::kind;
 use crate::numbers::significant;
 use arclength::branch::{Criticality, SpecialKind};
-use arclength::cycle::{CyclePoint, Role, Special};
 use arclength::equilibrium::{Crossing, SpecialPoint};
 use arclength::locus::CodimensionTwoPoint;
 
@@ -82,12 +82,24 @@ pub fn criticality(criticality: Criticality) -> &'static str {
     }
 }
 
-/// What is known about a special cycle, by name.
-pub fn of_cycle(cycle: &CyclePoint) -> NamedNumbers {
-    match cycle.role {
-        Role::Special(Special::Torus { argument }) => {
-            NamedNumbers(vec![("multiplier_argument".to_owned(), argument)])
-        }
-        _ => NamedNumbers::default(),
+/// What the normal form of a special cycle says, given its coefficients by the names of the library.
+pub fn of_cycle(label: Option<&str>, coefficients: &NamedNumbers) -> String {
+    let mut texts: Vec<String> = coefficients
+        .0
+        .iter()
+        .map(|(name, value)| {
+            let name = match name.as_str() {
+                "quadratic_coefficient" => "b",
+                "cubic_coefficient" if label.is_some_and(|label| kind(label) == "NS") => "Re d",
+                "cubic_coefficient" => "c",
+                "argument" => "argument of the multipliers",
+                other => other,
+            };
+            format!("{name} = {}", significant(*value, COEFFICIENT))
+        })
+        .collect();
+    if let Some(cubic) = coefficients.named("cubic_coefficient") {
+        texts.push(if cubic < 0.0 { "supercritical" } else { "subcritical" }.to_owned());
     }
+    texts.join(", ")
 }

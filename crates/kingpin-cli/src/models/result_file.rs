@@ -2,7 +2,7 @@
 
 use super::cycles::CyclesReport;
 use super::equilibria::EquilibriaReport;
-use super::locus::LocusReport;
+use super::locus::{CycleLocusReport, LocusReport};
 use super::simulate::HistoryReport;
 use crate::document::Schema;
 use serde::Deserialize;
@@ -16,8 +16,10 @@ pub enum ResultFile {
     Equilibria(EquilibriaReport),
     /// Of `cycles`.
     Cycles(CyclesReport),
-    /// Of `locus`.
+    /// Of `locus`, of equilibria.
     Locus(LocusReport),
+    /// Of `locus`, of cycles.
+    CycleLocus(CycleLocusReport),
     /// Of `simulate`.
     History(HistoryReport),
 }
@@ -45,6 +47,7 @@ impl ResultFile {
             (EquilibriaReport::SCHEMA, 1) => parse(&text).map(Self::Equilibria),
             (CyclesReport::SCHEMA, 1) => parse(&text).map(Self::Cycles),
             (LocusReport::SCHEMA, 1) => parse(&text).map(Self::Locus),
+            (CycleLocusReport::SCHEMA, 1) => parse(&text).map(Self::CycleLocus),
             (HistoryReport::SCHEMA, 1) => parse(&text).map(Self::History),
             _ => Err(format!("it is a {name} of version {version}; {ALLOWED}")),
         }
@@ -58,6 +61,9 @@ impl ResultFile {
             }
             Self::Cycles(report) => report.points.iter().filter_map(|point| point.label.clone()).collect(),
             Self::Locus(report) => report.points.iter().filter_map(|point| point.label.clone()).collect(),
+            Self::CycleLocus(report) => {
+                report.points.iter().filter_map(|point| point.label.clone()).collect()
+            }
             Self::History(_) => vec![HistoryReport::END.to_owned()],
         }
     }

@@ -85,6 +85,10 @@ impl Show {
                     report.explain = self.explain;
                     report.write_table(out)?;
                 }
+                ResultFile::CycleLocus(report) => {
+                    report.explain = self.explain;
+                    report.write_table(out)?;
+                }
                 ResultFile::History(report) => report.write_table(out)?,
             }
         }
@@ -102,6 +106,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
             ResultFile::Equilibria(report) => Some(vec![report.along.key.clone()]),
             ResultFile::Cycles(report) => Some(vec![report.along.key.clone()]),
             ResultFile::Locus(report) => Some(report.keys().map(str::to_owned).to_vec()),
+            ResultFile::CycleLocus(report) => Some(report.keys().map(str::to_owned).to_vec()),
             ResultFile::History(_) => None,
         }
     };
@@ -127,6 +132,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
             ResultFile::Equilibria(report) => (report.states(), &report.model),
             ResultFile::Cycles(report) => (report.states(), &report.model),
             ResultFile::Locus(report) => (Vec::new(), &report.model),
+            ResultFile::CycleLocus(report) => (Vec::new(), &report.model),
             ResultFile::History(_) => continue,
         };
         if index == 0 {
@@ -139,6 +145,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
             .iter()
             .filter_map(|result| match result {
                 ResultFile::Locus(report) => Some(report.curve()),
+                ResultFile::CycleLocus(report) => Some(report.curve()),
                 _ => None,
             })
             .collect();

@@ -7,7 +7,7 @@ use super::simulate::HistoryReport;
 use crate::document::NamedNumbers;
 use crate::failure::Failure;
 use crate::stored::PointReference;
-use arclength::cycle::Orbit;
+use arclength::cycle::{Branching, Orbit};
 use arclength::equilibrium::SpecialPoint;
 
 /// A labelled point with its model.
@@ -27,7 +27,12 @@ pub enum What {
     /// An equilibrium, special or not.
     Equilibrium(Option<SpecialPoint>),
     /// A cycle.
-    Cycle(Orbit),
+    Cycle {
+        /// The cycle itself.
+        orbit: Orbit,
+        /// The start of the branch that leaves there, with the parameter along which it was found.
+        branching: Option<(Branching, String)>,
+    },
     /// The end of a time history.
     Motion {
         /// How long it lasted.
@@ -75,7 +80,29 @@ pub fn read(reference: &PointReference) -> Result<LabelledPoint, Failure> {
             })?;
             reference.check(&orbit, chosen.model.states().len())?;
             chosen.start = orbit.state_at(0.0);
-            Ok(LabelledPoint { label: reference.label.clone(), chosen, what: What::Cycle(orbit) })
+            let branching = point.branching.clone();
+            if let Some(branching) = &branching {
+                branching.check(chosen.model.states().len())?;
+            }
+            let branching = branching.map(|branching| (branching, report.along.key.clone()));
+            Ok(LabelledPoint {
+                label: reference.label.clone(),
+                chosen,
+                what: What::Cycle { orbit, branching },
+            })
+        }
+        ResultFile::CycleLocus(report) => {
+            let point = report.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
+            let [one, two] = report.keys();
+            let parameters = at(&report.parameters, &[(one, point.values[0]), (two, point.values[1])]);
+            let mut chosen = choose(reference, report.model.clone(), &parameters, None)?;
+            let orbit = point.orbit.clone().ok_or_else(|| {
+                reference.failure(format!("{} is stored without its orbit", reference.label))
+            })?;
+            reference.check(&orbit, chosen.model.states().len())?;
+            chosen.start = orbit.state_at(0.0);
+            let what = What::Cycle { orbit, branching: None };
+            Ok(LabelledPoint { label: reference.label.clone(), chosen, what })
         }
         ResultFile::History(report) => {
             if reference.label != HistoryReport::END {

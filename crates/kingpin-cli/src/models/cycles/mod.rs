@@ -22,6 +22,10 @@ use clap::Args;
 use std::ops::ControlFlow;
 
 /// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
+///
+/// From a Hopf point (HB) the cycles that are born there are followed, from a period doubling (PD) the doubled ones, from a
+/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, and from the end (END) of a
+/// time history the cycle on which it has settled.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json"
@@ -38,6 +42,10 @@ pub struct Cycles {
     /// Values of the parameter at which cycles are wanted exactly
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
+
+    /// Follow the branch of the labelled cycle itself, not the one that bifurcates there
+    #[arg(long)]
+    stay: bool,
 
     /// Tell the story of the run after the table
     #[arg(long)]
@@ -123,15 +131,23 @@ impl Cycles {
     ) -> Result<(CycleStart, Origin), Failure> {
         let origin = |how: &str| Origin::labelled(&point.label, how);
         match &point.what {
-            What::Cycle(orbit) => {
-                if matches!(kind(&point.label), "PD" | "BPC") {
-                    output.warn(&format!(
-                        "the branch of the cycle {} itself is followed, not the one that bifurcates there",
-                        point.label
-                    ));
+            What::Cycle { orbit, branching } => match branching {
+                // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
+                Some((branching, key)) if !self.stay && (branching.doubled || *key == self.along.key) => {
+                    let how =
+                        if branching.doubled { "the doubled cycles" } else { "the other branch through it" };
+                    Ok((CycleStart::Branching(branching.clone()), origin(how)))
                 }
-                Ok((CycleStart::Orbit(orbit.clone()), origin("the branch through it")))
-            }
+                _ => {
+                    if !self.stay && matches!(kind(&point.label), "PD" | "BPC") {
+                        output.warn(&format!(
+                            "the branch of the cycle {} itself is followed, not the one that bifurcates there",
+                            point.label
+                        ));
+                    }
+                    Ok((CycleStart::Orbit(orbit.clone()), origin("the branch through it")))
+                }
+            },
             What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
                 Ok((CycleStart::from(hopf), origin("the cycles that are born there")))
             }

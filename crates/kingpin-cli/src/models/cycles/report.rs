@@ -11,11 +11,11 @@ use crate::models::model::ChosenModel;
 use crate::models::normal_form;
 use crate::models::picture::{self, Curve};
 use crate::models::story::{self, Part, Place};
-use crate::numbers::{readable, significant};
+use crate::numbers::readable;
 use crate::range::Range;
 use crate::report::Report;
 use crate::table::{Cell, Table};
-use arclength::cycle::{CycleBranch, CyclePoint, Orbit, Unlocated};
+use arclength::cycle::{Branching, CycleBranch, CyclePoint, Orbit, Unlocated};
 use kingpin_figure::{Figure, FigureError, palette};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -54,6 +54,9 @@ pub struct CycleReport {
     /// The cycle itself, where a computation can start from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Orbit>,
+    /// The start of the branch that leaves there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub branching: Option<Branching>,
 }
 
 /// A change of a test function behind which no special cycle could be located.
@@ -205,7 +208,8 @@ impl CyclesReport {
 
 impl CycleReport {
     fn new(chosen: &ChosenModel, point: CyclePoint, label: Option<String>) -> Self {
-        let normal_form = normal_form::of_cycle(&point);
+        let finite = point.normal_form.iter().filter(|(_, value)| value.is_finite());
+        let normal_form = NamedNumbers(finite.map(|(name, value)| ((*name).to_owned(), *value)).collect());
         Self {
             value: point.value,
             period: point.period,
@@ -218,17 +222,14 @@ impl CycleReport {
             intervals: point.orbit.mesh.len().saturating_sub(1),
             tests: tests(point.tests.iter().map(|(name, value)| (test_label(name), *value))),
             normal_form,
+            branching: point.branching,
             orbit: label.as_ref().map(|_| point.orbit),
             label,
         }
     }
 
-    /// What is known about a special cycle.
     fn remark(&self) -> String {
-        let texts =
-            self.normal_form.0.iter().map(|(name, value)| format!("{name} = {}", significant(*value, 7)));
-        let texts: Vec<String> = texts.collect();
-        texts.join(", ")
+        normal_form::of_cycle(self.label.as_deref(), &self.normal_form)
     }
 }
 
