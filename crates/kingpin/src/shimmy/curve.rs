@@ -17,6 +17,8 @@ use std::f64::consts::TAU;
 
 /// Bifurcations are located to this part of a step.
 const LOCATED: f64 = 1e-6;
+/// Distance from the unit circle, or from -1, at which a multiplier is critical.
+const CRITICAL: f64 = 1e-3;
 /// Part of its phase that has to lie on both sides of the start.
 const MARGIN: f64 = 0.2;
 /// Distances beyond a grazing, as parts of the range, at which the motion is looked for.
@@ -48,14 +50,25 @@ impl SlidingBifurcation {
             Self::PeriodDoubling => {
                 nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re
             }
-            // Real pairs with product 1 are no bifurcation.
-            Self::Torus => nontrivial
-                .iter()
-                .filter(|multiplier| multiplier.im > 0.0)
-                .map(|multiplier| multiplier.norm() - 1.0)
-                .fold(-1.0, |product, factor| {
-                    if factor.abs() < 0.5 { product * -factor.signum() * factor.abs() } else { product }
-                }),
+            Self::Torus => {
+                let pairs = nontrivial.iter().enumerate().flat_map(|(index, one)| {
+                    nontrivial[index + 1..].iter().map(move |other| 1.0 - one * other)
+                });
+                pairs.product::<Complex64>().re
+            }
+        }
+    }
+
+    /// Whether a solution where the test changes its sign is the bifurcation: a real pair with product 1 is none.
+    fn is_at(self, motion: &PeriodicSliding) -> bool {
+        match self {
+            Self::Fold => true,
+            Self::PeriodDoubling => {
+                motion.nontrivial().any(|multiplier| (multiplier + 1.0).norm() < CRITICAL)
+            }
+            Self::Torus => motion
+                .nontrivial()
+                .any(|multiplier| multiplier.im != 0.0 && (multiplier.norm() - 1.0).abs() < CRITICAL),
         }
     }
 }
@@ -326,7 +339,9 @@ impl Curve for SlidingCurve {
                 continue;
             }
             let test = |_: &mut Self, solution: &Solution<CurvePoint>| Some(bifurcation.test(solution));
-            if let Ok(Some(mut solution)) = locate(self, before, after, &settings, LOCATED, test) {
+            if let Ok(Some(mut solution)) = locate(self, before, after, &settings, LOCATED, test)
+                && bifurcation.is_at(&solution.point.motion)
+            {
                 solution.point.bifurcation = Some(bifurcation);
                 found.push(solution);
             }

@@ -100,6 +100,7 @@ impl Wheel {
         if let Some(parts) = map.repetitions(&start) {
             // The return that was found is not the first.
             map.turns /= parts;
+            map.expected = None;
             start.period /= f64::from(parts);
             map.period_scale = start.period;
             (start, image) = map.solve(&start).map_err(refused)?;
