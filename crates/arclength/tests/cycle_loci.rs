@@ -231,11 +231,8 @@ fn tori_of_a_moebius_band_end_at_the_one_to_two_resonance() {
 #[test]
 fn the_doublings_of_lure_form_a_closed_curve() {
     let start = common::hopf_start(&common::Lure, &[0.0; 3], &[1.0, 1.0]);
-    let branch = Cycles::of(&common::Lure, start)
-        .parameters(&[1.0, 1.0])
-        .along(0, 0.0..=1.1)
-        .run()
-        .expect("exists");
+    let branch =
+        Cycles::of(&common::Lure, start).parameters(&[1.0, 1.0]).along(0, 0.0..=1.1).run().expect("exists");
     let (_, doubling) =
         branch.special_points().find(|(special, _)| *special == Special::Doubling).expect("a doubling");
     let doublings = CycleLocus::of(&common::Lure)

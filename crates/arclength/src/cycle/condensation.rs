@@ -2,13 +2,12 @@
 //! dense factorisation, and a [`Cyclic`] system in the left ends and the scalars is left.
 //!
 //! Apart from the evaluation of the vector field this is where the time of a continuation of cycles goes, so
-//! it is compiled once, not for every field, and for the widest vector instructions that the processor has.
+//! it is compiled once, not for every field, and also for processors with wide vectors and fused operations.
 //! Source: Ascher, Mattheij and Russell, *Numerical Solution of Boundary Value Problems* (1995), section 7.2.
 
 use super::cyclic::{Blocks, Cyclic};
 use super::gauss::Gauss;
 use crate::linear::lu;
-use pulp::Arch;
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
@@ -28,17 +27,23 @@ pub(super) struct Condensation {
     pub(super) gradients: Vec<f64>,
     /// Derivatives of the dense rows with respect to the scalars, row by row; to be filled in.
     pub(super) corner: Vec<f64>,
-    /// LU factors of the interior systems, `(m n)^2` for each interval, and their pivots.
+    /// Rows of the interior systems, `m n` rounded up so that vector instructions leave no rest.
+    padded: usize,
+    /// LU factors of the interior systems, padded by unit vectors, for each interval, and their pivots.
     factors: Vec<f64>,
     pivots: Vec<usize>,
-    /// Interior response to `u_j` and the scalars: `m n` by `n + E` for each interval.
+    /// Interior response to `u_j` and the scalars: `m n` (padded) by `n + E` for each interval.
     response: Vec<f64>,
+    /// One padded right-hand side.
+    column: Vec<f64>,
     transfer: Vec<f64>,
     scalar_columns: Vec<f64>,
     rows: Vec<f64>,
     states: Vec<f64>,
     cyclic: Cyclic,
-    arch: Arch,
+    /// Whether the processor has vectors of four numbers and fused operations.
+    #[cfg(target_arch = "x86_64")]
+    vectorized: bool,
 }
 
 impl Condensation {
@@ -52,6 +57,8 @@ impl Condensation {
             derivatives: Vec::new(),
             gradients: Vec::new(),
             corner: Vec::new(),
+            padded: (degree * n).next_multiple_of(lu::BLOCK),
+            column: vec![0.0; (degree * n).next_multiple_of(lu::BLOCK)],
             factors: Vec::new(),
             pivots: Vec::new(),
             response: Vec::new(),
@@ -60,7 +67,8 @@ impl Condensation {
             rows: Vec::new(),
             states: Vec::new(),
             cyclic: Cyclic::default(),
-            arch: Arch::new(),
+            #[cfg(target_arch = "x86_64")]
+            vectorized: is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
         }
     }
 
@@ -73,9 +81,9 @@ impl Condensation {
         self.gradients.resize(e * intervals * (inner + n), 0.0);
         self.corner.clear();
         self.corner.resize(e * e, 0.0);
-        self.factors.resize(intervals * inner * inner, 0.0);
-        self.pivots.resize(intervals * inner, 0);
-        self.response.resize(intervals * inner * (n + e), 0.0);
+        self.factors.resize(intervals * self.padded * self.padded, 0.0);
+        self.pivots.resize(intervals * self.padded, 0);
+        self.response.resize(intervals * self.padded * (n + e), 0.0);
         self.transfer.resize(intervals * n * n, 0.0);
         self.scalar_columns.resize(intervals * n * e, 0.0);
         self.rows.resize(e * intervals * n, 0.0);
@@ -89,10 +97,9 @@ impl Condensation {
 
     /// Interior values of the linearised flow that starts with `start` at the left end of an interval.
     pub(super) fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {
-        let rows = self.gauss.degree() * self.n;
-        let response = &self.response[interval * rows * (self.n + self.scalars)..];
+        let response = &self.response[interval * self.padded * (self.n + self.scalars)..];
         interior.fill(0.0);
-        for (column, factor) in response.chunks_exact(rows).zip(start) {
+        for (column, factor) in response.chunks_exact(self.padded).zip(start) {
             for (entry, value) in interior.iter_mut().zip(column) {
                 *entry += factor * value;
             }
@@ -101,44 +108,56 @@ impl Condensation {
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
     pub(super) fn factorize(&mut self, mesh: &[f64]) -> f64 {
-        let arch = self.arch;
-        arch.dispatch(
-            #[inline(always)]
-            || {
-                for (interval, pair) in mesh.windows(2).enumerate() {
-                    if !self.condense(interval, pair[1] - pair[0]) {
-                        return 0.0;
-                    }
-                }
-                self.reduce_rows();
-                let blocks = Blocks {
-                    transfer: &self.transfer,
-                    scalar_columns: &self.scalar_columns,
-                    rows: &self.rows,
-                    corner: &self.corner,
-                    signs: &self.signs,
-                };
-                self.cyclic.factorize(blocks, self.n, self.scalars, self.intervals)
-            },
-        )
+        #[cfg(target_arch = "x86_64")]
+        if self.vectorized {
+            // SAFETY: the processor has these instructions.
+            return unsafe { self.factorize_vectorized(mesh) };
+        }
+        self.factorize_kernel::<false>(mesh)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn factorize_vectorized(&mut self, mesh: &[f64]) -> f64 {
+        self.factorize_kernel::<true>(mesh)
+    }
+
+    #[inline(always)]
+    fn factorize_kernel<const FUSED: bool>(&mut self, mesh: &[f64]) -> f64 {
+        for (interval, pair) in mesh.windows(2).enumerate() {
+            if !self.condense::<FUSED>(interval, pair[1] - pair[0]) {
+                return 0.0;
+            }
+        }
+        self.reduce_rows();
+        let blocks = Blocks {
+            transfer: &self.transfer,
+            scalar_columns: &self.scalar_columns,
+            rows: &self.rows,
+            corner: &self.corner,
+            signs: &self.signs,
+        };
+        self.cyclic.factorize(blocks, self.n, self.scalars, self.intervals)
     }
 
     /// Factorises the interior system of an interval and forms its response and transfer blocks.
     #[inline(always)]
-    fn condense(&mut self, interval: usize, width: f64) -> bool {
+    fn condense<const FUSED: bool>(&mut self, interval: usize, width: f64) -> bool {
         let n = self.n;
         let e = self.scalars;
         let degree = self.gauss.degree();
         let inner = degree * n;
         let columns = n + e;
         let derivatives = &self.derivatives[interval * inner * columns..(interval + 1) * inner * columns];
-        let matrix = &mut self.factors[interval * inner * inner..(interval + 1) * inner * inner];
+        let padded = self.padded;
+        let matrix = &mut self.factors[interval * padded * padded..(interval + 1) * padded * padded];
         // Column (k, c) of the interior system: unit vector minus width a_ik df/dy_c at Gauss point k.
         for k in 0..degree {
             for component in 0..n {
                 let slope = &derivatives[(k * columns + component) * n..][..n];
-                let target = &mut matrix[(k * n + component) * inner..][..inner];
-                for (i, block) in target.chunks_exact_mut(n).enumerate() {
+                let target = &mut matrix[(k * n + component) * padded..][..padded];
+                target[inner..].fill(0.0);
+                for (i, block) in target[..inner].chunks_exact_mut(n).enumerate() {
                     let factor = -width * self.gauss.integration[i * degree + k];
                     for (entry, value) in block.iter_mut().zip(slope) {
                         *entry = factor * value;
@@ -147,15 +166,20 @@ impl Condensation {
                 target[k * n + component] += 1.0;
             }
         }
-        let response = &mut self.response[interval * inner * columns..(interval + 1) * inner * columns];
+        for column in inner..padded {
+            let target = &mut matrix[column * padded..(column + 1) * padded];
+            target.fill(0.0);
+            target[column] = 1.0;
+        }
+        let response = &mut self.response[interval * padded * columns..(interval + 1) * padded * columns];
         response.fill(0.0);
         for component in 0..n {
             for point in 0..degree {
-                response[component * inner + point * n + component] = 1.0;
+                response[component * padded + point * n + component] = 1.0;
             }
         }
         for scalar in 0..e {
-            let target = &mut response[(n + scalar) * inner..(n + scalar + 1) * inner];
+            let target = &mut response[(n + scalar) * padded..][..inner];
             for k in 0..degree {
                 let slope = &derivatives[(k * columns + n + scalar) * n..][..n];
                 for (i, block) in target.chunks_exact_mut(n).enumerate() {
@@ -166,12 +190,13 @@ impl Condensation {
                 }
             }
         }
-        let pivots = &mut self.pivots[interval * inner..(interval + 1) * inner];
-        if lu::factorize(matrix, inner, pivots) == 0.0 {
+        let pivots = &mut self.pivots[interval * padded..(interval + 1) * padded];
+        if lu::factorize_with::<FUSED>(matrix, padded, pivots) == 0.0 {
             return false;
         }
-        lu::solve(matrix, inner, pivots, response);
-        for (column, interior) in response.chunks_exact(inner).enumerate() {
+        lu::solve_with::<FUSED>(matrix, padded, pivots, response);
+        for (column, interior) in response.chunks_exact(padded).enumerate() {
+            let interior = &interior[..inner];
             let target = if column < n {
                 &mut self.transfer[(interval * n + column) * n..][..n]
             } else {
@@ -195,14 +220,14 @@ impl Condensation {
     fn reduce_rows(&mut self) {
         let n = self.n;
         let e = self.scalars;
-        let inner = self.gauss.degree() * n;
         let size = (self.gauss.degree() + 1) * n;
         let intervals = self.intervals;
         for row in 0..e {
             for interval in 0..intervals {
                 let gradient = &self.gradients[(row * intervals + interval) * size..][..size];
-                let response = &self.response[interval * inner * (n + e)..(interval + 1) * inner * (n + e)];
-                for (column, interior) in response.chunks_exact(inner).enumerate() {
+                let response =
+                    &self.response[interval * self.padded * (n + e)..(interval + 1) * self.padded * (n + e)];
+                for (column, interior) in response.chunks_exact(self.padded).enumerate() {
                     let sum: f64 = gradient[n..].iter().zip(interior).map(|(a, b)| a * b).sum();
                     if column < n {
                         self.rows[(row * intervals + interval) * n + column] = gradient[column] + sum;
@@ -216,26 +241,36 @@ impl Condensation {
 
     /// Solves with the last factorisation, in place; the last entry belongs to the border.
     pub(super) fn solve(&mut self, right_hand_side: &mut [f64]) {
-        let arch = self.arch;
-        arch.dispatch(
-            #[inline(always)]
-            || self.solve_kernel(right_hand_side),
-        );
+        #[cfg(target_arch = "x86_64")]
+        if self.vectorized {
+            // SAFETY: the processor has these instructions.
+            return unsafe { self.solve_vectorized(right_hand_side) };
+        }
+        self.solve_kernel::<false>(right_hand_side);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn solve_vectorized(&mut self, right_hand_side: &mut [f64]) {
+        self.solve_kernel::<true>(right_hand_side);
     }
 
     #[inline(always)]
-    fn solve_kernel(&mut self, right_hand_side: &mut [f64]) {
+    fn solve_kernel<const FUSED: bool>(&mut self, right_hand_side: &mut [f64]) {
         let n = self.n;
         let e = self.scalars;
         let inner = self.gauss.degree() * n;
         let size = (self.gauss.degree() + 1) * n;
-        let intervals = self.intervals;
+        let (intervals, padded) = (self.intervals, self.padded);
         let (blocks, scalars) = right_hand_side.split_at_mut(intervals * size);
         for (interval, block) in blocks.chunks_exact_mut(size).enumerate() {
             let (end, interior) = block.split_at_mut(n);
-            let factors = &self.factors[interval * inner * inner..(interval + 1) * inner * inner];
-            let pivots = &self.pivots[interval * inner..(interval + 1) * inner];
-            lu::solve(factors, inner, pivots, interior);
+            let factors = &self.factors[interval * padded * padded..(interval + 1) * padded * padded];
+            let pivots = &self.pivots[interval * padded..(interval + 1) * padded];
+            self.column[..inner].copy_from_slice(interior);
+            self.column[inner..].fill(0.0);
+            lu::solve_with::<FUSED>(factors, padded, pivots, &mut self.column);
+            interior.copy_from_slice(&self.column[..inner]);
             let target = &mut self.states[interval * n..(interval + 1) * n];
             target.copy_from_slice(end);
             for (values, weight) in interior.chunks_exact(n).zip(&self.gauss.end[1..]) {
@@ -253,9 +288,9 @@ impl Condensation {
             let start = &self.states[interval * n..(interval + 1) * n];
             let (end, interior) = block.split_at_mut(n);
             end.copy_from_slice(start);
-            let response = &self.response[interval * inner * (n + e)..(interval + 1) * inner * (n + e)];
+            let response = &self.response[interval * padded * (n + e)..(interval + 1) * padded * (n + e)];
             let coefficients = start.iter().chain(scalars.iter());
-            for (column, coefficient) in response.chunks_exact(inner).zip(coefficients) {
+            for (column, coefficient) in response.chunks_exact(padded).zip(coefficients) {
                 for (entry, value) in interior.iter_mut().zip(column) {
                     *entry += coefficient * value;
                 }

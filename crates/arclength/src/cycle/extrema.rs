@@ -6,6 +6,8 @@ use super::problem::PeriodicProblem;
 /// Local extrema among the nodes within this part of the amplitude of the extreme node are refined too.
 const CANDIDATE_MARGIN: f64 = 0.2;
 const MOST_ITERATIONS: usize = 60;
+/// Part of the largest value to which extreme values are found.
+const ROUNDING: f64 = 1e-14;
 
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +43,7 @@ pub(crate) fn ranges<P: PeriodicProblem>(
             );
             let margin = CANDIDATE_MARGIN * (range.largest - range.smallest);
             let coarse = range;
+            let size = range.largest.abs().max(range.smallest.abs());
             for index in 0..nodes {
                 let (before, here, after) = (
                     value(index + nodes - 1, component),
@@ -54,7 +57,7 @@ pub(crate) fn ranges<P: PeriodicProblem>(
                 }
                 let left = if index == 0 { times[nodes - 1] - 1.0 } else { times[index - 1] };
                 let right = if index + 1 == nodes { 1.0 } else { times[index + 1] };
-                let refined = refine(collocation, unknown, component, left, times[index], right);
+                let refined = refine(collocation, unknown, component, left, times[index], right, size);
                 range.largest = range.largest.max(refined);
                 range.smallest = range.smallest.min(refined);
             }
@@ -71,6 +74,7 @@ fn refine<P: PeriodicProblem>(
     left: f64,
     middle: f64,
     right: f64,
+    size: f64,
 ) -> f64 {
     let (_, slope_middle) = value_and_slope(collocation, unknown, component, middle);
     let (value_left, slope_left) = value_and_slope(collocation, unknown, component, left);
@@ -92,7 +96,7 @@ fn refine<P: PeriodicProblem>(
         let (value, slope) = value_and_slope(collocation, unknown, component, trial);
         best = value;
         // An error of dt in the place changes the value by slope dt / 2 only.
-        if slope.abs() * (b - a).abs() <= 1e-15 * value.abs() || !(a < trial && trial < b) {
+        if slope.abs() * (b - a).abs() <= ROUNDING * size || !(a < trial && trial < b) {
             break;
         }
         if slope * slope_a <= 0.0 {
