@@ -257,10 +257,13 @@ fn number(option: &'static str, key: &str, value: &str) -> Result<f64, Failure> 
 
 fn unknown(option: &'static str, key: &str, what: &str, names: &[String]) -> Failure {
     let allowed = if names.is_empty() { "none, there is no such thing".to_owned() } else { names.join(", ") };
+    let alike = |name: &&String| strsim::jaro_winkler(&name.to_lowercase(), &key.to_lowercase());
+    let nearest = names.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+    let guess = nearest.map_or(String::new(), |name| format!("; the nearest is `{name}`"));
     Failure::Option {
         option,
         given: key.to_owned(),
-        problem: format!("the model has no such {what}"),
+        problem: format!("the model has no such {what}{guess}"),
         allowed,
     }
 }

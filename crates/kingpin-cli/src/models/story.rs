@@ -79,7 +79,8 @@ pub fn course(key: &str, places: &[Place<'_>]) -> Vec<Part> {
     for place in places {
         if is_bifurcation(place.label) || place.remark.is_some() {
             parts.extend(stretch.take().map(|(start, _, stable)| tell((start, place.value, stable))));
-            let remark = place.remark.as_deref().map(|text| format!(": {text}")).unwrap_or_default();
+            let remark = place.remark.as_deref().filter(|text| !text.is_empty());
+            let remark = remark.map(|text| format!(": {text}")).unwrap_or_default();
             let label = place.label.unwrap_or_default();
             parts.push(Part::new("course", format!("{label} at {key} = {}{remark}", readable(place.value))));
             special = Some(place.value);

@@ -1,9 +1,11 @@
 //! Excitable membranes.
 
 use crate::page::{LOCATED, Page, Source, Tolerance};
-use crate::study::{Study, codimension_two};
+use crate::study::{Study, codimension_two, special};
 use arclength::VectorField;
 use arclength::branch::SpecialKind;
+use arclength::continuation::Stop;
+use arclength::cycle::Special;
 use arclength::equilibrium::HopfPoint;
 
 /// Bisection where continuation is not wanted.
@@ -80,7 +82,27 @@ fn hodgkin_huxley() {
         points[1].parameter,
     );
     assert!(points[0].first_lyapunov.unwrap() > 0.0 && points[1].first_lyapunov.unwrap() < 0.0);
-    study.cycles_from(&branch, 0, "i0=0:200", &[]);
+    let cycles = study.cycles_from(&branch, 0, "i0=0:200", &[]);
+    let own = Tolerance::Relative(1e-7);
+    let folds = special(&cycles, |special| special == Special::Fold);
+    let doublings = special(&cycles, |special| special == Special::Doubling);
+    for (cycle, value, name) in [
+        (folds[0], 7.8423471202, "first fold of cycles"),
+        (doublings[0], 7.8453373978, "first period doubling"),
+        (doublings[1], 7.9177776757, "second period doubling"),
+        (folds[1], 7.9177854943, "second fold of cycles"),
+        (folds[2], 6.2603212745, "third fold of cycles"),
+    ] {
+        page.row(format!("{name}: i0"), value, Source::OwnValue, own, cycle.value);
+    }
+    let Stop::HopfPoint { parameter, .. } = cycles.stops.1 else { panic!("{}", cycles.stops.1) };
+    page.row(
+        "Hopf point at which the cycles end: i0",
+        points[1].parameter,
+        Source::ClosedForm("the second Hopf point"),
+        LOCATED,
+        parameter,
+    );
     page.figure("", "Equilibria and cycles over i0", study.diagram());
     page.finish();
 }

@@ -55,8 +55,11 @@ fn bazykin() {
     let hopf_points = study.locus(|locus| locus.from_hopf(hopf), ["alpha=0:1", "delta=0:0.5"]);
     let fold = branch.folds().next().unwrap();
     let folds = study.locus(|locus| locus.from_fold(fold), ["alpha=0:1", "delta=0:0.5"]);
-    let source =
-        || Source::Published("Kuznetsov (2004), section 8.3.3; digits as in the issue of the project");
+    let source = || {
+        Source::Published(
+            "Kuznetsov (2004), section 8.3.3; digits as given in the requirements of this project",
+        )
+    };
     for (curve, name) in [(&hopf_points, "Hopf points"), (&folds, "folds")] {
         let point = codimension_two(curve, SpecialKind::BogdanovTakens, 0);
         page.row(

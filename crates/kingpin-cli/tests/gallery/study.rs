@@ -156,6 +156,7 @@ impl Study {
                 .from_cycle(kind, &cycle.orbit, &parameters)
                 .along(&first.key, first.start..=first.end)
                 .and(&second.key, second.start..=second.end)
+                .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
                 .run()
                 .unwrap()
         };
