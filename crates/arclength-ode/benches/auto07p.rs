@@ -210,7 +210,7 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         worst
     };
     let mut ours = None;
-    for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
+    for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
         let branch = run(tolerance)?;
         let error = worst(&cycles_at(case, &branch)?);
         if error <= measure.accuracy() {
@@ -227,15 +227,19 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
     let equilibrium = find_equilibrium(&model, &hopf.state, &beside).map_err(|error| error.to_string())?;
     let directory = tempfile::tempdir().map_err(|error| error.to_string())?;
     let auto = Auto::build(directory.path(), case, &model, &source, &equilibrium, &beside, active)?;
+    let most_points = 4 * points + 100;
     let (largest_step, _) = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
         .into_iter()
-        .filter_map(|step| Some((step, auto.run(50, step).ok()?.points.abs_diff(points))))
+        .filter_map(|step| {
+            let result = auto.run(50, step, most_points).ok()?;
+            (result.cycles.len() == exact.len()).then_some((step, result.points.abs_diff(points)))
+        })
         .min_by_key(|(_, difference)| *difference)
-        .ok_or("AUTO does not run")?;
+        .ok_or("AUTO does not reach the values")?;
     let mut theirs = None;
     let mut best = f64::INFINITY;
     for intervals in [10, 15, 20, 30, 50, 75, 100, 150, 200, 300, 500, 700, 1000] {
-        let Ok(result) = auto.run(intervals, largest_step) else { continue };
+        let Ok(result) = auto.run(intervals, largest_step, most_points) else { continue };
         let error = if result.cycles.len() == exact.len() { worst(&result.cycles) } else { f64::INFINITY };
         best = best.min(error);
         if result.cycles.len() == exact.len() && error <= measure.accuracy() {
@@ -247,7 +251,7 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         theirs.ok_or_else(|| format!("AUTO does not come closer than {best:.1e}"))?;
     let mut auto_time = Duration::MAX;
     for _ in 0..RUNS {
-        auto_time = auto_time.min(auto.run(intervals, largest_step)?.time);
+        auto_time = auto_time.min(auto.run(intervals, largest_step, most_points)?.time);
     }
     println!(
         "{:16} {tolerance:9.0e} {points:7} {error:9.1e} {:9.2} {auto_points:7} {intervals:5} {auto_error:9.1e} {:9.2} {:7.1}",
@@ -341,8 +345,8 @@ impl<'a> Auto<'a> {
         let mut auto =
             Self { directory, case, dimension: model.states().len(), equilibria: Vec::new(), label: 0 };
         // Towards the Hopf point from a little beside it.
-        let step = 1e-2 * (case.equilibria.1 - case.equilibria.0);
-        let (low, high) = (parameters[active] - 5.0 * step, parameters[active] + 5.0 * step);
+        let step = 2e-3 * (case.equilibria.1 - case.equilibria.0);
+        let (low, high) = (parameters[active] - 10.0 * step, parameters[active] + 10.0 * step);
         auto.constants(&format!(
             "IPS=1, IRS=0, ICP=[1], NTST=50, NCOL=4, ISP=1, ILP=0, NMX=500, NPR=1000, EPSL=1e-10, EPSU=1e-10, EPSS=1e-8, \
              DS={step:e}, DSMIN={:e}, DSMAX={step:e}, IADS=1, UZSTOP={{1:[{low:e},{high:e}]}}",
@@ -381,12 +385,13 @@ impl<'a> Auto<'a> {
         Ok(elapsed)
     }
 
-    fn run(&self, intervals: usize, largest_step: f64) -> Result<AutoResult, String> {
+    /// It goes round closed branches and back from Hopf points until `most_points`.
+    fn run(&self, intervals: usize, largest_step: f64, most_points: usize) -> Result<AutoResult, String> {
         std::fs::write(self.directory.join("fort.3"), &self.equilibria).map_err(|error| error.to_string())?;
         let (low, high) = self.case.cycles;
         let values: Vec<String> = self.case.values.iter().map(|value| format!("{value:e}")).collect();
         self.constants(&format!(
-            "IPS=2, IRS={}, ICP=[1,11], NTST={intervals}, NCOL=4, ISP=2, ILP=1, NMX=3000, NPR=100000, EPSL=1e-8, \
+            "IPS=2, IRS={}, ICP=[1,11], NTST={intervals}, NCOL=4, ISP=2, ILP=1, NMX={most_points}, NPR=100000, EPSL=1e-8, \
              EPSU=1e-8, EPSS=1e-6, DS={:e}, DSMIN=1e-8, DSMAX={largest_step:e}, IADS=1, UZR={{1:[{}]}}, \
              UZSTOP={{1:[{low:e},{high:e}]}}",
             self.label,

@@ -93,7 +93,9 @@ pub fn correct<C: Curve>(
 /// Length of a vector in the curve's metric; `image` is scratch memory.
 pub(super) fn norm<C: Curve>(curve: &C, vector: &[f64], image: &mut [f64]) -> f64 {
     curve.apply_metric(vector, image);
-    inner(vector, image).max(0.0).sqrt()
+    let square = inner(vector, image);
+    // Rounding may make it negative; a number that is not finite stays one.
+    if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
 /// Euclidean inner product.

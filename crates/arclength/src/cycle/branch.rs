@@ -434,6 +434,14 @@ impl<'a> Cycles<'a> {
         if !(2..=16).contains(&self.resolution.degree) {
             return invalid("degree", self.resolution.degree.to_string(), "2 to 16");
         }
+        let (fewest, most) = (self.resolution.fewest_intervals, self.resolution.most_intervals);
+        if !(1 < fewest && fewest <= most) {
+            return invalid(
+                "fewest intervals",
+                fewest.to_string(),
+                &format!("2 to {most}, the most intervals"),
+            );
+        }
         if !(self.resolution.tolerance > 1e-13 && self.resolution.tolerance < 0.1) {
             return invalid("tolerance", self.resolution.tolerance.to_string(), "between 1e-13 and 0.1");
         }

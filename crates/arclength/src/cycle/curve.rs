@@ -21,18 +21,18 @@ pub struct Resolution {
     pub tolerance: f64,
     /// Degree of the polynomials, 2 to 16.
     pub degree: usize,
+    /// Fewest mesh intervals.
+    pub fewest_intervals: usize,
     /// Most mesh intervals.
     pub most_intervals: usize,
 }
 
 impl Default for Resolution {
     fn default() -> Self {
-        Self { tolerance: 1e-8, degree: 7, most_intervals: 2000 }
+        Self { tolerance: 1e-8, degree: 7, fewest_intervals: 4, most_intervals: 2000 }
     }
 }
 
-/// Fewest mesh intervals.
-const FEWEST_INTERVALS: usize = 4;
 /// A new mesh aims at this part of the tolerance.
 const TARGET: f64 = 0.2;
 /// The mesh is made coarser when it has this many times the intervals needed.
@@ -275,8 +275,8 @@ impl Curve for CycleCurve<'_> {
         let degree = self.collocation.gauss().degree();
         let intervals = self.collocation.intervals();
         let needed = intervals_needed(&errors, degree, TARGET * self.resolution.tolerance);
-        let wanted = (needed.ceil() as usize).max(FEWEST_INTERVALS);
-        let too_coarse = worst > self.resolution.tolerance;
+        let wanted = (needed.ceil() as usize).max(self.resolution.fewest_intervals);
+        let too_coarse = worst > self.resolution.tolerance || intervals < self.resolution.fewest_intervals;
         if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
             self.collocation.set_reference(unknown);
             return Ok(Adaptation::Unchanged);

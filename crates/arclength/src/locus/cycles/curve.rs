@@ -25,8 +25,6 @@ const EIGENFUNCTION_WEIGHT: f64 = 10.0;
 /// A new mesh aims at this part of the tolerance; it is made coarser when it has `EXCESS` times the intervals needed.
 const TARGET: f64 = 0.2;
 const EXCESS: f64 = 1.6;
-/// Fewest mesh intervals.
-const FEWEST_INTERVALS: usize = 4;
 /// Part of its mean below which the amplitude of a state does not count as its size.
 const MEAN_PART: f64 = 0.01;
 /// The sizes are measured anew when one has changed by this factor.
@@ -270,8 +268,8 @@ impl Curve for CycleLocusCurve<'_> {
         let degree = self.resolution_degree();
         let intervals = self.system.collocation.intervals();
         let needed = intervals_needed(&errors, degree, TARGET * self.resolution.tolerance);
-        let wanted = (needed.ceil() as usize).max(FEWEST_INTERVALS);
-        let too_coarse = worst > self.resolution.tolerance;
+        let wanted = (needed.ceil() as usize).max(self.resolution.fewest_intervals);
+        let too_coarse = worst > self.resolution.tolerance || intervals < self.resolution.fewest_intervals;
         if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
             self.system.collocation.set_reference(unknown);
             return Ok(if rescaled { Adaptation::Changed } else { Adaptation::Unchanged });

@@ -1,0 +1,110 @@
+//! Cycles of random fields from random starts: whatever comes out is finite and within its tolerance, or a clear error.
+
+use arclength::continuation::Settings;
+use arclength::cycle::{CycleBranch, CycleStart, Cycles, Orbit, Resolution};
+use arclength::{Error, Scalar, VectorField};
+use num_complex::Complex64;
+use proptest::prelude::*;
+
+/// Cubic polynomials in three states and one parameter.
+#[derive(Debug)]
+struct Polynomial {
+    coefficients: Vec<f64>,
+}
+
+const TERMS: usize = 13;
+
+impl VectorField for Polynomial {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let ([x, y, z], p) = ([state[0], state[1], state[2]], parameters[0]);
+        let terms =
+            [T::one(), x, y, z, p * x, p * y, x * x, x * y, x * z, y * z, x * x * x, x * x * y, z * z * z];
+        for (entry, row) in derivative.iter_mut().zip(self.coefficients.chunks_exact(TERMS)) {
+            *entry = terms.iter().zip(row).map(|(term, coefficient)| *term * *coefficient).sum();
+        }
+    }
+}
+
+fn check(field: &Polynomial, start: CycleStart) -> Result<(), TestCaseError> {
+    let resolution = Resolution { tolerance: 1e-5, most_intervals: 60, ..Resolution::default() };
+    let settings = Settings { most_steps: 15, ..Settings::default() };
+    let run = Cycles::of(field, start)
+        .parameters(&[0.1])
+        .along(0, -1.0..=1.0)
+        .resolution(resolution)
+        .settings(settings)
+        .run();
+    match run {
+        Ok(CycleBranch { points, .. }) => {
+            prop_assert!(!points.is_empty());
+            for point in &points {
+                prop_assert!(point.period.is_finite() && point.value.is_finite());
+                prop_assert!(point.max.iter().chain(&point.min).all(|value| value.is_finite()));
+                prop_assert!(point.error_estimate <= resolution.tolerance, "{}", point.error_estimate);
+                prop_assert_eq!(point.multipliers.len(), 3);
+            }
+        }
+        Err(error) => prop_assert!(!error.to_string().is_empty()),
+    }
+    Ok(())
+}
+
+fn coefficients() -> impl Strategy<Value = Polynomial> {
+    proptest::collection::vec(-2.0..2.0_f64, 3 * TERMS).prop_map(|coefficients| Polynomial { coefficients })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn starts_at_points_that_are_no_hopf_points(
+        field in coefficients(),
+        state in proptest::collection::vec(-1.0..1.0_f64, 3),
+        parts in proptest::collection::vec(-1.0..1.0_f64, 6),
+        frequency in 0.1..10.0_f64,
+    ) {
+        let eigenvector = parts.chunks(2).map(|pair| Complex64::new(pair[0], pair[1])).collect();
+        check(&field, CycleStart::Hopf { state, frequency, eigenvector, crossing_speed: 1.0, cubic_coefficient: 1.0 })?;
+    }
+
+    #[test]
+    fn starts_at_orbits_that_are_none(
+        field in coefficients(),
+        states in proptest::collection::vec(-3.0..3.0_f64, 3 * 4 * 3),
+        period in 0.01..100.0_f64,
+    ) {
+        let mesh = vec![0.0, 0.2, 0.7, 1.0];
+        check(&field, CycleStart::Orbit(Orbit { mesh, degree: 3, dimension: 3, states, period }))?;
+    }
+}
+
+#[test]
+fn orbits_that_do_not_fit_are_refused() {
+    let field = Polynomial { coefficients: vec![1.0; 3 * TERMS] };
+    let orbit =
+        Orbit { mesh: vec![0.0, 0.5, 1.0], degree: 3, dimension: 3, states: vec![0.0; 24], period: 1.0 };
+    let run = |orbit: Orbit| {
+        let cycles = Cycles::of(&field, CycleStart::Orbit(orbit)).parameters(&[0.0]).along(0, -1.0..=1.0);
+        matches!(cycles.run(), Err(Error::Invalid { .. }))
+    };
+    for wrong in [
+        Orbit { mesh: vec![0.0, 0.5], ..orbit.clone() },
+        Orbit { mesh: vec![0.0, 0.5, 0.5, 1.0], ..orbit.clone() },
+        Orbit { mesh: vec![], ..orbit.clone() },
+        Orbit { degree: 0, ..orbit.clone() },
+        Orbit { degree: 99, ..orbit.clone() },
+        Orbit { dimension: 2, ..orbit.clone() },
+        Orbit { states: vec![0.0; 23], ..orbit.clone() },
+        Orbit { states: vec![f64::NAN; 24], ..orbit.clone() },
+        Orbit { period: -1.0, ..orbit.clone() },
+        Orbit { period: f64::INFINITY, ..orbit.clone() },
+    ] {
+        assert!(run(wrong.clone()), "{wrong:?}");
+    }
+}
