@@ -6,6 +6,8 @@ use kingpin_figure::{
     Stability, palette,
 };
 
+/// Relative distance within which two labelled points are drawn as one.
+const SAME_POINT: f64 = 1e-6;
 /// Most panels.
 const MOST_PANELS: usize = 4;
 
@@ -80,7 +82,7 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
     // Labels of several curves at one point are one.
     let mut labelled: Vec<(&(f64, f64), &str)> = Vec::new();
     for (at, label) in curves.iter().flat_map(|curve| &curve.labels) {
-        if !labelled.contains(&(at, label.as_str())) {
+        if !labelled.iter().any(|(other, text)| text == label && same(**other, *at)) {
             labelled.push((at, label));
             panel = panel.point(PointLabel::new(*at, label.as_str()).marker(marker(label)));
         }
@@ -90,6 +92,12 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
         panel = panel.legend_entry(LegendEntry::line(text, palette::BLACK, Dash::Dashed));
     }
     panel
+}
+
+/// Whether two points are one, as far as a picture can tell.
+fn same(one: (f64, f64), other: (f64, f64)) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME_POINT * (a.abs() + b.abs());
+    near(one.0, other.0) && near(one.1, other.1)
 }
 
 fn marker(label: &str) -> Marker {
