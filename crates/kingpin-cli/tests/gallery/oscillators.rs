@@ -120,13 +120,7 @@ fn lorenz() {
     let cycles = study.cycles_from(&other, 0, "rho=0:30", &[]);
     assert!(matches!(cycles.stops.1, Stop::PeriodUnbounded { .. }), "{}", cycles.stops.1);
     let last = cycles.points.last().unwrap();
-    page.row(
-        "homoclinic orbit: rho",
-        13.92656,
-        Source::Published("Sparrow, The Lorenz Equations (1982): 13.926"),
-        Tolerance::Relative(1e-4),
-        last.value,
-    );
+    page.row("homoclinic orbit: rho", 13.92656, Source::OwnValue, Tolerance::Relative(1e-4), last.value);
     page.figure("", "Equilibria and cycles over rho", study.diagram());
 
     let high = study.with("rho", 240.0);
