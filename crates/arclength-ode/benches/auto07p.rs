@@ -20,6 +20,8 @@ use std::time::{Duration, Instant};
 
 const AUTO: &str = "/usr/lib/auto-07p/lib";
 const RUNS: usize = 7;
+/// A state with an amplitude below this part of its value rests; its value is then what the error is measured by.
+const RESTING: f64 = 1e-3;
 
 /// What is compared.
 #[derive(Clone, Copy, PartialEq)]
@@ -195,7 +197,14 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         .values
         .iter()
         .filter_map(|value| reference.points.iter().find(|point| point.value == *value))
-        .map(|point| point.max.iter().zip(&point.min).map(|(max, min)| 0.5 * (max - min)).collect())
+        .map(|point| {
+            point
+                .max
+                .iter()
+                .zip(&point.min)
+                .map(|(max, min)| (0.5 * (max - min)).max(RESTING * max.abs()))
+                .collect()
+        })
         .collect();
     let worst = |found: &[Cycle]| {
         let mut worst = 0.0_f64;
