@@ -100,6 +100,27 @@ pub enum Failure {
         /// What is wrong, and what is allowed.
         problem: String,
     },
+    /// The journal of a long run could not be used.
+    #[error("{}: the journal cannot be used: {source}", path.display())]
+    Journal {
+        /// The journal.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// Ctrl-C was pressed.
+    #[error("interrupted: {done} of {cells} cells are finished, {kept}")]
+    Interrupted {
+        /// Number of cells that are finished.
+        done: usize,
+        /// Number of all cells.
+        cells: usize,
+        /// Where they are kept.
+        kept: String,
+    },
+    /// Ctrl-C could not be listened to.
+    #[error("cannot listen to Ctrl-C: {0}")]
+    Signals(#[from] ctrlc::Error),
     /// Threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
@@ -112,7 +133,9 @@ impl Failure {
             Self::OutputClosed => 0,
             Self::Wheel(error) => wheel_exit_code(error),
             Self::Simulation(SimulationError::Wheel(error)) => wheel_exit_code(error),
-            Self::Simulation(SimulationError::Integration(_)) => COMPUTATION_FAILED,
+            Self::Simulation(
+                SimulationError::Integration(_) | SimulationError::UniformMotionSlides { .. },
+            ) => COMPUTATION_FAILED,
             Self::Continuation(arclength::Error::Invalid { .. }) => BAD_INPUT,
             Self::Paper(PaperError::Wheel(error)) => wheel_exit_code(error),
             Self::Paper(PaperError::UnknownFigure(_) | PaperError::Unwritable { .. }) => BAD_INPUT,
@@ -122,6 +145,7 @@ impl Failure {
             | Self::Unwritable { .. }
             | Self::Model { .. }
             | Self::Unreadable { .. }
+            | Self::Journal { .. }
             | Self::ResultFile { .. } => BAD_INPUT,
             Self::Continuation(_)
             | Self::Integration(_)
@@ -129,6 +153,8 @@ impl Failure {
             | Self::Paper(_)
             | Self::Figure(_)
             | Self::Encoding { .. }
+            | Self::Interrupted { .. }
+            | Self::Signals(_)
             | Self::Threads(_) => COMPUTATION_FAILED,
         }
     }

@@ -12,6 +12,7 @@ pub mod description;
 pub mod document;
 pub mod failure;
 pub mod history;
+pub mod journal;
 pub mod labels;
 pub mod models;
 pub mod numbers;

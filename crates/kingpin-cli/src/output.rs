@@ -88,6 +88,11 @@ impl Output {
         Ok(Self { format, files, quiet })
     }
 
+    /// The first of the files.
+    pub fn first_file(&self) -> Option<&Path> {
+        self.files.first().map(|(path, _)| path.as_path())
+    }
+
     /// Whether progress and warnings are unwanted.
     pub fn is_quiet(&self) -> bool {
         self.quiet
@@ -97,6 +102,13 @@ impl Output {
     pub fn warn(&self, message: &str) {
         if !self.quiet {
             terminal::say("warning", message);
+        }
+    }
+
+    /// Says something worth knowing on standard error.
+    pub fn note(&self, message: &str) {
+        if !self.quiet {
+            terminal::say("note", message);
         }
     }
 

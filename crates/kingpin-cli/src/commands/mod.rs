@@ -1,5 +1,6 @@
 //! The commands of `kingpin`.
 
+pub mod basin;
 pub mod chart;
 pub mod cycles;
 pub mod hopf;
@@ -31,6 +32,7 @@ enum Command {
     Hopf(hopf::Hopf),
     Cycles(cycles::Cycles),
     Simulate(simulate::Simulate),
+    Basin(basin::Basin),
 }
 
 impl Kingpin {
@@ -47,6 +49,7 @@ impl Kingpin {
             Command::Hopf(command) => command.run(),
             Command::Cycles(command) => command.run(),
             Command::Simulate(command) => command.run(),
+            Command::Basin(command) => command.run(),
         }
     }
 }

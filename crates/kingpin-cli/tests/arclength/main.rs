@@ -150,11 +150,7 @@ fn models_that_make_no_sense() {
 #[test]
 fn options_that_make_no_sense() {
     let folder = Folder::with("pp2.ode");
-    folder.fails(
-        "equilibria pp2.ode --along p9=0:1",
-        2,
-        &["--along p9", "nearest is `p", "p1, p2, p3, p4"],
-    );
+    folder.fails("equilibria pp2.ode --along p9=0:1", 2, &["--along p9", "nearest is `p", "p1, p2, p3, p4"]);
     folder.fails("equilibria pp2.ode --along p1=1:1", 2, &["empty interval"]);
     folder.fails("equilibria pp2.ode --along p1=0:inf", 2, &["p1", "infinite"]);
     folder.fails("equilibria pp2.ode --along p1=0:1 -s q=1", 2, &["--set q", "p1, p2, p3, p4"]);

@@ -14,6 +14,12 @@ const PERIODS_NEAR: f64 = 3.0;
 const FAR: f64 = 50.0;
 /// The amplitude of a motion that lasts changes by less than this part between the third and the last quarter.
 const STEADY: f64 = 0.1;
+/// Bounds in s of the duration that is chosen for a wheel, and the number of decay times in it.
+const SHORTEST_DURATION: f64 = 30.0;
+const LONGEST_DURATION: f64 = 300.0;
+const DECAY_TIMES: f64 = 12.0;
+/// Eigenvalues with a real part below this, relative to the natural frequency, count as neutral.
+const NEUTRAL: f64 = 1e-9;
 
 /// What becomes of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -57,11 +63,25 @@ pub struct ClassificationSettings {
 impl Default for ClassificationSettings {
     /// Thirty seconds.
     fn default() -> Self {
-        Self { duration: 30.0 }
+        Self { duration: SHORTEST_DURATION }
     }
 }
 
 impl ClassificationSettings {
+    /// As long as slow motions of this wheel take to show where they go: twelve times the time in which a small
+    /// disturbance of the uniform motion falls to a 1/e, but at least thirty seconds and at most three hundred.
+    ///
+    /// Nearly neutral motions would otherwise pass for lasting ones: an unstable cycle near its Hopf point repels twice as
+    /// fast as the uniform motion attracts.
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn for_wheel(wheel: &Wheel) -> Result<Self, SimulationError> {
+        let decay = -wheel.uniform_motion()?.growth_rate();
+        let duration = if decay > 0.0 { DECAY_TIMES / decay } else { SHORTEST_DURATION };
+        Ok(Self { duration: duration.clamp(SHORTEST_DURATION, LONGEST_DURATION).round() })
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         if self.duration > 0.0 && self.duration.is_finite() {
             return Ok(());
@@ -80,6 +100,8 @@ pub(super) struct Target {
     reference_speed: f64,
     /// Natural period of the wheel on its springs in s.
     pub natural_period: f64,
+    /// Whether motions return at all: near an unstable uniform motion they only linger.
+    attracts: bool,
 }
 
 impl Target {
@@ -88,8 +110,10 @@ impl Target {
         let frequency = (wheel.get(Key::KQ) * body.inverse_rolling_mass).sqrt();
         let length = body.caster_length;
         let reference_speed = wheel.get(Key::V).max(frequency * length);
+        let motion = wheel.uniform_motion()?;
         Ok(Self {
-            state: wheel.uniform_motion()?.state(),
+            state: motion.state(),
+            attracts: motion.growth_rate() <= NEUTRAL * frequency,
             weights: [frequency, frequency, reference_speed, 1.0, length],
             reference_speed,
             natural_period: TAU / frequency,
@@ -144,7 +168,7 @@ impl Watch {
             self.decided = Some(Fate::Escape);
             return ControlFlow::Break(());
         }
-        if distance < NEAR {
+        if distance < NEAR && self.target.attracts {
             let since = *self.near_since.get_or_insert(time);
             if time - since >= PERIODS_NEAR * self.target.natural_period {
                 self.decided = Some(Fate::UniformMotion);

@@ -1,6 +1,7 @@
 //! The smallest disturbance from which the wheel does not return.
 
 use super::{ClassificationSettings, ContactModel, Destinations, Fate};
+use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
@@ -9,7 +10,9 @@ use rayon::prelude::*;
 /// Magnitudes that are tried, at equal distances, before the first failure is narrowed down.
 const SCAN: usize = 64;
 /// The magnitude is narrowed down to this, relative to the largest one.
-const RESOLUTION: f64 = 1e-9;
+const RESOLUTION: f64 = 1e-6;
+/// The motion at the edge lingers: it is followed for so many times the duration before its fate is told.
+const PATIENCE: f64 = 4.0;
 
 /// A kind of disturbance of the uniform motion. Magnitudes may be negative: the other direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,6 +29,20 @@ pub enum Disturbance {
 }
 
 impl Disturbance {
+    /// All kinds.
+    pub const ALL: [Disturbance; 4] =
+        [Disturbance::Impulse, Disturbance::ReleaseAngle, Disturbance::Jolt, Disturbance::StepSteer];
+
+    /// Name as it is written in options and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Disturbance::Impulse => "impulse",
+            Disturbance::ReleaseAngle => "release-angle",
+            Disturbance::Jolt => "jolt",
+            Disturbance::StepSteer => "step-steer",
+        }
+    }
+
     /// Unit of the magnitude.
     pub const fn unit(self) -> &'static str {
         match self {
@@ -37,7 +54,10 @@ impl Disturbance {
     }
 
     /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W).
-    fn apply(
+    ///
+    /// # Errors
+    /// A magnitude at which there is no uniform motion.
+    pub fn apply(
         self,
         wheel: &Wheel,
         model: ContactModel,
@@ -84,8 +104,10 @@ pub struct SafeKick {
     pub returns: f64,
     /// Smallest magnitude, next to that, from which it does not.
     pub fails: f64,
-    /// What becomes of it from there.
-    pub fate: Fate,
+    /// What becomes of it from there. [`Fate::Undecided`] where it did none of the other things even in four times the
+    /// duration, or returned late: then the edge is only where the patience ends. `None` where there is no uniform motion
+    /// (that rolls) to return to after a step of the curvature.
+    pub fate: Option<Fate>,
     /// The wheel after the disturbance that fails: at the edge its motion lingers where the basin ends.
     pub wheel: Wheel,
     /// State (u, q, psi, V1, V2, Omega, W) after the disturbance that fails.
@@ -111,27 +133,42 @@ impl SafeKick {
         if !largest.is_finite() || largest == 0.0 {
             return Err(SimulationError::out_of_range("largest disturbance", largest, "finite and not 0"));
         }
-        let fate = |magnitude: f64| {
-            let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
-            Destinations::new(&wheel, model, settings)?.of_sliding_state(&state)
-        };
+        let fate =
+            |magnitude: f64, settings: ClassificationSettings| -> Result<Option<Fate>, SimulationError> {
+                let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
+                match Destinations::new(&wheel, model, settings) {
+                    Ok(destinations) => destinations.of_sliding_state(&state).map(Some),
+                    Err(error) if disturbance == Disturbance::StepSteer && magnitude != 0.0 => match error {
+                        SimulationError::UniformMotionSlides { .. }
+                        | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => Ok(None),
+                        error => Err(error),
+                    },
+                    Err(error) => Err(error),
+                }
+            };
         let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
-        let scanned: Vec<Fate> =
-            (0..=SCAN).into_par_iter().map(|index| fate(magnitude(index))).collect::<Result<_, _>>()?;
-        let Some(first) = scanned.iter().position(|&fate| fate != Fate::UniformMotion) else {
+        let scanned: Vec<Option<Fate>> = (0..=SCAN)
+            .into_par_iter()
+            .map(|index| fate(magnitude(index), settings))
+            .collect::<Result<_, _>>()?;
+        let Some(first) = scanned.iter().position(|&fate| fate != Some(Fate::UniformMotion)) else {
             return Ok(None);
         };
         let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
-        let mut beyond = scanned[first];
         while (fails - returns).abs() > RESOLUTION * largest.abs() {
             let middle = 0.5 * (returns + fails);
-            match fate(middle)? {
-                Fate::UniformMotion => returns = middle,
-                other => (fails, beyond) = (middle, other),
+            match fate(middle, settings)? {
+                Some(Fate::UniformMotion) => returns = middle,
+                _ => fails = middle,
             }
         }
+        let patient = ClassificationSettings { duration: PATIENCE * settings.duration };
+        let fate = match fate(fails, patient)? {
+            Some(Fate::UniformMotion) => Some(Fate::Undecided),
+            fate => fate,
+        };
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
-        Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))
+        Ok(Some(Self { returns, fails, fate, wheel, state }))
     }
 
     /// Finds the smallest disturbance at each value of a parameter, as [`find`](Self::find) does: the margin of safety.

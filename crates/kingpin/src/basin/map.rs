@@ -1,13 +1,15 @@
 //! Fates over grids and random samples of initial states, in tiles.
 
-use super::{Destinations, Fate};
+use super::{ContactModel, Destinations, Fate};
 use crate::rolling::STATE_NAMES;
 use crate::simulation::SimulationError;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Initial states in one tile.
-const TILE: usize = 64;
+/// Initial states in one tile: those of a rolling wheel fill the registers, those of one that may slide are few, since each takes
+/// long and a tile that was not finished is lost.
+const ROLLING_TILE: usize = 64;
+const SLIDING_TILE: usize = 4;
 
 /// A state that is varied between two values; the states that are not varied are those of the uniform motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +20,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The state with this name from one value to another, as an amount by which it differs from the uniform motion.
+    /// The state with this name from one value to another.
     ///
     /// # Errors
     /// An unknown name or a value that is not finite.
@@ -37,6 +39,11 @@ impl Axis {
     /// Name of the state.
     pub fn name(&self) -> &'static str {
         STATE_NAMES[self.state]
+    }
+
+    /// Equidistant values from one end to the other.
+    pub fn values(&self, count: usize) -> Vec<f64> {
+        (0..count).map(|index| self.value(fraction(index, count))).collect()
     }
 
     /// The value at a fraction of the way.
@@ -91,9 +98,18 @@ pub struct Fraction {
 pub struct BasinMap<'a> {
     destinations: &'a Destinations,
     initial: Vec<[f64; 5]>,
+    tile: usize,
 }
 
 impl<'a> BasinMap<'a> {
+    fn new(destinations: &'a Destinations, initial: Vec<[f64; 5]>) -> Self {
+        let tile = match destinations.model() {
+            ContactModel::Rolling => ROLLING_TILE,
+            ContactModel::Sliding => SLIDING_TILE,
+        };
+        Self { destinations, initial, tile }
+    }
+
     /// A grid with `counts` points on each of two axes, ends included; the second axis is the outer one.
     ///
     /// # Errors
@@ -109,17 +125,16 @@ impl<'a> BasinMap<'a> {
             }
         }
         let origin = destinations.wheel().uniform_motion()?.state();
-        let fraction = |index: usize, count: usize| index as f64 / (count - 1) as f64;
         let mut initial = Vec::with_capacity(counts[0] * counts[1]);
         for outer in 0..counts[1] {
             for inner in 0..counts[0] {
                 let mut state = origin;
-                state[axes[0].state] += axes[0].value(fraction(inner, counts[0]));
-                state[axes[1].state] += axes[1].value(fraction(outer, counts[1]));
+                state[axes[0].state] = axes[0].value(fraction(inner, counts[0]));
+                state[axes[1].state] = axes[1].value(fraction(outer, counts[1]));
                 initial.push(state);
             }
         }
-        Ok(Self { destinations, initial })
+        Ok(Self::new(destinations, initial))
     }
 
     /// Independent states, uniformly distributed in the box of the axes. The same seed gives the same states.
@@ -138,12 +153,18 @@ impl<'a> BasinMap<'a> {
                 let mut state = origin;
                 for (dimension, axis) in axes.iter().enumerate() {
                     let counter = (index * axes.len() + dimension) as u64;
-                    state[axis.state] += axis.value(uniform_number(seed, counter));
+                    state[axis.state] = axis.value(uniform_number(seed, counter));
                 }
                 state
             })
             .collect();
-        Ok(Self { destinations, initial })
+        Ok(Self::new(destinations, initial))
+    }
+
+    /// The states of one tile.
+    pub fn states_of(&self, tile: usize) -> &[[f64; 5]] {
+        let last = self.initial.len();
+        &self.initial[(tile * self.tile).min(last)..((tile + 1) * self.tile).min(last)]
     }
 
     /// The initial states, in order.
@@ -153,7 +174,7 @@ impl<'a> BasinMap<'a> {
 
     /// Number of tiles.
     pub fn tiles(&self) -> usize {
-        self.initial.len().div_ceil(TILE)
+        self.initial.len().div_ceil(self.tile)
     }
 
     /// Computes the tiles that are not `finished` on all cores, until all are done or `cancelled` is set. Every new tile is
@@ -171,9 +192,8 @@ impl<'a> BasinMap<'a> {
             if cancelled.load(Ordering::Relaxed) {
                 return None;
             }
-            let first = index * TILE;
-            let states = &self.initial[first..self.initial.len().min(first + TILE)];
-            let tile = self.destinations.of(states).map(|fates| Tile { index, first, fates });
+            let first = index * self.tile;
+            let tile = self.destinations.of(self.states_of(index)).map(|fates| Tile { index, first, fates });
             if let Ok(tile) = &tile {
                 on_tile(tile);
             }
@@ -217,6 +237,10 @@ pub fn wilson_interval(count: usize, total: usize) -> (f64, f64) {
     let centre = (share + square / (2.0 * n)) / (1.0 + square / n);
     let half = QUANTILE / (1.0 + square / n) * (share * (1.0 - share) / n + square / (4.0 * n * n)).sqrt();
     ((centre - half).max(0.0), (centre + half).min(1.0))
+}
+
+fn fraction(index: usize, count: usize) -> f64 {
+    index as f64 / (count - 1).max(1) as f64
 }
 
 /// A number in [0, 1) from a seed and a counter: SplitMix64 (Steele, Lea and Flood, OOPSLA 2014).

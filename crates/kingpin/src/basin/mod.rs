@@ -39,6 +39,16 @@ pub enum ContactModel {
     Sliding,
 }
 
+impl ContactModel {
+    /// Name as it is written in options and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ContactModel::Rolling => "rolling",
+            ContactModel::Sliding => "sliding",
+        }
+    }
+}
+
 /// Tells where motions of one wheel end.
 ///
 /// ```
@@ -55,6 +65,7 @@ pub enum ContactModel {
 #[derive(Clone, Debug)]
 pub struct Destinations {
     wheel: Wheel,
+    model: ContactModel,
     settings: ClassificationSettings,
     target: Target,
     follower: Follower,
@@ -73,13 +84,21 @@ impl Destinations {
     /// For motions of this wheel.
     ///
     /// # Errors
-    /// A setting out of range, no uniform motion, or what [`Wheel::sliding`] refuses.
+    /// A setting out of range, no uniform motion, or what [`Wheel::sliding`] refuses; with sliding also a uniform motion for
+    /// which the static friction does not suffice.
     pub fn new(
         wheel: &Wheel,
         model: ContactModel,
         settings: ClassificationSettings,
     ) -> Result<Self, SimulationError> {
         settings.check()?;
+        let motion = wheel.uniform_motion()?;
+        if model == ContactModel::Sliding && !motion.rolls() {
+            return Err(SimulationError::UniformMotionSlides {
+                needed: motion.contact_force().friction(),
+                available: wheel.get(Key::MuS) * wheel.normal_force(),
+            });
+        }
         let isotropic = wheel.get(Key::KU) == wheel.get(Key::KQ) && wheel.get(Key::CU) == wheel.get(Key::CQ);
         let follower = match model {
             ContactModel::Sliding => Follower::Sliding(Box::new(wheel.sliding()?)),
@@ -88,12 +107,22 @@ impl Destinations {
             }
             ContactModel::Rolling => Follower::Rolling,
         };
-        Ok(Self { wheel: *wheel, target: Target::new(wheel)?, settings, follower })
+        Ok(Self { wheel: *wheel, model, target: Target::new(wheel)?, settings, follower })
     }
 
     /// The wheel.
     pub fn wheel(&self) -> &Wheel {
         &self.wheel
+    }
+
+    /// How motions are classified.
+    pub fn settings(&self) -> ClassificationSettings {
+        self.settings
+    }
+
+    /// Whether the wheel may slide.
+    pub fn model(&self) -> ContactModel {
+        self.model
     }
 
     /// Fates of the motions from states `(u, q, psi, V, Omega)` without slip.

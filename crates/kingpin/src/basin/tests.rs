@@ -130,8 +130,8 @@ fn smallest_kick_lies_between_return_and_failure() {
     let settings = ClassificationSettings { duration: 20.0 };
     let kick =
         SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 1.0).unwrap().unwrap();
-    assert!(kick.returns < kick.fails && kick.fails - kick.returns < 2e-9);
-    assert_ne!(kick.fate, Fate::UniformMotion);
+    assert!(kick.returns < kick.fails && kick.fails - kick.returns < 2e-6);
+    assert_eq!(kick.fate, Some(Fate::Tumbling));
     // The blow turns the caster by R I/J.
     let turned = kick.state[5] - wheel.uniform_motion().unwrap().state()[4];
     let inertia = 3.48e-6 + 2.38e-5 + 0.0668 * 0.068f64.powi(2);

@@ -360,7 +360,11 @@ impl Curve for SlidingCurve {
         vec![start.period, angle - TAU * (angle / TAU).round()]
     }
 
-    fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending<CurvePoint>> {
+    fn ending(
+        &mut self,
+        _before: &Solution<CurvePoint>,
+        after: &Solution<CurvePoint>,
+    ) -> Option<Ending<CurvePoint>> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
         self.wants_new_start =

@@ -27,6 +27,17 @@ pub enum SimulationError {
     /// The wheel itself is at fault, or it has no uniform motion to start from.
     #[error(transparent)]
     Wheel(#[from] KingpinError),
+    /// The uniform motion itself takes more than the static friction: a wheel that may slide has none.
+    #[error(
+        "the uniform motion needs {needed:.4} N of friction, the ground can supply {available:.4} N: a wheel that may slide has no \
+         such motion to return to; lower v, raise r, mu_s or the load -F_Az, or let it roll ideally"
+    )]
+    UniformMotionSlides {
+        /// Friction force in N that rolling takes.
+        needed: f64,
+        /// Largest static friction in N.
+        available: f64,
+    },
     /// The motion could not be followed to its end.
     #[error("the motion cannot be followed: {0}")]
     Integration(#[from] IntegrationError),

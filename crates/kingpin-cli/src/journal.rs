@@ -1,0 +1,225 @@
+//! Journals of long runs: every finished cell is kept beside the result file at once, so that a run that is interrupted, or
+//! killed, can be resumed.
+//!
+//! A journal is text: its first line says which computation it belongs to, every other line is a JSON array of the index
+//! of a cell and its result. A last line that was torn is passed over. It goes when the result has been written.
+
+use crate::failure::Failure;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// What is added to the name of the result file.
+const ENDING: &str = ".journal";
+
+/// The finished cells of a run, on disk where there is a result file.
+#[derive(Debug)]
+pub struct Journal {
+    place: Option<(PathBuf, Mutex<File>)>,
+    /// Why a cell could not be kept.
+    lost: Mutex<Option<std::io::Error>>,
+}
+
+impl Journal {
+    /// Starts a journal beside a result file, or goes on with the one that is there, and returns the cells that are finished.
+    /// Without a result file nothing is kept.
+    ///
+    /// # Errors
+    /// [`Failure::Option`] where there is a journal that was not asked for, or one of another computation;
+    /// [`Failure::Journal`] where it cannot be read or written.
+    pub fn open<T: DeserializeOwned>(
+        result: Option<&Path>,
+        computation: &Value,
+        resume: bool,
+    ) -> Result<(Self, BTreeMap<usize, T>), Failure> {
+        let Some(result) = result else {
+            if resume {
+                return Err(refused("--resume", String::new(), "there is no result file", "with --out PATH"));
+            }
+            return Ok((Self { place: None, lost: Mutex::default() }, BTreeMap::new()));
+        };
+        let path = beside(result);
+        let failure = |source| Failure::Journal { path: path.clone(), source };
+        let mut cells = BTreeMap::new();
+        if path.exists() {
+            if !resume {
+                let problem = "an unfinished run is kept in it";
+                let allowed = "go on with it by --resume, or delete it";
+                return Err(refused("--out", path.display().to_string(), problem, allowed));
+            }
+            cells = read(&path, computation)?;
+        }
+        // Written anew, so that it ends with a whole line: as a temporary file first, the old one stays if that fails.
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let mut fresh = tempfile::Builder::new()
+            .prefix(".unfinished-")
+            .tempfile_in(folder.unwrap_or(Path::new(".")))
+            .map_err(failure)?;
+        writeln!(fresh, "{computation}").map_err(failure)?;
+        if path.exists() {
+            copy_cells(&path, &mut fresh).map_err(failure)?;
+        }
+        let file = fresh.persist(&path).map_err(|error| failure(error.error))?;
+        Ok((Self { place: Some((path, Mutex::new(file))), lost: Mutex::default() }, cells))
+    }
+
+    /// Keeps a finished cell. Where that fails the run is cancelled, and [`checked`](Self::checked) tells why.
+    pub fn keep<T: Serialize>(&self, index: usize, cell: &T, cancelled: &AtomicBool) {
+        let Some((_, file)) = &self.place else { return };
+        let line = serde_json::to_string(&(index, cell)).map_err(std::io::Error::from);
+        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Err(error) = line.and_then(|line| file.write_all(format!("{line}\n").as_bytes())) {
+            *self.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            cancelled.store(true, Ordering::Relaxed);
+        }
+    }
+
+    /// That every cell was kept and nobody interrupted the run, of which so many cells in so many are done.
+    ///
+    /// # Errors
+    /// [`Failure::Journal`] and [`Failure::Interrupted`].
+    pub fn checked(&self, done: usize, cells: usize) -> Result<(), Failure> {
+        let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let (Some(source), Some((path, _))) = (lost, &self.place) {
+            return Err(Failure::Journal { path: path.clone(), source });
+        }
+        if done == cells {
+            return Ok(());
+        }
+        let kept = match &self.place {
+            Some((path, _)) => format!("kept in {}; go on with --resume", path.display()),
+            None => "nothing was kept; with --out PATH it would be".to_owned(),
+        };
+        Err(Failure::Interrupted { done, cells, kept })
+    }
+
+    /// Removes the journal once the result is written.
+    ///
+    /// # Errors
+    /// [`Failure::Journal`].
+    pub fn finish(self) -> Result<(), Failure> {
+        match self.place {
+            Some((path, _)) => {
+                std::fs::remove_file(&path).map_err(|source| Failure::Journal { path, source })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Set once Ctrl-C was pressed, so that a run stops after the cells that it is at; pressed again it ends the program.
+///
+/// # Errors
+/// [`Failure::Signals`].
+pub fn interruption() -> Result<&'static AtomicBool, Failure> {
+    static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+    /// The exit code of programs that end by the signal SIGINT.
+    const ENDED_BY_SIGNAL: i32 = 130;
+    ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(ENDED_BY_SIGNAL);
+        }
+    })?;
+    Ok(&INTERRUPTED)
+}
+
+fn beside(result: &Path) -> PathBuf {
+    let mut name = result.as_os_str().to_owned();
+    name.push(ENDING);
+    name.into()
+}
+
+fn refused(option: &'static str, given: String, problem: &str, allowed: &str) -> Failure {
+    Failure::Option { option, given, problem: problem.to_owned(), allowed: allowed.to_owned() }
+}
+
+/// The lines that are whole.
+fn lines(path: &Path) -> std::io::Result<Vec<String>> {
+    let mut reader = BufReader::new(File::open(path)?);
+    let mut lines = Vec::new();
+    loop {
+        let mut line = Vec::new();
+        reader.read_until(b'\n', &mut line)?;
+        if line.pop() != Some(b'\n') {
+            return Ok(lines);
+        }
+        lines.push(String::from_utf8(line).map_err(std::io::Error::other)?);
+    }
+}
+
+fn copy_cells(from: &Path, to: &mut impl Write) -> std::io::Result<()> {
+    lines(from)?.iter().skip(1).try_for_each(|line| writeln!(to, "{line}"))
+}
+
+fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMap<usize, T>, Failure> {
+    let lines = lines(path).map_err(|source| Failure::Journal { path: path.to_owned(), source })?;
+    let other = |problem: String| {
+        refused("--resume", path.display().to_string(), &problem, "the same command, or delete the journal")
+    };
+    let header: Value = lines.first().and_then(|line| serde_json::from_str(line).ok()).unwrap_or_default();
+    if let Some(difference) = difference(&header, computation) {
+        return Err(other(format!("it is the journal of another computation: {difference}")));
+    }
+    let cell = |(number, line): (usize, &String)| {
+        serde_json::from_str(line).map_err(|error| other(format!("line {}: {error}", number + 2)))
+    };
+    lines.iter().skip(1).enumerate().map(cell).collect()
+}
+
+/// The first field in which two computations differ.
+fn difference(kept: &Value, asked: &Value) -> Option<String> {
+    if kept == asked {
+        return None;
+    }
+    if let (Some(kept), Some(asked)) = (kept.as_object(), asked.as_object()) {
+        let differing = asked.iter().find_map(|(name, value)| {
+            difference(kept.get(name).unwrap_or(&Value::Null), value).map(|text| match value.is_object() {
+                true => text,
+                false => format!("{name} {text}"),
+            })
+        });
+        return differing.or(Some("it has other fields".to_owned()));
+    }
+    Some(format!("was {kept}, now it is {asked}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn torn_lines_are_computed_again_and_other_computations_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let result = folder.path().join("a.json");
+        let computation = json!({"command": "basin", "parameters": {"v": 4.0}});
+        let never = AtomicBool::new(false);
+        let (journal, cells) = Journal::open::<Vec<u8>>(Some(&result), &computation, false).unwrap();
+        assert!(cells.is_empty());
+        journal.keep(3, &vec![1_u8, 2], &never);
+        journal.keep(0, &vec![0_u8], &never);
+        assert!(matches!(journal.checked(2, 5), Err(Failure::Interrupted { done: 2, cells: 5, .. })));
+        drop(journal);
+        let path = beside(&result);
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        text += "[1,[7";
+        std::fs::write(&path, &text).unwrap();
+        assert!(Journal::open::<Vec<u8>>(Some(&result), &computation, false).is_err());
+        let other = json!({"command": "basin", "parameters": {"v": 5.0}});
+        let message = Journal::open::<Vec<u8>>(Some(&result), &other, true).unwrap_err().to_string();
+        assert!(message.contains("v was 4.0, now it is 5.0"), "{message}");
+        let (journal, cells) = Journal::open::<Vec<u8>>(Some(&result), &computation, true).unwrap();
+        assert_eq!(cells, BTreeMap::from([(3, vec![1, 2]), (0, vec![0])]));
+        journal.keep(1, &vec![9_u8], &never);
+        journal.checked(3, 3).unwrap();
+        assert_eq!(read::<Vec<u8>>(&path, &computation).unwrap()[&1], [9]);
+        journal.finish().unwrap();
+        assert!(!path.exists());
+    }
+}
