@@ -249,3 +249,56 @@ fn the_doublings_of_lure_form_a_closed_curve() {
         assert!(kind == SpecialKind::Resonance2 && values[0].abs() < 1e-8);
     }
 }
+
+/// The peroxidase-oxidase reaction of Steinmetz and Larter (1991).
+struct Peroxidase;
+
+impl VectorField for Peroxidase {
+    fn state_names(&self) -> Vec<String> {
+        names!["A", "B", "X", "Y"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["k7", "k8"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [a, b, x, y] = [state[0], state[1], state[2], state[3]];
+        let (first, third) = (a * b * x * 0.1631021, a * b * y * 0.046875);
+        derivative[0] = parameters[0] - first - third - a * 0.1175;
+        derivative[1] = parameters[1] - first - third;
+        derivative[2] = first - x * x * 2500.0 + third * 2.0 - x * 20.0 + 0.001;
+        derivative[3] = x * x * 2500.0 - third - y * 1.104;
+    }
+}
+
+#[test]
+fn folds_and_tori_of_a_reaction_meet_in_the_same_resonance() {
+    let parameters = [0.712475372576, 0.5];
+    let start = common::hopf_start(&Peroxidase, &[1.808301, 25.573303, 0.015245858, 0.17761127], &parameters);
+    let branch =
+        Cycles::of(&Peroxidase, start).parameters(&parameters).along(0, 0.5..=10.0).run().expect("exists");
+    let follow = |kind: SpecialKind, sought: fn(Special) -> bool| {
+        let (_, cycle) =
+            branch.special_points().find(|(special, _)| sought(*special)).expect("a special cycle");
+        CycleLocus::of(&Peroxidase)
+            .from_cycle(kind, &cycle.orbit, &[cycle.value, 0.5])
+            .along("k7", 0.5..=10.0)
+            .and("k8", 0.1..=3.0)
+            .run()
+            .expect("exists")
+    };
+    let folds = follow(SpecialKind::FoldOfCycles, |special| special == Special::Fold);
+    let tori = follow(SpecialKind::Torus, |special| matches!(special, Special::Torus { .. }));
+    let resonances = |curve: &CycleLocusBranch| -> Vec<[f64; 2]> {
+        found(curve)
+            .into_iter()
+            .filter(|(kind, _)| *kind == SpecialKind::Resonance1)
+            .map(|(_, at)| at)
+            .collect()
+    };
+    let (on_folds, on_tori) = (resonances(&folds), resonances(&tori));
+    assert_eq!(on_tori.len(), 1);
+    assert!(
+        on_folds.iter().any(|at| (0..2).all(|k| (at[k] - on_tori[0][k]).abs() < 1e-8)),
+        "{on_folds:?} {on_tori:?}"
+    );
+}

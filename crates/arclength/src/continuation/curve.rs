@@ -57,24 +57,18 @@ pub trait Curve {
     fn signature(&self, unknown: &[f64]) -> Vec<f64>;
 
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
-    fn ending(
-        &mut self,
-        _before: &Solution<Self::Point>,
-        _after: &Solution<Self::Point>,
-    ) -> Option<Ending<Self::Point>> {
+    fn ending(&mut self, _before: &Solution<Self::Point>, _after: &Solution<Self::Point>) -> Option<Ending> {
         None
     }
 }
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]
-pub enum Ending<P> {
+pub enum Ending {
     /// The curve ends between the two solutions; the second is not part of it.
     Between(super::Stop),
     /// The second solution is the last.
     After(super::Stop),
-    /// The last solution is this one, between the two.
-    At(Box<Solution<P>>, super::Stop),
 }
 
 /// Whether [`Curve::adapt`] changed the discretisation, so that the solution has to be corrected again.

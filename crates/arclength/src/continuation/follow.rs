@@ -91,11 +91,10 @@ pub fn follow<C: Curve>(
             Ok(next) => next,
             Err(stop) => return Ok(Followed { solutions, stop }),
         };
-        let (advanced, ending) = match curve.ending(&current, &advanced) {
+        let ending = match curve.ending(&current, &advanced) {
             Some(Ending::Between(stop)) => return Ok(Followed { solutions, stop }),
-            Some(Ending::After(stop)) => (advanced, Some(stop)),
-            Some(Ending::At(solution, stop)) => (*solution, Some(stop)),
-            None => (advanced, None),
+            Some(Ending::After(stop)) => Some(stop),
+            None => None,
         };
         let mut between: Vec<(Solution<C::Point>, Origin)> = match curve.special_points(&current, &advanced) {
             Ok(special) => special.into_iter().map(|solution| (solution, Origin::Special)).collect(),

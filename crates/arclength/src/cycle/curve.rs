@@ -341,7 +341,7 @@ impl Curve for CycleCurve<'_> {
         &mut self,
         before: &Solution<CycleInspection>,
         after: &Solution<CycleInspection>,
-    ) -> Option<Ending<Self::Point>> {
+    ) -> Option<Ending> {
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let first = *self.first_period.get_or_insert(period);

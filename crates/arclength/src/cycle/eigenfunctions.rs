@@ -172,10 +172,9 @@ pub(crate) fn critical(
             .map(|adjoint| (vec![adjoint], vec![0.0, 0.0])),
         Kind::Doubling => {
             let Some(critical) = nearest(&|multiplier| (multiplier + 1.0).norm()) else { return Ok(None) };
-            if critical.im != 0.0 {
-                return Ok(None);
-            }
-            let mut functions = periodic_eigenfunctions(collocation, critical)?;
+            // Next to a 1:2 resonance the multiplier may be complex: the real part of its function is a start, too.
+            let mut functions = eigenfunctions(collocation, critical, 0.0)?;
+            functions.truncate(1);
             let factor = size(&functions[0]).sqrt().recip();
             functions[0].iter_mut().for_each(|value| *value *= factor);
             factor.is_finite().then_some((functions, Vec::new()))
@@ -185,8 +184,8 @@ pub(crate) fn critical(
                 if multiplier.im > 0.0 { multiplier.norm().ln().abs() } else { f64::INFINITY }
             };
             let Some(critical) = nearest(&distance) else { return Ok(None) };
-            let functions = periodic_eigenfunctions(collocation, critical)?;
             let angle = critical.arg();
+            let functions = eigenfunctions(collocation, critical, angle)?;
             // Without their components along the flow, which come back through beta = -i theta kappa.
             let flow_row = linearization.dual(&linearization.flow);
             let square = linearization.nodes.product(&linearization.flow, &flow_row);
@@ -210,10 +209,11 @@ pub(crate) fn critical(
 }
 
 /// Solutions of the variational equation with `z(1) = mu z(0)`, real for a real multiplier; for a complex one
-/// real and imaginary part of `z(t) exp(-i theta t)`, which is periodic when `|mu| = 1`.
-fn periodic_eigenfunctions<P: PeriodicProblem>(
+/// real and imaginary part of `z(t) exp(-i angle t)`, which is periodic when `mu = exp(i angle)`.
+fn eigenfunctions<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     multiplier: Complex64,
+    angle: f64,
 ) -> Result<Vec<NodeFunction>, Error> {
     let n = collocation.problem.dimension();
     let intervals = collocation.intervals();
@@ -224,7 +224,6 @@ fn periodic_eigenfunctions<P: PeriodicProblem>(
     let is_real = multiplier.im == 0.0;
     let count = if is_real { 1 } else { 2 };
     let mut functions = vec![Vec::with_capacity(collocation.unknowns()); count];
-    let angle = multiplier.arg();
     let mut parts = [vec![0.0; degree * n], vec![0.0; degree * n]];
     for interval in 0..intervals {
         let start = &starts[interval * n..(interval + 1) * n];

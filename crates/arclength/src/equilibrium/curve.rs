@@ -171,11 +171,7 @@ impl Curve for EquilibriumCurve<'_> {
         events::special_points(self, before, after)
     }
 
-    fn ending(
-        &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Option<Ending<Self::Point>> {
+    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
         let n = self.dimension();
         let range = self.system.scales[n];
         let parameter = after.unknown[n];

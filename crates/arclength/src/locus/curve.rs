@@ -147,11 +147,7 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         states.chain(last).collect()
     }
 
-    fn ending(
-        &mut self,
-        _before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Option<Ending<Self::Point>> {
+    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
         if K::KIND != SpecialKind::BranchPoint {
             return None;
         }

@@ -39,7 +39,7 @@ fn lure() {
     }
     let Stop::HopfPoint { parameter, .. } = cycles.stops.1 else { panic!("{}", cycles.stops.1) };
     assert!((parameter + 1.0).abs() < 1e-4, "{parameter}");
-    const REFERENCE: Source = Source::Published("given in the requirements of this project");
+    const REFERENCE: Source = Source::Published("reference value of this project");
     let doubled = study.doubled_from(doublings[0], "alpha=-1.5:1.5", &[]);
     let folds = special(&doubled, |special| special == Special::Fold);
     for (cycle, sign, name) in [(folds[0], -1.0, "first"), (folds[1], 1.0, "second")] {
@@ -132,7 +132,7 @@ fn lorenz() {
     page.row(
         "period doubling: rho",
         229.40670855,
-        Source::Published("given in the requirements of this project"),
+        Source::Published("reference value of this project"),
         Tolerance::Relative(1e-9),
         doubling[0].value,
     );
@@ -145,7 +145,7 @@ fn lorenz() {
         page.row(
             format!("{name} period doubling: rho"),
             reference,
-            Source::Published("given in the requirements of this project"),
+            Source::Published("reference value of this project"),
             Tolerance::Relative(1e-9),
             next.value,
         );
@@ -196,7 +196,7 @@ fn rossler() {
 
 #[test]
 fn vanderpol() {
-    const LITERATURE: Source = Source::Published("given in the requirements of this project");
+    const LITERATURE: Source = Source::Published("reference value of this project");
     let mut page = Page::new(
         "vanderpol",
         "The van der Pol oscillator",

@@ -57,7 +57,7 @@ fn bazykin() {
     let folds = study.locus(|locus| locus.from_fold(fold), ["alpha=0:1", "delta=0:0.5"]);
     let source = || {
         Source::Published(
-            "Kuznetsov (2004), section 8.3.3; digits as given in the requirements of this project",
+            "Kuznetsov (2004), section 8.3.3; digits as reference value of this project",
         )
     };
     for (curve, name) in [(&hopf_points, "Hopf points"), (&folds, "folds")] {

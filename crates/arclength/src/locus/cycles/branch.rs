@@ -86,6 +86,19 @@ impl CycleLocusBranch {
         Self { kind, active, points, backward_stop: backward.stop, forward_stop: forward.stop }
     }
 
+    /// Adds the points in which the curve ends.
+    pub(super) fn extend(&mut self, first: Option<CycleLocusPoint>, last: Option<CycleLocusPoint>) {
+        if let Some(point) = first {
+            self.points.insert(0, point);
+        }
+        self.points.extend(last);
+        // Ends are labelled by the curve on which they were located: counted anew along this one.
+        let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
+        for label in self.points.iter_mut().filter_map(|point| point.label.as_mut()) {
+            label.number = *counts.entry(label.kind).and_modify(|count| *count += 1).or_insert(1);
+        }
+    }
+
     /// Points of codimension two in the order of the curve.
     pub fn special_points(&self) -> impl Iterator<Item = (SpecialKind, &CycleLocusPoint)> {
         self.points.iter().filter_map(|point| match point.label {

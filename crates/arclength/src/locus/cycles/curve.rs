@@ -41,6 +41,11 @@ const POLE: f64 = 1e-3;
 /// A point at which a test function vanishes, with error estimates of the two parameters.
 type Zero = (Solution<Inspection>, [f64; 2]);
 
+/// A test function made of multipliers, which is at most one, is zero below this where the curve starts at a special point.
+const ZERO: f64 = 1e-10;
+/// Distance of the angle from that of a resonance within which it counts as there.
+const AT_RESONANCE: f64 = 1e-6;
+
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
 pub(super) struct Inspection {
@@ -176,8 +181,10 @@ impl<'a> CycleLocusCurve<'a> {
         &mut self,
         before: &Solution<Inspection>,
         after: &Solution<Inspection>,
-        test: impl Fn(&Solution<Inspection>) -> Option<f64>,
+        kind: SpecialKind,
     ) -> Result<Option<Zero>, Error> {
+        let test = |solution: &Solution<Inspection>| test_value(solution, kind);
+        let zero = if monitor::is_coefficient(kind) { 0.0 } else { ZERO };
         let settings = self.settings;
         let found = match locate(self, before, after, &settings, LOCATION, |_, solution| test(solution)) {
             Ok(Some(found)) => found,
@@ -187,7 +194,7 @@ impl<'a> CycleLocusCurve<'a> {
         let value = |solution: &Solution<Inspection>| test(solution).map_or(f64::INFINITY, f64::abs);
         let (ends, nearer) = (value(before).max(value(after)), value(before).min(value(after)));
         let smallest = value(&found);
-        if smallest > POLE * nearer {
+        if smallest > POLE * nearer && smallest > zero {
             return Ok(None);
         }
         // The parameters are known as well as the test function: its slope along the bracket gives the error.
@@ -326,9 +333,7 @@ impl Curve for CycleLocusCurve<'_> {
             if test_value(after, kind).is_none_or(|other| (value > 0.0) == (other > 0.0)) {
                 continue;
             }
-            let Some((mut solution, error)) =
-                self.zero(before, after, |solution| test_value(solution, kind))?
-            else {
+            let Some((mut solution, error)) = self.zero(before, after, kind)? else {
                 continue;
             };
             let multipliers: Vec<Complex64> =
@@ -362,11 +367,7 @@ impl Curve for CycleLocusCurve<'_> {
         signature
     }
 
-    fn ending(
-        &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Option<Ending<Inspection>> {
+    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
         let end = after.unknown.len() - self.system.collocation.problem.scalars();
         let period = after.unknown[end];
         let first = *self.first_period.get_or_insert(period);
@@ -384,19 +385,11 @@ impl Curve for CycleLocusCurve<'_> {
         }
         let angle = |solution: &Solution<Inspection>| solution.point.argument;
         let (from, to) = (angle(before)?, angle(after)?);
-        let ends = [(0.0, SpecialKind::Resonance1, 1), (PI, SpecialKind::Resonance2, 2)];
-        for (resonance, kind, order) in ends {
-            if (from - resonance) * (to - resonance) < 0.0 {
-                let stop = Stop::StrongResonance { order };
-                let found =
-                    self.zero(before, after, |solution| angle(solution).map(|value| value - resonance));
-                return Some(match found {
-                    Ok(Some((mut solution, error))) => {
-                        solution.point.special = Some((kind, error));
-                        Ending::At(Box::new(solution), stop)
-                    }
-                    _ => Ending::Between(stop),
-                });
+        // Folds with the angle 0 and period doublings with the angle pi solve the defining system as well and cross its curve
+        // at the resonances, where the continuation may turn onto theirs.
+        for (resonance, order) in [(0.0, 1), (PI, 2)] {
+            if (from - resonance) * (to - resonance) < 0.0 || (to - resonance).abs() < AT_RESONANCE {
+                return Some(Ending::Between(Stop::StrongResonance { order }));
             }
         }
         None

@@ -107,6 +107,14 @@ pub(super) fn tests(
     tests
 }
 
+/// Whether the test function is a coefficient of the normal form, of any size, and not one made of multipliers.
+pub(super) fn is_coefficient(kind: SpecialKind) -> bool {
+    matches!(
+        kind,
+        SpecialKind::CuspOfCycles | SpecialKind::GeneralizedPeriodDoubling | SpecialKind::Chenciner
+    )
+}
+
 /// Whether a zero of the test function is what it is called: pairs with the product one have to be complex.
 pub(super) fn is_genuine(sought: SpecialKind, kind: Kind, multipliers: &[Complex64]) -> bool {
     let by_pair = match sought {
