@@ -45,6 +45,9 @@ pub enum Failure {
     /// A simulation could not be run.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// A periodic motion with sliding phases could not be found or followed.
+    #[error(transparent)]
+    Shimmy(#[from] kingpin::shimmy::ShimmyError),
     /// A continuation failed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),
@@ -148,6 +151,7 @@ impl Failure {
             | Self::Journal { .. }
             | Self::ResultFile { .. } => BAD_INPUT,
             Self::Continuation(_)
+            | Self::Shimmy(_)
             | Self::Integration(_)
             | Self::NothingFound(_)
             | Self::Paper(_)

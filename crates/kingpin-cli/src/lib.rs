@@ -24,5 +24,6 @@ pub mod progress;
 pub mod range;
 pub mod report;
 pub mod stored;
+pub mod studies;
 pub mod table;
 pub mod terminal;

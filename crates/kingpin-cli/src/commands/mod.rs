@@ -8,6 +8,7 @@ pub mod paper;
 pub mod simulate;
 pub mod stability;
 pub mod steady;
+pub mod study;
 
 use crate::failure::Failure;
 use clap::{Parser, Subcommand};
@@ -32,6 +33,7 @@ enum Command {
     Hopf(hopf::Hopf),
     Cycles(cycles::Cycles),
     Simulate(simulate::Simulate),
+    Study(study::StudyCommand),
     Basin(basin::Basin),
 }
 
@@ -49,6 +51,7 @@ impl Kingpin {
             Command::Hopf(command) => command.run(),
             Command::Cycles(command) => command.run(),
             Command::Simulate(command) => command.run(),
+            Command::Study(command) => command.run(),
             Command::Basin(command) => command.run(),
         }
     }

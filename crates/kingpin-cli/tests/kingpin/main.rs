@@ -3,6 +3,7 @@
 mod bad_input;
 mod branches;
 mod formats;
+mod studies;
 mod tables;
 
 use std::path::{Path, PathBuf};
