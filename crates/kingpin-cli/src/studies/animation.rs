@@ -13,17 +13,16 @@ use std::fmt::Write;
 const SLOWER: f64 = 25.0;
 /// Pictures of a period; between them everything moves linearly.
 const FRAMES: usize = 300;
-/// Pixels in a metre, and the size of the picture in pixels.
-const SCALE: f64 = 1900.0;
-const SIZE: (f64, f64) = (640.0, 420.0);
-/// Place of the towing point in the picture.
-const ORIGIN: (f64, f64) = (330.0, 215.0);
-/// Distance between marks on the ground in m, about.
-const MARKS: f64 = 0.06;
-/// Lines of marks, by their distance from the path of the towing point in m.
-const LANES: [f64; 5] = [-0.08, -0.04, 0.0, 0.04, 0.08];
+/// Size of the picture in pixels, and what is left free around the motion; more below, for the text.
+const SIZE: (f64, f64) = (640.0, 460.0);
+const MARGIN: f64 = 70.0;
+/// Distance between marks on the ground and between their lines, about, in pixels.
+const MARKS: f64 = 110.0;
+const LANES: f64 = 75.0;
+/// Lines of marks on either side of the path of the towing point.
+const LANES_BESIDE: i32 = 7;
 /// Length of the force arrow in pixels for one N.
-const FORCE: f64 = 0.9;
+const FORCE: f64 = 0.6;
 /// Width of the wheel, part of its diameter.
 const WIDTH: f64 = 0.28;
 
@@ -43,14 +42,29 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
             .any(|phase| phase.contact == Contact::Sliding && (phase.start..phase.end).contains(&time))
     };
     let list = |value: &dyn Fn(usize) -> String| (0..=FRAMES).map(value).collect::<Vec<_>>().join(";");
+    // All that king pin and wheel reach, and the towing point; the picture has y downwards.
+    let places = || {
+        let reached = history.states.iter().flat_map(|state| {
+            let (x, y, psi) = (state[0], -state[1], state[2]);
+            [(x, y), (x - length * psi.cos(), y - length * psi.sin())]
+        });
+        reached.chain([(0.0, 0.0)])
+    };
+    let smallest = places().fold((0.0_f64, 0.0_f64), |a, b| (a.0.min(b.0), a.1.min(b.1)));
+    let largest = places().fold((0.0_f64, 0.0_f64), |a, b| (a.0.max(b.0), a.1.max(b.1)));
+    let (width, height) = SIZE;
+    let room = (width - 2.0 * MARGIN, height - 2.5 * MARGIN);
+    let scale = (room.0 / (largest.0 - smallest.0)).min(room.1 / (largest.1 - smallest.1));
+    let middle = (0.5 * (smallest.0 + largest.0), 0.5 * (smallest.1 + largest.1));
+    let origin = (0.5 * width - scale * middle.0, 0.5 * (height - 0.5 * MARGIN) - scale * middle.1);
     let pin = |index: usize| {
         let state = &history.states[index];
-        (SCALE * state[0], -SCALE * state[1])
+        (scale * state[0], -scale * state[1])
     };
     // From king pin to wheel the caster points along -e1 = (-cos psi, sin psi); the picture has y downwards.
     let contact_point = |index: usize| {
         let ((x, y), psi) = (pin(index), history.states[index][2]);
-        (x - SCALE * length * psi.cos(), y - SCALE * length * psi.sin())
+        (x - scale * length * psi.cos(), y - scale * length * psi.sin())
     };
     let pins = list(&|index| pair(pin(index)));
     let angles = list(&|index| format!("{:.2}", history.states[index][2].to_degrees()));
@@ -63,7 +77,6 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
         format!("M0 0 L{:.1} {:.1}", FORCE * along, -FORCE * across)
     });
 
-    let (width, height) = SIZE;
     let mut svg = String::new();
     let mut line = |text: String| {
         // Writing to a string does not fail.
@@ -75,12 +88,12 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
     ));
     line("<title>A towed wheel seen from above, rolling and sliding in turn</title>".into());
     line(format!("<rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>"));
-    line(format!("<g transform=\"translate({} {})\">", ORIGIN.0, ORIGIN.1));
-    for mark in ground(motion, &duration) {
+    line(format!("<g transform=\"translate({} {})\">", origin.0, origin.1));
+    for mark in ground(motion, &duration, scale) {
         line(mark);
     }
     line(format!(
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"#888\" stroke-width=\"1\" stroke-dasharray=\"2 3\"/>",
+        "<polyline stroke-linejoin=\"round\" points=\"{}\" fill=\"none\" stroke=\"#888\" stroke-width=\"1\" stroke-dasharray=\"2 3\"/>",
         path.join(" ")
     ));
     let animate = |attribute: &str, values: &str, discrete: bool| {
@@ -94,13 +107,13 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
             "<animateTransform attributeName=\"transform\" type=\"{kind}\" dur=\"{duration}s\" repeatCount=\"indefinite\" values=\"{values}\"/>"
         )
     };
-    let (diameter, tread) = (2.0 * radius * SCALE, 2.0 * radius * SCALE * WIDTH);
+    let (diameter, tread) = (2.0 * radius * scale, 2.0 * radius * scale * WIDTH);
     line("<g>".into());
     line(transform("translate", &pins));
     line("<g>".into());
     line(transform("rotate", &angles));
-    line(format!("<line x2=\"{:.1}\" stroke=\"#333\" stroke-width=\"7\"/>", -SCALE * length));
-    line(format!("<g transform=\"translate({:.1} 0)\">", -SCALE * length));
+    line(format!("<line x2=\"{:.1}\" stroke=\"#333\" stroke-width=\"7\"/>", -scale * length));
+    line(format!("<g transform=\"translate({:.1} 0)\">", -scale * length));
     line(format!(
         "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{diameter:.1}\" height=\"{tread:.1}\" rx=\"10\" fill-opacity=\"0.85\">",
         -0.5 * diameter,
@@ -124,7 +137,7 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
         line("</text>".into());
     }
     line(format!(
-        "<text x=\"16\" y=\"{}\">v = {} m/s, r = {} m, load {} N, {SLOWER} times slower; green: towing point; arrow: friction force</text>",
+        "<text x=\"16\" y=\"{}\">v = {} m/s, r = {} m, load {} N, {SLOWER} times slower; cross: towing point</text>",
         height - 14.0,
         wheel.get(Key::V),
         wheel.get(Key::TurningRadius),
@@ -135,22 +148,22 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
 }
 
 /// The marks on the ground, which turn about the centre of the curve.
-fn ground(motion: &PeriodicSliding, duration: &str) -> Vec<String> {
+fn ground(motion: &PeriodicSliding, duration: &str, scale: f64) -> Vec<String> {
     let radius = motion.wheel.get(Key::TurningRadius);
     let turned = motion.wheel.towing_yaw_rate() * motion.period;
-    let marks = (turned * radius / MARKS).round().max(1.0);
+    let marks = (turned * radius * scale / MARKS).round().max(1.0);
     let spacing = turned / marks;
     // All that is seen from the towing point, and what comes in during a period.
-    let seen = (1.2 * SIZE.0 / SCALE / radius / spacing).ceil() as i64;
-    let center = -SCALE * radius;
+    let seen = (1.2 * SIZE.0 / scale / radius / spacing).ceil() as i64;
+    let center = -scale * radius;
     let mut lines = vec![format!(
         "<g stroke=\"#ccc\" stroke-width=\"2\" fill=\"none\"><animateTransform attributeName=\"transform\" type=\"rotate\" \
          dur=\"{duration}s\" repeatCount=\"indefinite\" values=\"0 0 {center:.1};{:.3} 0 {center:.1}\"/>",
         turned.to_degrees()
     )];
     for index in -seen..=seen + marks as i64 {
-        for lane in LANES {
-            let (distance, half) = (SCALE * (radius + lane), 0.2 * spacing);
+        for lane in -LANES_BESIDE..=LANES_BESIDE {
+            let (distance, half) = (scale * radius + LANES * f64::from(lane), 0.2 * spacing);
             let end = |angle: f64| (distance * angle.sin(), center + distance * angle.cos());
             let middle = index as f64 * spacing;
             lines.push(format!("<path d=\"M{} L{}\"/>", pair(end(middle - half)), pair(end(middle + half))));
