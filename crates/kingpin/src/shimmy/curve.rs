@@ -364,7 +364,7 @@ impl Curve for SlidingCurve {
         &mut self,
         _before: &Solution<CurvePoint>,
         after: &Solution<CurvePoint>,
-    ) -> Option<Ending<CurvePoint>> {
+    ) -> Option<Ending> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
         self.wants_new_start =
