@@ -178,7 +178,9 @@ fn difference(kept: &Value, asked: &Value) -> Option<String> {
         return None;
     }
     if let (Some(kept), Some(asked)) = (kept.as_object(), asked.as_object()) {
-        let differing = asked.iter().find_map(|(name, value)| {
+        // The parameters first: other fields may differ because of them.
+        let part = |nested: bool| asked.iter().filter(move |(_, value)| value.is_object() == nested);
+        let differing = part(true).chain(part(false)).find_map(|(name, value)| {
             difference(kept.get(name).unwrap_or(&Value::Null), value).map(|text| match value.is_object() {
                 true => text,
                 false => format!("{name} {text}"),

@@ -4,7 +4,9 @@ pub mod basin;
 pub mod chart;
 pub mod cycles;
 pub mod hopf;
+pub mod margin;
 pub mod paper;
+pub mod safe_kick;
 pub mod simulate;
 pub mod stability;
 pub mod steady;
@@ -35,6 +37,8 @@ enum Command {
     Simulate(simulate::Simulate),
     Study(study::StudyCommand),
     Basin(basin::Basin),
+    SafeKick(safe_kick::SafeKick),
+    Margin(margin::Margin),
 }
 
 impl Kingpin {
@@ -53,6 +57,8 @@ impl Kingpin {
             Command::Simulate(command) => command.run(),
             Command::Study(command) => command.run(),
             Command::Basin(command) => command.run(),
+            Command::SafeKick(command) => command.run(),
+            Command::Margin(command) => command.run(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The program `kingpin` as others run it: in a folder of its own, by its exit code, its output and its files.
 
 mod bad_input;
+mod basin;
 mod branches;
 mod formats;
 mod studies;

@@ -148,11 +148,14 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub fn new(target: &Target, settings: &ClassificationSettings) -> Self {
+    /// Watches a motion from its initial state.
+    pub fn new(target: &Target, settings: &ClassificationSettings, initial: &[f64; 5]) -> Self {
+        // Steps can be longer than the time near the uniform motion that is asked for: the start counts.
+        let is_near = target.attracts && target.distance(initial) < NEAR;
         Self {
             target: target.clone(),
             duration: settings.duration,
-            near_since: None,
+            near_since: is_near.then_some(0.0),
             decided: None,
             amplitudes: [0.0; 2],
             angles: [f64::INFINITY, f64::NEG_INFINITY],

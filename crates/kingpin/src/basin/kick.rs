@@ -13,6 +13,8 @@ const SCAN: usize = 64;
 const RESOLUTION: f64 = 1e-6;
 /// The motion at the edge lingers: it is followed for so many times the duration before its fate is told.
 const PATIENCE: f64 = 4.0;
+/// How often the duration of a history is halved where the motion leaves the range of numbers.
+const SHORTENINGS: usize = 20;
 
 /// A kind of disturbance of the uniform motion. Magnitudes may be negative: the other direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +53,43 @@ impl Disturbance {
             Disturbance::Jolt => "m/s",
             Disturbance::StepSteer => "1/m",
         }
+    }
+
+    /// The motion after the disturbance for `duration`, or as much of it as can be followed, sampled at equal intervals.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and what the simulations refuse.
+    pub fn history(
+        self,
+        wheel: &Wheel,
+        model: ContactModel,
+        magnitude: f64,
+        duration: f64,
+        samples: usize,
+    ) -> Result<DisturbedMotion, SimulationError> {
+        let (wheel, state) = self.apply(wheel, model, magnitude)?;
+        let [u, q, psi, speed, _, yaw, _] = state;
+        let mut duration = duration;
+        for _ in 0..SHORTENINGS {
+            let motion = match model {
+                ContactModel::Rolling => {
+                    wheel.simulate_from(&[u, q, psi, speed, yaw], duration, samples).map(|history| {
+                        let widen = |&[u, q, psi, speed, yaw]: &[f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
+                        let states = history.states.iter().map(widen).collect();
+                        DisturbedMotion { times: history.times, states }
+                    })
+                }
+                ContactModel::Sliding => wheel
+                    .sliding()?
+                    .simulate_from(&state, duration, samples)
+                    .map(|history| DisturbedMotion { times: history.times, states: history.states }),
+            };
+            match motion {
+                Err(SimulationError::Integration(_)) => duration *= 0.5,
+                other => return other,
+            }
+        }
+        Ok(DisturbedMotion { times: vec![0.0], states: vec![state] })
     }
 
     /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W).
@@ -95,6 +134,15 @@ impl Disturbance {
             }
         }
     }
+}
+
+/// A motion after a disturbance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisturbedMotion {
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// States (u, q, psi, V1, V2, Omega, W), one for each time.
+    pub states: Vec<[f64; 7]>,
 }
 
 /// The edge of what the wheel returns from.
@@ -169,23 +217,5 @@ impl SafeKick {
         };
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
         Ok(Some(Self { returns, fails, fate, wheel, state }))
-    }
-
-    /// Finds the smallest disturbance at each value of a parameter, as [`find`](Self::find) does: the margin of safety.
-    ///
-    /// # Errors
-    /// A value that is not allowed, and as [`find`](Self::find).
-    pub fn along(
-        wheel: &Wheel,
-        model: ContactModel,
-        settings: ClassificationSettings,
-        disturbance: Disturbance,
-        largest: f64,
-        (key, values): (Key, &[f64]),
-    ) -> Result<Vec<Option<Self>>, SimulationError> {
-        values
-            .par_iter()
-            .map(|&value| Self::find(&wheel.with(key, value)?, model, settings, disturbance, largest))
-            .collect()
     }
 }

@@ -236,7 +236,10 @@ pub fn wilson_interval(count: usize, total: usize) -> (f64, f64) {
     let share = count as f64 / n;
     let centre = (share + square / (2.0 * n)) / (1.0 + square / n);
     let half = QUANTILE / (1.0 + square / n) * (share * (1.0 - share) / n + square / (4.0 * n * n)).sqrt();
-    ((centre - half).max(0.0), (centre + half).min(1.0))
+    // Where none or all were seen that end is exact; rounding must not move it.
+    let low = if count == 0 { 0.0 } else { (centre - half).max(0.0) };
+    let high = if count == total { 1.0 } else { (centre + half).min(1.0) };
+    (low, high)
 }
 
 fn fraction(index: usize, count: usize) -> f64 {

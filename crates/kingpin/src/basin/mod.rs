@@ -11,7 +11,7 @@ mod map;
 mod tests;
 
 pub use fate::{ClassificationSettings, Fate};
-pub use kick::{Disturbance, SafeKick};
+pub use kick::{Disturbance, DisturbedMotion, SafeKick};
 pub use map::{Axis, BasinMap, Fraction, Tile, wilson_interval};
 
 use crate::ensemble::{Ending, Ensemble, Progress};
@@ -130,11 +130,11 @@ impl Destinations {
     /// # Errors
     /// A motion that cannot be followed for another reason than that it grows without bound.
     pub fn of(&self, initial: &[[f64; 5]]) -> Result<Vec<Fate>, SimulationError> {
-        let watch = || Watch::new(&self.target, &self.settings);
+        let watch = |state: &[f64; 5]| Watch::new(&self.target, &self.settings, state);
         match &self.follower {
             Follower::Ensemble(ensemble) => {
                 let slots: Vec<std::sync::Mutex<Watch>> =
-                    initial.iter().map(|_| std::sync::Mutex::new(watch())).collect();
+                    initial.iter().map(|state| std::sync::Mutex::new(watch(state))).collect();
                 let monitor = |trajectory: usize| {
                     let slot = &slots[trajectory];
                     move |progress: Progress<'_>| match slot.lock() {
@@ -153,11 +153,12 @@ impl Destinations {
                     })
                     .collect())
             }
-            Follower::Rolling => initial.iter().map(|state| self.of_rolling(state, watch())).collect(),
+            Follower::Rolling => initial.iter().map(|state| self.of_rolling(state, watch(state))).collect(),
             Follower::Sliding(sliding) => initial
                 .iter()
-                .map(|&[u, q, psi, speed, yaw]| {
-                    self.of_sliding(sliding, [u, q, psi, speed, 0.0, yaw, speed], watch())
+                .map(|state| {
+                    let [u, q, psi, speed, yaw] = *state;
+                    self.of_sliding(sliding, [u, q, psi, speed, 0.0, yaw, speed], watch(state))
                 })
                 .collect(),
         }
@@ -171,7 +172,8 @@ impl Destinations {
         let [u, q, psi, speed, _, yaw, _] = *initial;
         match &self.follower {
             Follower::Sliding(sliding) => {
-                self.of_sliding(sliding, *initial, Watch::new(&self.target, &self.settings))
+                let watch = Watch::new(&self.target, &self.settings, &[u, q, psi, speed, yaw]);
+                self.of_sliding(sliding, *initial, watch)
             }
             _ => Ok(self.of(&[[u, q, psi, speed, yaw]])?.first().copied().unwrap_or(Fate::Undecided)),
         }

@@ -125,6 +125,14 @@ fn wilson_interval_of_known_counts() {
 }
 
 #[test]
+fn wilson_interval_of_none_and_all_reaches_the_end_exactly() {
+    for total in 1..400 {
+        assert_eq!(wilson_interval(0, total).0, 0.0);
+        assert_eq!(wilson_interval(total, total).1, 1.0);
+    }
+}
+
+#[test]
 fn smallest_kick_lies_between_return_and_failure() {
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
     let settings = ClassificationSettings { duration: 20.0 };
@@ -141,6 +149,46 @@ fn smallest_kick_lies_between_return_and_failure() {
     assert!(none.is_none());
     let bad = SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 0.0);
     assert!(bad.unwrap_err().to_string().contains("largest disturbance = 0"));
+}
+
+#[test]
+fn rest_at_the_uniform_motion_is_return_unless_it_is_unstable() {
+    // Straight ideal rolling is steady to the last bit: one step of the integration spans the whole duration.
+    let straight = Wheel::default().with(Key::Curvature, 0.0).unwrap();
+    for wheel in [Wheel::default(), straight] {
+        let rest = wheel.uniform_motion().unwrap().state();
+        assert_eq!(
+            destinations(&wheel, ContactModel::Rolling, 30.0).of(&[rest]).unwrap(),
+            [Fate::UniformMotion]
+        );
+    }
+    let unstable = Wheel::default().with(Key::V, 9.0).unwrap();
+    let near = unstable.perturbed_uniform_motion(&[("psi", 1e-3)]).unwrap();
+    assert_ne!(
+        destinations(&unstable, ContactModel::Rolling, 30.0).of(&[near]).unwrap(),
+        [Fate::UniformMotion]
+    );
+}
+
+#[test]
+fn a_wheel_that_may_slide_needs_a_uniform_motion_that_rolls() {
+    let settings = ClassificationSettings::default();
+    let error = Destinations::new(&Wheel::default(), ContactModel::Sliding, settings).unwrap_err();
+    assert!(matches!(error, SimulationError::UniformMotionSlides { needed, available }
+        if (needed - 5.825_418_9).abs() < 1e-6 && (available - 4.107_447).abs() < 1e-6));
+    // For ideal rolling there is one, and a decay time of 6.13 s asks for 74 s.
+    let settings = ClassificationSettings::for_wheel(&Wheel::default()).unwrap();
+    assert_eq!(settings.duration, 74.0);
+}
+
+#[test]
+fn histories_begin_with_the_disturbance() {
+    let wheel = Wheel::default().with(Key::Curvature, 0.0).unwrap().with(Key::CU, 0.1).unwrap();
+    for model in [ContactModel::Rolling, ContactModel::Sliding] {
+        let motion = Disturbance::ReleaseAngle.history(&wheel, model, 0.1, 0.5, 11).unwrap();
+        assert_eq!((motion.times.len(), motion.states.len()), (11, 11));
+        assert_eq!(motion.states[0][2], 0.1);
+    }
 }
 
 proptest! {

@@ -1,0 +1,212 @@
+//! `kingpin margin`: the smallest disturbance that does not return along a parameter, beside the unstable limit cycle.
+
+mod report;
+
+use crate::commands::basin::classification::Classification;
+use crate::commands::safe_kick::edge::{DisturbanceOptions, Edge};
+use crate::failure::Failure;
+use crate::journal::{Journal, interruption};
+use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
+use crate::output::Output;
+use crate::progress::Progress;
+use crate::range::SampledRange;
+use clap::Args;
+use kingpin::branches::{Along, CycleOptions};
+use kingpin::simulation::SimulationError;
+use kingpin::{Key, KingpinError, Wheel};
+use rayon::prelude::*;
+use report::MarginReport;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+const EXAMPLE: &str = "kingpin margin --along v=1:8:15 --kind release-angle -o margin.svg";
+/// Most values of the parameter.
+const MOST_POINTS: usize = 10_000;
+/// The Hopf point whose cycles are wanted is sought in an interval that is so many times longer at either end.
+const SEARCHED: f64 = 2.0;
+
+/// Safe disturbances along a parameter, beside the amplitude of the unstable limit cycle
+///
+/// At each value the smallest disturbance that does not return is found as by `safe-kick`, in both directions. The paper takes
+/// the amplitude of the unstable cycle for the size of the basin; the ratio of the two tells how good an indicator it is.
+/// With --out every finished value is kept in PATH.journal until the result is written, so that an interrupted run can be
+/// resumed.
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Margin {
+    /// Parameter, from A to B at N values
+    #[arg(long, value_name = "KEY=A:B:N", default_value = "v=1:8:15")]
+    along: SampledRange,
+
+    #[command(flatten)]
+    disturbance: DisturbanceOptions,
+    #[command(flatten)]
+    classification: Classification,
+
+    /// Go on with the run that is kept in PATH.journal
+    #[arg(long)]
+    resume: bool,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+/// What was found at one value of the parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Cell {
+    positive: Option<Edge>,
+    negative: Option<Edge>,
+    /// Why no edge was sought.
+    problem: Option<String>,
+}
+
+impl Margin {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let key: Key = self.along.range.key.parse()?;
+        let along = Along::new(key, self.along.range.start, self.along.range.end)?;
+        let count = self.along.count;
+        if count > MOST_POINTS || self.along.range.end.is_infinite() {
+            return Err(Failure::Option {
+                option: "--along",
+                given: format!("{} values up to {}", count, self.along.range.end),
+                problem: "too many, or infinite".to_owned(),
+                allowed: format!(
+                    "at most {MOST_POINTS} finite values; `curvature` goes to 0 where r goes to inf"
+                ),
+            });
+        }
+        let (start, end) = along.ends();
+        let values: Vec<f64> =
+            (0..count).map(|index| start + (end - start) * (index as f64 / (count - 1) as f64)).collect();
+        let output = self.output.prepare(true)?;
+        let wheel = self.wheel.wheel()?;
+        self.disturbance.check(&wheel.with(key, end)?)?;
+        if let Some(duration) = self.classification.duration() {
+            // A duration that makes no sense is refused before anything is computed.
+            self.classification.settings(&wheel.with(key, start)?).map(|_| duration)?;
+        }
+        let computation = json!({
+            "program": env!("CARGO_PKG_VERSION"),
+            "command": "margin",
+            "parameters": parameters_of(&wheel, &[key]),
+            "along": (key.name(), start, end, count),
+            "kind": self.disturbance.kind().name(),
+            "largest": self.disturbance.given(),
+            "contact": self.classification.model().name(),
+            "duration": self.classification.duration(),
+        });
+        let (journal, finished) = Journal::open::<Cell>(output.first_file(), &computation, self.resume)?;
+        if self.resume {
+            output.note(&format!("{} of {count} values were finished", finished.len()));
+        }
+        let cells = self.cells(&wheel, key, &values, &journal, finished, output.is_quiet())?;
+        let amplitudes = unstable_amplitudes(&wheel, along, &values, &output)?;
+        output.deliver(&MarginReport::new(
+            wheel,
+            along,
+            self.disturbance.kind(),
+            self.classification.model(),
+            values,
+            cells,
+            amplitudes,
+        ))?;
+        journal.finish()
+    }
+
+    fn cells(
+        &self,
+        wheel: &Wheel,
+        key: Key,
+        values: &[f64],
+        journal: &Journal,
+        finished: BTreeMap<usize, Cell>,
+        quiet: bool,
+    ) -> Result<Vec<Cell>, Failure> {
+        let cancelled = interruption()?;
+        let progress = Progress::bar("margin", quiet);
+        let done = AtomicUsize::new(finished.len());
+        let computed: Vec<(usize, Cell)> = (0..values.len())
+            .into_par_iter()
+            .filter(|index| !finished.contains_key(index) && !cancelled.load(Ordering::Relaxed))
+            .map(|index| {
+                let cell = self.cell(&wheel.with(key, values[index])?)?;
+                journal.keep(index, &cell, cancelled);
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                progress.done(done as f64 / values.len() as f64);
+                Ok((index, cell))
+            })
+            .collect::<Result<_, Failure>>()?;
+        drop(progress);
+        let mut all = finished;
+        all.extend(computed);
+        journal.checked(all.len(), values.len())?;
+        Ok(all.into_values().collect())
+    }
+
+    fn cell(&self, wheel: &Wheel) -> Result<Cell, Failure> {
+        let without =
+            |problem: &str| Ok(Cell { positive: None, negative: None, problem: Some(problem.to_owned()) });
+        let settings = match self.classification.settings(wheel) {
+            Err(Failure::Simulation(SimulationError::Wheel(KingpinError::NoUniformMotion { .. }))) => {
+                return without("no uniform motion");
+            }
+            settings => settings?,
+        };
+        match self.disturbance.edges(wheel, self.classification.model(), settings) {
+            Ok([positive, negative]) => Ok(Cell { positive, negative, problem: None }),
+            Err(SimulationError::UniformMotionSlides { .. }) => without("the uniform motion slides"),
+            Err(error) => Err(error.into()),
+        }
+    }
+}
+
+/// Half the range of the caster angle of the smallest unstable cycle at each value, where there is one.
+fn unstable_amplitudes(
+    wheel: &Wheel,
+    along: Along,
+    values: &[f64],
+    output: &Output,
+) -> Result<Vec<Option<f64>>, Failure> {
+    let progress = Progress::spinner("unstable limit cycles", output.is_quiet());
+    let mut amplitudes: Vec<Option<f64>> = vec![None; values.len()];
+    let (start, end) = along.ends();
+    let allowed = along.key().allowed();
+    let ends = [start / SEARCHED, end * SEARCHED].map(|end| end.clamp(allowed.lowest, allowed.highest));
+    let searched = Along::new(along.key(), ends[0].min(start), ends[1].max(end)).unwrap_or(along);
+    let found = wheel.with(along.key(), start)?.hopf_points(searched).map(|search| search.points);
+    let hopf_points = match found {
+        Ok(points) => points,
+        Err(error) => {
+            output.warn(&format!("limit cycles were not sought: {error}"));
+            Vec::new()
+        }
+    };
+    let options = CycleOptions { at: values.to_vec(), ..CycleOptions::default() };
+    for hopf in &hopf_points {
+        let branch = match hopf.cycles(searched, &options, |_, _| ControlFlow::Continue(())) {
+            Ok(branch) => branch,
+            Err(error) => {
+                output.warn(&format!("limit cycles from {} = {}: {error}", along.key(), hopf.value));
+                continue;
+            }
+        };
+        for cycle in branch.points.iter().filter(|cycle| cycle.unstable_multipliers > 0) {
+            let amplitude = 0.5 * (cycle.max[2] - cycle.min[2]);
+            let places = values.iter().zip(&mut amplitudes).filter(|(value, _)| **value == cycle.value);
+            for (_, smallest) in places {
+                *smallest = Some(smallest.map_or(amplitude, |other| other.min(amplitude)));
+            }
+        }
+    }
+    drop(progress);
+    Ok(amplitudes)
+}

@@ -1,0 +1,125 @@
+//! Which disturbance, and the edges of what the wheel returns from.
+
+use crate::commands::basin::classification::NamedFate;
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, SafeKick};
+use kingpin::simulation::SimulationError;
+use kingpin::{Key, Wheel};
+use serde::{Deserialize, Serialize};
+
+/// Kinds of disturbances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// A sideways blow in N s on the rim of the wheel, R ahead of its centre
+    #[default]
+    Impulse,
+    /// The caster is released at an angle in rad from the uniform motion
+    ReleaseAngle,
+    /// The towing speed rises at once by so many m/s to v
+    Jolt,
+    /// From straight towing the path turns at once to a curvature in 1/m
+    StepSteer,
+}
+
+/// Which disturbance, and how large at most.
+#[derive(Args, Clone, Debug)]
+pub struct DisturbanceOptions {
+    /// Kind of disturbance
+    #[arg(long, value_enum, default_value_t)]
+    kind: Kind,
+
+    /// Largest magnitude that is tried [default: 1 N s, 1.5 rad, 0.9 v, 5 1/m]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    largest: Option<f64>,
+}
+
+/// An edge: the largest disturbance that returned and the smallest that did not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Edge {
+    /// Largest magnitude that returned before the first that did not.
+    pub returns: f64,
+    /// Smallest magnitude that did not.
+    pub fails: f64,
+    /// Where that one ends; nothing where no uniform motion is left to return to.
+    pub fate: Option<NamedFate>,
+}
+
+impl Edge {
+    /// Where the motion beyond the edge ends, in words.
+    pub fn ending(&self) -> &'static str {
+        self.fate.map_or("no rolling uniform motion", |fate| fate.0.name())
+    }
+}
+
+impl DisturbanceOptions {
+    /// The kind.
+    pub fn kind(&self) -> Disturbance {
+        match self.kind {
+            Kind::Impulse => Disturbance::Impulse,
+            Kind::ReleaseAngle => Disturbance::ReleaseAngle,
+            Kind::Jolt => Disturbance::Jolt,
+            Kind::StepSteer => Disturbance::StepSteer,
+        }
+    }
+
+    /// The largest magnitude where it was given.
+    pub fn given(&self) -> Option<f64> {
+        self.largest
+    }
+
+    /// The largest magnitude.
+    pub fn largest(&self, wheel: &Wheel) -> f64 {
+        self.largest.unwrap_or(match self.kind {
+            Kind::Impulse => 1.0,
+            Kind::ReleaseAngle => 1.5,
+            Kind::Jolt => 0.9 * wheel.get(Key::V),
+            Kind::StepSteer => 5.0,
+        })
+    }
+
+    /// That the largest magnitude makes sense.
+    ///
+    /// # Errors
+    /// [`Failure::Option`].
+    pub fn check(&self, wheel: &Wheel) -> Result<(), Failure> {
+        let largest = self.largest(wheel);
+        let stands = self.kind == Kind::Jolt && largest >= wheel.get(Key::V);
+        if largest > 0.0 && largest.is_finite() && !stands {
+            return Ok(());
+        }
+        let unit = self.kind().unit();
+        Err(Failure::Option {
+            option: "--largest",
+            given: largest.to_string(),
+            problem: if stands { "the wheel would stand before the jolt" } else { "no magnitude" }.to_owned(),
+            allowed: match self.kind {
+                Kind::Jolt => format!("above 0 and below v = {} {unit}", wheel.get(Key::V)),
+                _ => format!("positive and finite, in {unit}"),
+            },
+        })
+    }
+
+    /// The edges in the positive and in the negative direction, where there are any. A step of the curvature has one direction.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed.
+    pub fn edges(
+        &self,
+        wheel: &Wheel,
+        model: ContactModel,
+        settings: ClassificationSettings,
+    ) -> Result<[Option<Edge>; 2], SimulationError> {
+        let largest = self.largest(wheel);
+        let edge = |largest: f64| -> Result<Option<Edge>, SimulationError> {
+            let kick = SafeKick::find(wheel, model, settings, self.kind(), largest)?;
+            Ok(kick.map(|SafeKick { returns, fails, fate, .. }| Edge {
+                returns,
+                fails,
+                fate: fate.map(NamedFate),
+            }))
+        };
+        let negative = if self.kind == Kind::StepSteer { None } else { edge(-largest)? };
+        Ok([edge(largest)?, negative])
+    }
+}
