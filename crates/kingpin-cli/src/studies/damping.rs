@@ -17,8 +17,9 @@ const RADIUS: f64 = 1.0;
 /// Speeds in m/s and caster lengths in m of the charts.
 const SPEEDS: (f64, f64) = (0.01, 12.0);
 const LENGTHS: (f64, f64) = (0.02, 0.2);
-/// The dampers, the values of each, and the largest one in the plane of speed and damping.
-const DAMPERS: [(Key, [f64; 4], f64); 3] = [
+/// A damper, its values in the chart, and the largest one in the plane of speed and damping.
+type Damper = (Key, [f64; 4], f64);
+const DAMPERS: [Damper; 3] = [
     (Key::CQ, [0.0, 0.05, 0.1, 0.2], 2.0),
     (Key::CU, [0.0, 0.05, 0.1, 0.2], 2.0),
     (Key::CPsi, [0.0, 2e-4, 5e-4, 1e-3], 0.02),
@@ -35,7 +36,7 @@ struct Boundary {
 }
 
 pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
-    let pairs = |values: fn(&(Key, [f64; 4], f64)) -> [f64; 4]| -> Vec<(Key, f64, f64)> {
+    let pairs = |values: fn(&Damper) -> [f64; 4]| -> Vec<(Key, f64, f64)> {
         let all = DAMPERS.iter();
         all.flat_map(|damper| values(damper).map(|value| (damper.0, value, damper.2))).collect()
     };
