@@ -55,11 +55,8 @@ fn bazykin() {
     let hopf_points = study.locus(|locus| locus.from_hopf(hopf), ["alpha=0:1", "delta=0:0.5"]);
     let fold = branch.folds().next().unwrap();
     let folds = study.locus(|locus| locus.from_fold(fold), ["alpha=0:1", "delta=0:0.5"]);
-    let source = || {
-        Source::Published(
-            "Kuznetsov (2004), section 8.3.3; digits as reference value of this project",
-        )
-    };
+    let source =
+        || Source::Published("Kuznetsov (2004), section 8.3.3; digits as reference value of this project");
     for (curve, name) in [(&hopf_points, "Hopf points"), (&folds, "folds")] {
         let point = codimension_two(curve, SpecialKind::BogdanovTakens, 0);
         page.row(

@@ -360,11 +360,7 @@ impl Curve for SlidingCurve {
         vec![start.period, angle - TAU * (angle / TAU).round()]
     }
 
-    fn ending(
-        &mut self,
-        _before: &Solution<CurvePoint>,
-        after: &Solution<CurvePoint>,
-    ) -> Option<Ending> {
+    fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
         self.wants_new_start =
