@@ -1,7 +1,7 @@
 //! `kingpin study`: what the paper leaves open, computed and drawn.
 //!
 //! Each study has a file here that computes, draws and tells its findings; figures are numbered from 7 on, after those of
-//! the paper. A study returns plain data; [`write`] turns them into files.
+//! the paper. A study returns plain data; [`write()`] turns them into files.
 
 mod animation;
 mod basin;
