@@ -66,14 +66,15 @@ fn seconds(dimension: usize, intervals: usize) -> f64 {
         assert_eq!(last.orbit.mesh.len(), intervals + 1, "the mesh that was asked for");
         (begin.elapsed().as_secs_f64(), branch.points.len())
     };
-    let mut best = f64::INFINITY;
+    // The first points are made on coarser meshes.
+    let (mut early, mut late) = ((f64::INFINITY, 0), (f64::INFINITY, 0));
     for _ in 0..RUNS {
-        // The first points are made on coarser meshes.
-        let (early, few) = run(12);
-        let (late, many) = run(20);
-        best = best.min((late - early) / (many - few) as f64);
+        for (steps, best) in [(12, &mut early), (30, &mut late)] {
+            let (time, points) = run(steps);
+            *best = (best.0.min(time), points);
+        }
     }
-    best
+    (late.0 - early.0) / (late.1 - early.1) as f64
 }
 
 /// Slope of the last two points in doubly logarithmic axes.
