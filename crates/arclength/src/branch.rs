@@ -4,6 +4,7 @@
 //! labelled point of an earlier one.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
 
@@ -194,6 +195,26 @@ impl TryFrom<String> for Label {
 
     fn try_from(text: String) -> Result<Self, Self::Error> {
         text.parse()
+    }
+}
+
+/// Numbers the points of every kind along a branch.
+///
+/// ```
+/// use arclength::branch::{LabelCounter, SpecialKind};
+/// let mut counter = LabelCounter::default();
+/// let labels = [SpecialKind::Hopf, SpecialKind::Fold, SpecialKind::Hopf].map(|kind| counter.next(kind).to_string());
+/// assert_eq!(labels, ["HB1", "LP1", "HB2"]);
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct LabelCounter(BTreeMap<SpecialKind, usize>);
+
+impl LabelCounter {
+    /// The label of the next point of this kind.
+    pub fn next(&mut self, kind: SpecialKind) -> Label {
+        let number = self.0.entry(kind).or_default();
+        *number += 1;
+        Label { kind, number: *number }
     }
 }
 

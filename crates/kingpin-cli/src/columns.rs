@@ -1,5 +1,6 @@
 //! Results as columns of one type each, for CSV and Parquet.
 
+use crate::document::NamedNumbers;
 use std::io::{self, Write};
 
 /// The entries of a column; `None` where there is no value. Not a number counts as no value.
@@ -64,6 +65,40 @@ impl Columns {
     ) -> Self {
         let numbers = entries.into_iter().map(|entry| entry.filter(|number| !number.is_nan()));
         self.add(name, Column::Numbers(numbers.collect()))
+    }
+
+    /// Adds two columns for each of the first `count` complex numbers of every row, `NAME_1_real` and `NAME_1_imaginary` onwards.
+    pub fn complex_numbers<'a>(
+        mut self,
+        name: &str,
+        count: usize,
+        rows: impl Iterator<Item = &'a Vec<[Option<f64>; 2]>> + Clone,
+    ) -> Self {
+        for index in 0..count {
+            for (part, suffix) in ["real", "imaginary"].into_iter().enumerate() {
+                let entries = rows.clone().map(|row| row.get(index).and_then(|pair| pair[part]));
+                self = self.optional_numbers(format!("{name}_{}_{suffix}", index + 1), entries);
+            }
+        }
+        self
+    }
+
+    /// Adds a column `PREFIX_NAME` for every name that any of the rows has, in their order.
+    pub fn named_numbers<'a>(
+        mut self,
+        prefix: &str,
+        rows: impl Iterator<Item = &'a NamedNumbers> + Clone,
+    ) -> Self {
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in rows.clone().flat_map(|row| &row.0) {
+            if !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        for name in names {
+            self = self.optional_numbers(format!("{prefix}_{name}"), rows.clone().map(|row| row.named(name)));
+        }
+        self
     }
 
     /// Adds a column of counts.

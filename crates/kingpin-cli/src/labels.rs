@@ -1,12 +1,11 @@
 //! Labels of special and requested cycles, numbered along a result: LPC1, PD1, NS1, BPC1, AT1.
 
-use arclength::branch::{Label, SpecialKind};
+use arclength::branch::{Label, LabelCounter, SpecialKind};
 use arclength::cycle::{CyclePoint, Role, Special};
-use std::collections::BTreeMap;
 
 /// Counts the points of each kind.
 #[derive(Debug, Default)]
-pub struct Labels(BTreeMap<SpecialKind, usize>);
+pub struct Labels(LabelCounter);
 
 impl Labels {
     /// The label of the next cycle; `None` for a step of the continuation.
@@ -19,9 +18,7 @@ impl Labels {
             Role::Special(Special::Torus { .. }) => SpecialKind::Torus,
             Role::Special(Special::BranchPoint) => SpecialKind::BranchPointOfCycles,
         };
-        let number = self.0.entry(kind).or_default();
-        *number += 1;
-        Some(Label { kind, number: *number }.to_string())
+        Some(self.0.next(kind).to_string())
     }
 }
 

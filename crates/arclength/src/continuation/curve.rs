@@ -42,7 +42,7 @@ pub trait Curve {
     /// When a quantity cannot be computed; the run ends there and says why.
     fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Self::Point, Error>;
 
-    /// Special points between two consecutive solutions, in the order of the curve.
+    /// Special points between two consecutive solutions, in any order.
     ///
     /// # Errors
     /// As [`inspect`](Self::inspect).

@@ -96,10 +96,14 @@ pub fn follow<C: Curve>(
             Some(Ending::After(stop)) => Some(stop),
             None => None,
         };
-        let mut between: Vec<(Solution<C::Point>, Origin)> = match curve.special_points(&current, &advanced) {
-            Ok(special) => special.into_iter().map(|solution| (solution, Origin::Special)).collect(),
+        let mut special = match curve.special_points(&current, &advanced) {
+            Ok(special) => special,
             Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
         };
+        let position = |solution: &Solution<C::Point>| along(curve, &current, &solution.unknown);
+        special.sort_by(|one, other| position(one).total_cmp(&position(other)));
+        let mut between: Vec<(Solution<C::Point>, Origin)> =
+            special.into_iter().map(|solution| (solution, Origin::Special)).collect();
         let passed = between.iter().map(|(solution, _)| solution);
         let leaves =
             passed.chain([&advanced]).find_map(|solution| first_exit(&solution.unknown, &request.bounds));

@@ -21,6 +21,33 @@ pub(crate) struct DefiningCurve<'a> {
     pub parameter_scales: [f64; 2],
 }
 
+impl<'a> DefiningCurve<'a> {
+    /// The defining system of a special cycle `kind` on a mesh with Gauss polynomials of `degree`, with `unknown`, which
+    /// [`join`] put together, as the reference. Where `second` is `None` the second parameter has no effect.
+    pub fn new(
+        problem: &LimitCycle<'a>,
+        kind: Kind,
+        (mesh, degree): (Vec<f64>, usize),
+        (second, parameter_scales): (Option<usize>, [f64; 2]),
+        unknown: &[f64],
+    ) -> Self {
+        let defining = Defining {
+            field: problem.field,
+            kind,
+            parameters: problem.parameters.clone(),
+            active: problem.active,
+            second,
+            scales: problem.scales.clone(),
+            period_scale: unknown[unknown.len() - 3 - kind.own_scalars()],
+            parameter_scale: parameter_scales[0],
+        };
+        let scales = component_scales(&problem.scales, kind, 1.0);
+        let mut collocation = Collocation::new(defining, mesh, degree);
+        collocation.set_reference(unknown);
+        Self { collocation, scales, parameter_scales }
+    }
+}
+
 impl Curve for DefiningCurve<'_> {
     type Point = ();
 
@@ -98,27 +125,10 @@ pub(crate) fn converge(
     };
     let problem = &curve.collocation.problem;
     let n = problem.dimension();
-    let states = start.unknown.len() - 2;
-    let unknown = join(&start.unknown, n, &eigenfunctions);
-    let defining = Defining {
-        field: problem.field,
-        kind,
-        parameters: problem.parameters.clone(),
-        active: problem.active,
-        second: None,
-        scales: problem.scales.clone(),
-        period_scale: start.unknown[states],
-        parameter_scale: curve.parameter_scale,
-    };
-    let mut collocation =
-        Collocation::new(defining, curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
-    collocation.set_reference(&unknown);
-    let mut defining_curve = DefiningCurve {
-        scales: component_scales(&problem.scales, kind, 1.0),
-        collocation,
-        parameter_scales: [curve.parameter_scale, 1.0],
-    };
-    let mut unknown = unknown;
+    let mut unknown = join(&start.unknown, n, &eigenfunctions);
+    let nodes = (curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
+    let parameters = (None, [curve.parameter_scale, 1.0]);
+    let mut defining_curve = DefiningCurve::new(problem, kind, nodes, parameters, &unknown);
     // The scalar of the second parameter has no effect and stays zero.
     let mut border = vec![0.0; unknown.len()];
     if let Some(last) = border.last_mut() {
@@ -230,20 +240,9 @@ pub(crate) fn doubling_near(
     let size = nodes.product(&eigenfunction, &weighted).sqrt();
     eigenfunction.iter_mut().for_each(|value| *value /= size);
     let mut unknown = join(&cycle, n, &(vec![eigenfunction], Vec::new()));
-    let defining = Defining {
-        field: problem.field,
-        kind: Kind::Doubling,
-        parameters: problem.parameters.clone(),
-        active: problem.active,
-        second: None,
-        scales: problem.scales.clone(),
-        period_scale: cycle[states],
-        parameter_scale,
-    };
-    let mut collocation = Collocation::new(defining, mesh.clone(), orbit.degree);
-    collocation.set_reference(&unknown);
-    let scales = component_scales(&problem.scales, Kind::Doubling, 1.0);
-    let mut curve = DefiningCurve { collocation, scales, parameter_scales: [parameter_scale, 1.0] };
+    let parameters = (None, [parameter_scale, 1.0]);
+    let mut curve =
+        DefiningCurve::new(&problem, Kind::Doubling, (mesh.clone(), orbit.degree), parameters, &unknown);
     let mut border = vec![0.0; unknown.len()];
     *border.last_mut()? = 1.0;
     correct(&mut curve, &mut unknown, &border, settings).ok()?;

@@ -7,11 +7,18 @@
 //! Russell and Christiansen, "Adaptive mesh selection strategies" (1978).
 
 use super::collocation::{Collocation, MOST_NODES, combine};
+use super::curve::Resolution;
 use super::problem::PeriodicProblem;
+use crate::continuation::Adaptation;
+use crate::error::Error;
 
 /// Ratio of the largest to the smallest mesh width of neighbours-to-be is limited through this floor on
 /// the mesh density, relative to its mean.
 const DENSITY_FLOOR: f64 = 0.2;
+/// A new mesh aims at this part of the tolerance.
+const TARGET: f64 = 0.2;
+/// The mesh is made coarser when it has this many times the intervals needed.
+const EXCESS: f64 = 1.6;
 /// Samples for the largest modulus of the integrated node polynomial.
 const SAMPLES: usize = 200;
 
@@ -71,14 +78,55 @@ fn largest_integral<P: PeriodicProblem>(collocation: &Collocation<P>) -> f64 {
     largest
 }
 
+/// Fits the mesh of `collocation` to the errors of the intervals at `unknown` and carries `unknown` and `vectors` over to it;
+/// makes `unknown` the reference either way. Returns the largest error on the mesh that was.
+///
+/// # Errors
+/// [`Error::MeshLimit`] when the errors are not finite or more intervals would be needed than allowed.
+pub(crate) fn fit_mesh<P: PeriodicProblem>(
+    collocation: &mut Collocation<P>,
+    errors: &[f64],
+    resolution: &Resolution,
+    unknown: &mut Vec<f64>,
+    vectors: &mut [&mut Vec<f64>],
+) -> Result<(Adaptation, f64), Error> {
+    let worst = errors.iter().copied().fold(0.0, f64::max);
+    let limit = resolution.most_intervals;
+    if !worst.is_finite() {
+        return Err(Error::MeshLimit { limit, error_estimate: f64::MAX });
+    }
+    let degree = collocation.gauss().degree();
+    let intervals = collocation.intervals();
+    let needed = intervals_needed(errors, degree, TARGET * resolution.tolerance);
+    let wanted = (needed.ceil() as usize).max(resolution.fewest_intervals);
+    let too_coarse = worst > resolution.tolerance || intervals < resolution.fewest_intervals;
+    if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
+        collocation.set_reference(unknown);
+        return Ok((Adaptation::Unchanged, worst));
+    }
+    if wanted > limit {
+        return Err(Error::MeshLimit { limit, error_estimate: worst });
+    }
+    // An estimate from a coarse mesh is not to be trusted far: at most double at a time.
+    let count = wanted.min(2 * intervals);
+    let count = if too_coarse { count.max(intervals + 1) } else { count };
+    let mesh = equidistribute(collocation.mesh(), errors, degree, count);
+    *unknown = collocation.carry(unknown, &mesh);
+    for vector in vectors.iter_mut() {
+        **vector = collocation.carry(vector, &mesh);
+    }
+    collocation.set_mesh(mesh, unknown);
+    Ok((Adaptation::Changed, worst))
+}
+
 /// Number of intervals of an equidistributed mesh that would have the error `target`.
-pub(crate) fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
+fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
     let power = 1.0 / (degree as f64 + 1.0);
     errors.iter().map(|error| (error / target).powf(power)).sum()
 }
 
 /// A mesh of `intervals` intervals on which the error is about the same everywhere.
-pub(crate) fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
+fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
     let power = 1.0 / (degree as f64 + 1.0);
     let total: f64 = errors.iter().map(|error| error.powf(power)).sum();
     // Mass of every old interval; the floor keeps quiet stretches from being starved.

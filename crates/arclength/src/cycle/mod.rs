@@ -17,6 +17,7 @@ pub(crate) mod mesh;
 pub(crate) mod normal_form;
 mod orbit;
 pub(crate) mod problem;
+pub(crate) mod sizes;
 mod special;
 mod switching;
 

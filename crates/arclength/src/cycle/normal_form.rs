@@ -6,7 +6,9 @@
 //! functions are needed. Source: Kuznetsov, Govaerts, Doedel and Dhooge, "Numerical periodic normalization for codim 1
 //! bifurcations of limit cycles", *SIAM J. Numer. Anal.* 43 (2005).
 
+use super::collocation::Collocation;
 use super::eigenfunctions::{Eigenfunctions, Linearization};
+use super::limit_cycle::LimitCycle;
 use super::linear_problem::{LinearProblem, NodeFunction};
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::erased::ErasedField;
@@ -14,7 +16,7 @@ use crate::erased::ErasedField;
 /// A critical cycle.
 pub(crate) struct CriticalCycle<'a> {
     pub field: ErasedField<'a>,
-    pub parameters: &'a [f64],
+    pub parameters: Vec<f64>,
     /// States on all nodes.
     pub states: &'a [f64],
     pub period: f64,
@@ -24,7 +26,22 @@ pub(crate) struct CriticalCycle<'a> {
 /// The relative size of the shift along the cycle below which a fold's coefficient is not scaled by it.
 const SMALLEST_SHIFT: f64 = 1e-6;
 
-impl CriticalCycle<'_> {
+impl<'a> CriticalCycle<'a> {
+    /// The cycle `unknown` of states, period and parameter; `collocation` has just been factorised there.
+    pub fn of(collocation: &'a Collocation<LimitCycle<'a>>, unknown: &'a [f64]) -> Self {
+        let problem = &collocation.problem;
+        let (states, scalars) = unknown.split_at(unknown.len() - 2);
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = scalars[1];
+        Self {
+            field: problem.field,
+            parameters,
+            states,
+            period: scalars[0],
+            linearization: Linearization::of(collocation, unknown),
+        }
+    }
+
     /// `T` times a sum of multilinear forms at every Gauss point: every entry is a factor and its directions.
     fn forms(&self, terms: &[(f64, &[&[f64]])]) -> NodeFunction {
         let n = self.linearization.scales.len();
@@ -34,7 +51,7 @@ impl CriticalCycle<'_> {
             let forms = MultilinearForms {
                 field: self.field,
                 state: &self.states[range.clone()],
-                parameters: self.parameters,
+                parameters: &self.parameters,
             };
             for (factor, directions) in terms {
                 let here: Vec<&[f64]> = directions.iter().map(|function| &function[range.clone()]).collect();

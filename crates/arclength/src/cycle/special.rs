@@ -3,13 +3,12 @@
 
 use super::curve::{CycleCurve, CycleInspection};
 use super::defining::Kind;
-use super::eigenfunctions::Linearization;
 use super::locating::{Located, converge};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
-use crate::continuation::{Curve, Solution, locate};
+use crate::continuation::{Solution, locate};
 use crate::error::Error;
 
 /// What is special about a cycle.
@@ -31,7 +30,7 @@ pub enum Special {
 /// Part of the bracket to which a test function's zero is bracketed before Newton's method takes over.
 const START_TOLERANCE: f64 = 1e-2;
 
-/// All special cycles between two consecutive solutions, in the order of the branch.
+/// All special cycles between two consecutive solutions.
 pub(super) fn between(
     curve: &mut CycleCurve<'_>,
     before: &Solution<CycleInspection>,
@@ -78,18 +77,6 @@ pub(super) fn between(
             }),
         }
     }
-    let mut image = vec![0.0; before.tangent.len()];
-    curve.apply_metric(&before.tangent, &mut image);
-    let position = |solution: &Solution<CycleInspection>| -> f64 {
-        solution
-            .unknown
-            .iter()
-            .zip(&before.unknown)
-            .zip(&image)
-            .map(|((a, b), weight)| (a - b) * weight)
-            .sum()
-    };
-    found.sort_by(|a, b| position(a).total_cmp(&position(b)));
     Ok(found)
 }
 
@@ -112,20 +99,11 @@ fn describe(
     let end = solution.unknown.len() - 2;
     let mut residual = vec![0.0; solution.unknown.len()];
     curve.collocation.factorize(&solution.unknown, &solution.tangent, &mut residual);
-    let problem = &curve.collocation.problem;
-    let mut parameters = problem.parameters.clone();
-    parameters[problem.active] = solution.unknown[end + 1];
-    let critical = CriticalCycle {
-        field: problem.field,
-        parameters: &parameters,
-        states: &solution.unknown[..end],
-        period: solution.unknown[end],
-        linearization: Linearization::of(&curve.collocation, &solution.unknown),
-    };
+    let critical = CriticalCycle::of(&curve.collocation, &solution.unknown);
     let orbit = Orbit {
         mesh: curve.collocation.mesh().to_vec(),
         degree: curve.collocation.gauss().degree(),
-        dimension: problem.dimension(),
+        dimension: curve.collocation.problem.dimension(),
         states: solution.unknown[..end].to_vec(),
         period: solution.unknown[end],
     };
@@ -154,10 +132,8 @@ fn describe(
             let other = other_branch(
                 &orbit,
                 &eigenfunctions,
-                &critical.linearization,
-                problem.field,
-                &parameters,
-                (problem.active, curve.parameter_scale),
+                &critical,
+                (curve.collocation.problem.active, curve.parameter_scale),
                 &solution.tangent,
             );
             (Some(Special::BranchPoint), Vec::new(), other)

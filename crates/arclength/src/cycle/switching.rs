@@ -5,12 +5,12 @@
 //! the algebraic branching equation, the part of the second-order terms along the adjoint null function (Keller, "Numerical
 //! solution of bifurcation and nonlinear eigenvalue problems" (1977); Doedel, Keller and Kernevez (1991), section 2.4).
 
-use super::eigenfunctions::{Eigenfunctions, Linearization};
+use super::eigenfunctions::Eigenfunctions;
 use super::gauss::Gauss;
 use super::linear_problem::{LinearProblem, NodeFunction};
+use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use crate::equilibrium::multilinear::MultilinearForms;
-use crate::erased::ErasedField;
 use crate::error::Error;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -76,18 +76,17 @@ pub(super) fn doubled(orbit: &Orbit, (functions, _): &Eigenfunctions) -> Option<
     })
 }
 
-/// The other branch at a branch point; `tangent` is the direction `(states, T, p)` of the known one. `parameters` are
-/// those of the cycle, `active` the index of the one that varies, `scale` its size.
+/// The other branch at a branch point; `tangent` is the direction `(states, T, p)` of the known one, `active` the index of
+/// the parameter that varies, `scale` its size.
 pub(super) fn other_branch(
     orbit: &Orbit,
     (functions, _): &Eigenfunctions,
-    linear: &Linearization<'_>,
-    field: ErasedField<'_>,
-    parameters: &[f64],
+    critical: &CriticalCycle<'_>,
     (active, scale): (usize, f64),
     tangent: &[f64],
 ) -> Option<Branching> {
     let n = orbit.dimension;
+    let CriticalCycle { field, parameters, states, linearization: linear, .. } = critical;
     let adjoint = functions.first()?;
     let (null, beta) = linear.null_function()?;
     let flow_row = linear.dual(&linear.flow);
@@ -111,7 +110,7 @@ pub(super) fn other_branch(
             .gauss_points()
             .map(|(_, node, weight)| {
                 let forms =
-                    MultilinearForms { field, state: &orbit.states[node * n..(node + 1) * n], parameters };
+                    MultilinearForms { field: *field, state: &states[node * n..(node + 1) * n], parameters };
                 let (first, last) = (derivative(node, one), derivative(node, other));
                 let curvature = forms.real(&[&first, &last]);
                 let (slope_first, slope_last) = (forms.real(&[&first]), forms.real(&[&last]));

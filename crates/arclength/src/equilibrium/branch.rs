@@ -5,14 +5,13 @@ use super::curve::Inspection;
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::SpecialPoint;
-use crate::branch::{Label, SpecialKind, Stability};
+use crate::branch::{Label, LabelCounter, SpecialKind, Stability};
 use crate::continuation::{Origin, Solution, Stop};
 use crate::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// An equilibrium on a branch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,7 +99,7 @@ impl EquilibriumBranch {
                 && previous.1 == Origin::Requested
                 && next.0.unknown.last() == previous.0.unknown.last()
         });
-        let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
+        let mut labels = LabelCounter::default();
         let points = solutions
             .into_iter()
             .map(|(solution, origin)| {
@@ -109,10 +108,7 @@ impl EquilibriumBranch {
                     (None, Origin::Requested) => Some(SpecialKind::Requested),
                     _ => None,
                 };
-                let label = kind.map(|kind| {
-                    let number = counts.entry(kind).and_modify(|count| *count += 1).or_insert(1);
-                    Label { kind, number: *number }
-                });
+                let label = kind.map(|kind| labels.next(kind));
                 EquilibriumPoint::new(solution, label)
             })
             .collect();

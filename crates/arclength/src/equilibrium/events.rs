@@ -7,7 +7,7 @@
 
 use super::curve::{EquilibriumCurve, Inspection, Tests};
 use super::locating;
-use crate::algebraic::{between, length, position};
+use crate::algebraic::{between, length};
 use crate::branch::Stability;
 use crate::continuation::Solution;
 use crate::error::Error;
@@ -141,12 +141,7 @@ pub(super) fn special_points(
 ) -> Result<Vec<Node>, Error> {
     let mut scan = Scan { curve, trials: MOST_TRIALS, found: Vec::new() };
     scan.part(before, after, 1.0)?;
-    let mut found = scan.found;
-    let scales = &curve.system.scales;
-    found.sort_by(|a, b| {
-        position(before, &a.unknown, scales).total_cmp(&position(before, &b.unknown, scales))
-    });
-    Ok(found)
+    Ok(scan.found)
 }
 
 impl Scan<'_, '_> {

@@ -2,14 +2,13 @@
 
 use super::codimension_two::CodimensionTwoPoint;
 use super::curve::Inspection;
-use crate::branch::{Label, SpecialKind};
+use crate::branch::{Label, LabelCounter, SpecialKind};
 use crate::continuation::{Followed, Origin, Solution, Stop};
 use crate::erased::ErasedField;
 use crate::field::VectorField;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// A point on a curve of special equilibria.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +67,7 @@ impl EquilibriumLocusBranch {
         let mut solutions = backward.solutions;
         solutions.extend(forward.solutions);
         let n = field.dimension();
-        let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
+        let mut labels = LabelCounter::default();
         let points = solutions
             .into_iter()
             .map(|(solution, origin)| {
@@ -77,10 +76,7 @@ impl EquilibriumLocusBranch {
                     (None, Origin::Requested) => Some(SpecialKind::Requested),
                     _ => None,
                 };
-                let label = kind.map(|kind| {
-                    let number = counts.entry(kind).and_modify(|count| *count += 1).or_insert(1);
-                    Label { kind, number: *number }
-                });
+                let label = kind.map(|kind| labels.next(kind));
                 LocusPoint::new(solution, n, label)
             })
             .collect();

@@ -16,6 +16,7 @@ mod gauge;
 mod kind;
 mod locating;
 mod normal_form;
+mod request;
 mod run;
 
 pub use branch::{EquilibriumLocusBranch, LocusPoint};

@@ -3,14 +3,13 @@
 use super::branch::EquilibriumLocusBranch;
 use super::curve::{Inspection, LocusCurve};
 use super::kind::LocusKind;
+use super::request::{Range, TwoParameters, invalid, point_forward};
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
-use crate::continuation::{Bound, Followed, Request, Settings, Solution, Stop, follow};
+use crate::continuation::{Followed, Request, Settings, Solution, Stop, follow};
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use crate::equilibrium::problem::EquilibriumProblem;
-use crate::equilibrium::{
-    BranchPoint, FoldPoint, HopfPoint, check_length, check_range, equilibrium_settings,
-};
+use crate::equilibrium::{BranchPoint, FoldPoint, HopfPoint, check_length, equilibrium_settings};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
@@ -53,7 +52,7 @@ enum Start {
 pub struct EquilibriumLocus<'a> {
     field: ErasedField<'a>,
     start: Option<Start>,
-    along: [Option<(String, RangeInclusive<f64>)>; 2],
+    along: [Option<Range>; 2],
     at: Vec<f64>,
     settings: Settings,
 }
@@ -121,69 +120,30 @@ impl<'a> EquilibriumLocus<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn observed(self, observer: &mut LocusObserver<'_>) -> Result<EquilibriumLocusBranch, Error> {
-        let invalid = |name: &str, value: &str, allowed: &str| Error::Invalid {
-            name: name.into(),
-            value: value.into(),
-            allowed: allowed.into(),
-        };
-        let [Some(first), Some(second)] = &self.along else {
-            return Err(invalid("along", "fewer than two parameters", "two parameters and their ranges"));
-        };
         let Some(start) = &self.start else {
             return Err(invalid("start", "nothing", "a fold, a Hopf point or a branch point"));
         };
-        let names = self.field.parameter_names();
-        let index = |name: &str| {
-            let found = names.iter().position(|candidate| candidate == name);
-            found.ok_or_else(|| invalid("along", name, &format!("one of {}", names.join(", "))))
-        };
-        let active = [index(&first.0)?, index(&second.0)?];
-        if active[0] == active[1] {
-            return Err(invalid("along", &first.0, "two different parameters"));
-        }
-        let bounds = [
-            Bound { from_end: 2, ..check_range(&first.0, &first.1)? },
-            Bound { from_end: 1, ..check_range(&second.0, &second.1)? },
-        ];
         let (state, parameters) = match start {
             Start::Fold(point) => (&point.state, &point.parameters),
             Start::Hopf(point) => (&point.state, &point.parameters),
             Start::BranchPoint(point) => (&point.state, &point.parameters),
         };
         check_length("state of the start", state, self.field.dimension(), "the dimension of the field")?;
-        check_length("parameters of the start", parameters, names.len(), "the number of parameters")?;
-        for (bound, (&index, name)) in bounds.iter().zip(active.iter().zip([&first.0, &second.0])) {
-            let value = parameters[index];
-            if !(bound.lower..=bound.upper).contains(&value) {
-                return Err(invalid(
-                    &format!("range of {name}"),
-                    &format!("{} to {}", bound.lower, bound.upper),
-                    &format!("a range that contains {value}, where the curve starts"),
-                ));
-            }
-        }
+        let asked = TwoParameters::checked(&self.field, &self.along, parameters)?;
         // The branch point's own parameter is the one along which the branches cross.
-        let ordered = match start {
-            Start::BranchPoint(point) if point.active == active[1] => [active[1], active[0]],
-            _ => active,
-        };
-        let swapped = ordered != active;
-        let bounds = if swapped {
-            [Bound { from_end: 1, ..bounds[0] }, Bound { from_end: 2, ..bounds[1] }]
-        } else {
-            bounds
-        };
+        let swapped = matches!(start, Start::BranchPoint(point) if point.active == asked.active[1]);
+        let ordered = if swapped { asked.swapped() } else { asked };
         let run = Run {
             field: self.field,
             parameters: parameters.clone(),
-            active: ordered,
+            active: ordered.active,
             swapped,
-            request: Request { bounds: bounds.to_vec(), values: self.at.clone(), settings: self.settings },
-            ranges: if swapped {
-                [bounds[1].upper - bounds[1].lower, bounds[0].upper - bounds[0].lower]
-            } else {
-                [bounds[0].upper - bounds[0].lower, bounds[1].upper - bounds[1].lower]
+            request: Request {
+                bounds: ordered.bounds.to_vec(),
+                values: self.at.clone(),
+                settings: self.settings,
             },
+            ranges: ordered.ranges(),
         };
         run.from(start, state, observer)
     }
@@ -263,12 +223,7 @@ impl<'a> Run<'a> {
         curve.renormalize(&mut unknown, &mut [])?;
         let mut tangent = curve.system.tangent(&unknown)?;
         let normalised = curve.system.problem.clone();
-        let end = unknown.len() - 2;
-        // Forward is the direction of a growing first parameter, or of a growing second one where the first stands still.
-        let [one, other] = [0, 1].map(|index| tangent[end + index] / self.ranges[index]);
-        if (one.abs() > 1e-3 * other.abs() && one < 0.0) || (one.abs() <= 1e-3 * other.abs() && other < 0.0) {
-            tangent.iter_mut().for_each(|entry| *entry = -*entry);
-        }
+        point_forward(&mut tangent, self.ranges);
         let ordered =
             |values: &[f64]| if self.swapped { [values[1], values[0]] } else { [values[0], values[1]] };
         let mut observe = |solution: &Solution<Inspection>| {

@@ -2,6 +2,7 @@
 
 use super::model::ChosenModel;
 use crate::document::NamedNumbers;
+use crate::labels;
 use crate::numbers::readable;
 use crate::range::Range;
 use arclength::Error;
@@ -153,6 +154,16 @@ impl End {
     }
 }
 
+/// Labels the first and the last of the points that have none as ends of a branch.
+pub fn label_ends<P>(points: &mut [P], label: impl Fn(&mut P) -> &mut Option<String>) {
+    let last = points.len().saturating_sub(1);
+    for (number, index) in [(1, 0), (2, last)] {
+        if let Some(point) = points.get_mut(index) {
+            label(point).get_or_insert_with(|| labels::end(number));
+        }
+    }
+}
+
 /// How steps along a branch are taken.
 #[derive(Args, Clone, Copy, Debug)]
 #[command(next_help_heading = "Steps")]
@@ -195,17 +206,6 @@ pub fn pairs(numbers: &[Complex64]) -> Vec<[Option<f64>; 2]> {
 pub fn tests<'a>(named: impl IntoIterator<Item = (&'a str, f64)>) -> NamedNumbers {
     let finite = named.into_iter().filter(|(_, value)| value.is_finite());
     NamedNumbers(finite.map(|(name, value)| (name.to_owned(), value)).collect())
-}
-
-/// Names of the test functions that any of the points has, in their order.
-pub fn test_names<'a>(points: impl IntoIterator<Item = &'a NamedNumbers>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for (name, _) in points.into_iter().flat_map(|tests| &tests.0) {
-        if !names.contains(name) {
-            names.push(name.clone());
-        }
-    }
-    names
 }
 
 /// Stability as a word.

@@ -1,13 +1,12 @@
 //! Curves of special cycles as plain data.
 
 use super::curve::Inspection;
-use crate::branch::{Label, SpecialKind};
+use crate::branch::{Label, LabelCounter, SpecialKind};
 use crate::continuation::{Followed, Origin, Solution, Stop};
 use crate::cycle::Orbit;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// A cycle on a curve of special cycles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -68,7 +67,7 @@ impl CycleLocusBranch {
         }
         backward.solutions.reverse();
         let solutions = backward.solutions.into_iter().chain(forward.solutions);
-        let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
+        let mut labels = LabelCounter::default();
         let points = solutions
             .map(|(solution, origin)| {
                 let kind = match (solution.point.special, origin) {
@@ -76,10 +75,7 @@ impl CycleLocusBranch {
                     (None, Origin::Requested) => Some(SpecialKind::Requested),
                     _ => None,
                 };
-                let label = kind.map(|kind| {
-                    let number = counts.entry(kind).and_modify(|count| *count += 1).or_insert(1);
-                    Label { kind, number: *number }
-                });
+                let label = kind.map(|kind| labels.next(kind));
                 CycleLocusPoint::new(solution, degree, label)
             })
             .collect();
@@ -93,9 +89,9 @@ impl CycleLocusBranch {
         }
         self.points.extend(last);
         // Ends are labelled by the curve on which they were located: counted anew along this one.
-        let mut counts: BTreeMap<SpecialKind, usize> = BTreeMap::new();
+        let mut labels = LabelCounter::default();
         for label in self.points.iter_mut().filter_map(|point| point.label.as_mut()) {
-            label.number = *counts.entry(label.kind).and_modify(|count| *count += 1).or_insert(1);
+            *label = labels.next(label.kind);
         }
     }
 

@@ -6,33 +6,24 @@ use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, l
 use crate::cycle::Resolution;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
-use crate::cycle::eigenfunctions::{Eigenfunctions, Linearization};
+use crate::cycle::eigenfunctions::Eigenfunctions;
 use crate::cycle::extrema::{Range, ranges};
 use crate::cycle::floquet::{Floquet, floquet};
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
-use crate::cycle::mesh::{equidistribute, error_profile, intervals_needed};
+use crate::cycle::mesh::{error_profile, fit_mesh};
 use crate::cycle::normal_form::CriticalCycle;
 use crate::cycle::problem::PeriodicProblem;
+use crate::cycle::sizes::StateSizes;
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
-use std::cell::OnceCell;
 use std::f64::consts::PI;
 
 /// Sizes of eigenfunctions in the metric, so that they count less than states and parameters.
 const EIGENFUNCTION_WEIGHT: f64 = 10.0;
-/// A new mesh aims at this part of the tolerance; it is made coarser when it has `EXCESS` times the intervals needed.
-const TARGET: f64 = 0.2;
-const EXCESS: f64 = 1.6;
-/// Part of its mean below which the amplitude of a state does not count as its size.
-const MEAN_PART: f64 = 0.01;
 /// The sizes are measured anew when one has changed by this factor.
 const SIZE_CHANGE: f64 = 1.5;
-/// The period has to grow to this many times its start, and its logarithm this much faster than the parameters over their
-/// ranges, to count as unbounded.
-const HOMOCLINIC_GROWTH: f64 = 5.0;
-const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
 /// Part of a bracket to which a point of codimension two is located by the secant method.
 const LOCATION: f64 = 1e-12;
 /// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
@@ -71,10 +62,7 @@ pub(super) struct CycleLocusCurve<'a> {
     settings: Settings,
     states: usize,
     second: usize,
-    largest: Vec<f64>,
-    resting: Vec<f64>,
-    signature_scales: OnceCell<Vec<f64>>,
-    first_period: Option<f64>,
+    sizes: StateSizes,
     error_estimate: f64,
     schur: Option<(usize, PeriodicSchur)>,
 }
@@ -83,7 +71,7 @@ impl<'a> CycleLocusCurve<'a> {
     pub fn new(
         mut system: DefiningCurve<'a>,
         base: Collocation<LimitCycle<'a>>,
-        resting: Vec<f64>,
+        sizes: StateSizes,
         second: usize,
         resolution: Resolution,
         settings: Settings,
@@ -98,10 +86,7 @@ impl<'a> CycleLocusCurve<'a> {
             settings,
             states,
             second,
-            largest: vec![0.0; states],
-            resting,
-            signature_scales: OnceCell::new(),
-            first_period: None,
+            sizes,
             error_estimate: f64::INFINITY,
             schur: None,
         }
@@ -113,22 +98,12 @@ impl<'a> CycleLocusCurve<'a> {
 
     /// Measures the sizes of the states; whether they have changed so much that the normalisation has to follow.
     fn rescale(&mut self, cycle: &[f64]) -> bool {
-        let states = &cycle[..cycle.len() - 3];
         let mut changed = false;
-        for component in 0..self.states {
-            let values = states.iter().skip(component).step_by(self.states);
-            let (smallest, largest) = values
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
-            let amplitude = 0.5 * (largest - smallest);
-            let mean = 0.5 * (largest + smallest).abs();
-            self.largest[component] = self.largest[component].max(amplitude);
-            let size = amplitude
-                .max(MEAN_PART * mean)
-                .max(0.1 * self.largest[component])
-                .max(self.resting[component]);
-            let old = self.system.collocation.problem.scales[component];
-            if size > 0.0 && size.is_finite() && (size / old > SIZE_CHANGE || old / size > SIZE_CHANGE) {
-                self.system.collocation.problem.scales[component] = size;
+        let sizes = self.sizes.measure(&cycle[..cycle.len() - 3]);
+        for (old, size) in self.system.collocation.problem.scales.iter_mut().zip(sizes) {
+            let ratio = size.scale / *old;
+            if size.scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
+                *old = size.scale;
                 changed = true;
             }
         }
@@ -157,17 +132,7 @@ impl<'a> CycleLocusCurve<'a> {
 
     /// Coefficient of the normal form; the base has just been factorised.
     fn coefficient(&self, cycle: &[f64], eigenfunctions: &Eigenfunctions) -> Option<f64> {
-        let problem = &self.base.problem;
-        let end = cycle.len() - 3;
-        let mut parameters = problem.parameters.clone();
-        parameters[problem.active] = cycle[end + 1];
-        let critical = CriticalCycle {
-            field: problem.field,
-            parameters: &parameters,
-            states: &cycle[..end],
-            period: cycle[end],
-            linearization: Linearization::of(&self.base, &cycle[..end + 2]),
-        };
+        let critical = CriticalCycle::of(&self.base, &cycle[..cycle.len() - 1]);
         match self.kind() {
             Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
             Kind::Doubling => critical.doubling(eigenfunctions),
@@ -206,32 +171,6 @@ impl<'a> CycleLocusCurve<'a> {
         });
         Ok(Some((found, error)))
     }
-
-    /// Whether the amplitude passes zero between two solutions, and where.
-    fn vanishes(&self, before: &[f64], after: &[f64]) -> Option<f64> {
-        let (one, _) = split(before, self.states, self.kind());
-        let (other, _) = split(after, self.states, self.kind());
-        let end = one.len() - 3;
-        let nodes = (end / self.states) as f64;
-        let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
-        for component in 0..self.states {
-            let scale = self.largest[component].max(self.resting[component]);
-            let mean =
-                |cycle: &[f64]| cycle[..end].iter().skip(component).step_by(self.states).sum::<f64>() / nodes;
-            let (mean_one, mean_other) = (mean(&one), mean(&other));
-            for (a, b) in one[..end].iter().zip(&other[..end]).skip(component).step_by(self.states) {
-                let (a, b) = ((a - mean_one) / scale, (b - mean_other) / scale);
-                first += a * a;
-                second += b * b;
-                mixed += a * b;
-            }
-        }
-        let (a, b) = (one[end + 1], other[end + 1]);
-        (mixed < 0.0).then(|| {
-            // Next to the end both parameters depend on the amplitude through its square.
-            if first == second { 0.5 * (a + b) } else { (a * second - b * first) / (second - first) }
-        })
-    }
 }
 
 fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
@@ -267,32 +206,10 @@ impl Curve for CycleLocusCurve<'_> {
         let rescaled = self.rescale(&cycle);
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
-        let worst = errors.iter().copied().fold(0.0, f64::max);
-        if !worst.is_finite() {
-            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: f64::MAX });
-        }
+        let (adaptation, worst) =
+            fit_mesh(&mut self.system.collocation, &errors, &self.resolution, unknown, vectors)?;
         self.error_estimate = worst;
-        let degree = self.resolution_degree();
-        let intervals = self.system.collocation.intervals();
-        let needed = intervals_needed(&errors, degree, TARGET * self.resolution.tolerance);
-        let wanted = (needed.ceil() as usize).max(self.resolution.fewest_intervals);
-        let too_coarse = worst > self.resolution.tolerance || intervals < self.resolution.fewest_intervals;
-        if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
-            self.system.collocation.set_reference(unknown);
-            return Ok(if rescaled { Adaptation::Changed } else { Adaptation::Unchanged });
-        }
-        if wanted > self.resolution.most_intervals {
-            return Err(Error::MeshLimit { limit: self.resolution.most_intervals, error_estimate: worst });
-        }
-        let count = wanted.min(2 * intervals);
-        let count = if too_coarse { count.max(intervals + 1) } else { count };
-        let mesh = equidistribute(self.system.collocation.mesh(), &errors, degree, count);
-        *unknown = self.system.collocation.carry(unknown, &mesh);
-        for vector in vectors.iter_mut() {
-            **vector = self.system.collocation.carry(vector, &mesh);
-        }
-        self.system.collocation.set_mesh(mesh, unknown);
-        Ok(Adaptation::Changed)
+        Ok(if rescaled { Adaptation::Changed } else { adaptation })
     }
 
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
@@ -343,13 +260,6 @@ impl Curve for CycleLocusCurve<'_> {
                 found.push(solution);
             }
         }
-        let mut image = vec![0.0; before.tangent.len()];
-        self.apply_metric(&before.tangent, &mut image);
-        let position = |solution: &Solution<Inspection>| -> f64 {
-            let offset = solution.unknown.iter().zip(&before.unknown).zip(&image);
-            offset.map(|((there, here), weight)| (there - here) * weight).sum()
-        };
-        found.sort_by(|a, b| position(a).total_cmp(&position(b)));
         Ok(found)
     }
 
@@ -357,29 +267,29 @@ impl Curve for CycleLocusCurve<'_> {
         let (cycle, _) = split(unknown, self.states, self.kind());
         let end = cycle.len() - 3;
         let mut signature = vec![cycle[end].ln(), cycle[end + 2] / self.system.parameter_scales[1]];
-        // Sizes grow along the curve: signatures are compared in those of the first one.
-        let scales = self.signature_scales.get_or_init(|| {
-            self.largest.iter().zip(&self.resting).map(|(largest, resting)| largest.max(*resting)).collect()
-        });
-        for (range, scale) in ranges(&self.base, &cycle[..end + 2], self.states).iter().zip(scales) {
-            signature.extend([range.largest / scale, range.smallest / scale]);
-        }
+        signature.extend(self.sizes.signature(&ranges(&self.base, &cycle[..end + 2], self.states)));
         signature
     }
 
     fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
         let end = after.unknown.len() - self.system.collocation.problem.scalars();
         let period = after.unknown[end];
-        let first = *self.first_period.get_or_insert(period);
         let last = after.tangent.len() - 2;
         let [one, other] =
             [0, 1].map(|index| after.tangent[last + index] / self.system.parameter_scales[index]);
         let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
-        if period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY {
+        if self.sizes.period_is_unbounded(period, sensitivity) {
             let parameter = after.unknown[last];
             return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
         }
-        if let Some(parameter) = self.vanishes(&before.unknown, &after.unknown) {
+        // Next to the end both parameters depend on the amplitude through its square.
+        let [(here, a), (there, b)] = [before, after].map(|solution| {
+            let (mut cycle, _) = split(&solution.unknown, self.states, self.kind());
+            let parameter = cycle[cycle.len() - 2];
+            cycle.truncate(cycle.len() - 3);
+            (cycle, parameter)
+        });
+        if let Some(parameter) = self.sizes.amplitude_passes_zero((&here, a), (&there, b)) {
             let frequency = 2.0 * PI / period;
             return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
         }
@@ -393,11 +303,5 @@ impl Curve for CycleLocusCurve<'_> {
             }
         }
         None
-    }
-}
-
-impl CycleLocusCurve<'_> {
-    fn resolution_degree(&self) -> usize {
-        self.system.collocation.gauss().degree()
     }
 }

@@ -3,20 +3,21 @@
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::curve::{CycleLocusCurve, Inspection};
 use crate::branch::SpecialKind;
-use crate::continuation::{Bound, Followed, Request, Settings, Solution, Stop, correct, finish, follow};
+use crate::continuation::{Followed, Request, Settings, Solution, Stop, correct, finish, follow};
 use crate::cycle::collocation::Collocation;
-use crate::cycle::curve::{CycleCurve, resting_sizes};
-use crate::cycle::defining::{Defining, Kind};
+use crate::cycle::curve::CycleCurve;
+use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::critical;
 use crate::cycle::floquet::floquet;
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, join};
+use crate::cycle::sizes::StateSizes;
 use crate::cycle::{Orbit, Resolution};
-use crate::equilibrium::{check_length, check_range};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::locus::LocusObserver;
+use crate::locus::request::{Range, TwoParameters, invalid, point_forward};
 use std::f64::consts::PI;
 use std::ops::{ControlFlow, RangeInclusive};
 
@@ -70,7 +71,7 @@ const NEAR_RESONANCE: f64 = 0.2;
 pub struct CycleLocus<'a> {
     field: ErasedField<'a>,
     start: Option<(SpecialKind, Orbit, Vec<f64>)>,
-    along: [Option<(String, RangeInclusive<f64>)>; 2],
+    along: [Option<Range>; 2],
     at: Vec<f64>,
     resolution: Resolution,
     settings: Settings,
@@ -140,14 +141,6 @@ impl<'a> CycleLocus<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn observed(self, observer: &mut LocusObserver<'_>) -> Result<CycleLocusBranch, Error> {
-        let invalid = |name: &str, value: &str, allowed: &str| Error::Invalid {
-            name: name.into(),
-            value: value.into(),
-            allowed: allowed.into(),
-        };
-        let [Some(first), Some(second)] = &self.along else {
-            return Err(invalid("along", "fewer than two parameters", "two parameters and their ranges"));
-        };
         let Some((special, orbit, parameters)) = &self.start else {
             return Err(invalid("start", "nothing", "a special cycle"));
         };
@@ -163,40 +156,14 @@ impl<'a> CycleLocus<'a> {
                 ));
             }
         };
-        let names = self.field.parameter_names();
-        let index = |name: &str| {
-            let found = names.iter().position(|candidate| candidate == name);
-            found.ok_or_else(|| invalid("along", name, &format!("one of {}", names.join(", "))))
-        };
-        let active = [index(&first.0)?, index(&second.0)?];
-        if active[0] == active[1] {
-            return Err(invalid("along", &first.0, "two different parameters"));
-        }
-        check_length("parameters of the start", parameters, names.len(), "the number of parameters")?;
         orbit.check(self.field.dimension())?;
-        let bounds = [
-            Bound { from_end: 2, ..check_range(&first.0, &first.1)? },
-            Bound { from_end: 1, ..check_range(&second.0, &second.1)? },
-        ];
-        for (bound, (&index, name)) in bounds.iter().zip(active.iter().zip([&first.0, &second.0])) {
-            let value = parameters[index];
-            if !(bound.lower..=bound.upper).contains(&value) {
-                return Err(invalid(
-                    &format!("range of {name}"),
-                    &format!("{} to {}", bound.lower, bound.upper),
-                    &format!("a range that contains {value}, where the curve starts"),
-                ));
-            }
-        }
+        let asked = TwoParameters::checked(&self.field, &self.along, parameters)?;
+        let TwoParameters { active, bounds } = asked;
+        let ranges = asked.ranges();
         let request = Request { bounds: bounds.to_vec(), values: self.at.clone(), settings: self.settings };
-        let (mut curve, unknown) = self.start(kind, orbit, parameters, active, &bounds)?;
+        let (mut curve, unknown) = self.start(kind, orbit, parameters, active, ranges)?;
         let (unknown, mut tangent) = self.first(&mut curve, unknown)?;
-        let end = unknown.len() - 2;
-        let ranges = [0, 1].map(|index| bounds[index].upper - bounds[index].lower);
-        let [one, other] = [0, 1].map(|index| tangent[end + index] / ranges[index]);
-        if (one.abs() > 1e-3 * other.abs() && one < 0.0) || (one.abs() <= 1e-3 * other.abs() && other < 0.0) {
-            tangent.iter_mut().for_each(|entry| *entry = -*entry);
-        }
+        point_forward(&mut tangent, ranges);
         let scalars = 3 + kind.own_scalars();
         let mut observe = |solution: &Solution<Inspection>| {
             let end = solution.unknown.len();
@@ -209,7 +176,7 @@ impl<'a> CycleLocus<'a> {
             Followed { solutions: Vec::new(), stop: Stop::Closed }
         } else {
             // Mesh and sizes have moved on: back to those of the start.
-            let (mut curve, start) = self.start(kind, orbit, parameters, active, &bounds)?;
+            let (mut curve, start) = self.start(kind, orbit, parameters, active, ranges)?;
             let (unknown, mut backward) = self.first(&mut curve, start)?;
             let product: f64 = backward.iter().zip(&tangent).map(|(a, b)| a * b).sum();
             if product > 0.0 {
@@ -277,11 +244,10 @@ impl<'a> CycleLocus<'a> {
         orbit: &Orbit,
         parameters: &[f64],
         active: [usize; 2],
-        bounds: &[Bound; 2],
+        ranges: [f64; 2],
     ) -> Result<(CycleLocusCurve<'a>, Vec<f64>), Error> {
         let mut cycle = orbit.states.clone();
         cycle.extend([orbit.period, parameters[active[0]]]);
-        let ranges = [0, 1].map(|index| bounds[index].upper - bounds[index].lower);
         let problem = LimitCycle {
             field: self.field,
             parameters: parameters.to_vec(),
@@ -289,7 +255,7 @@ impl<'a> CycleLocus<'a> {
             scales: vec![1.0; orbit.dimension],
         };
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
-        let resting = resting_sizes(&collocation.problem, &cycle);
+        let sizes = StateSizes::new(&collocation.problem, &cycle);
         let mut base = CycleCurve::new(collocation, self.resolution, ranges[0], &cycle).collocation;
         let mut border = vec![0.0; cycle.len()];
         border[cycle.len() - 1] = 1.0;
@@ -306,20 +272,9 @@ impl<'a> CycleLocus<'a> {
         if let Some(last) = unknown.last_mut() {
             *last = parameters[active[1]];
         }
-        let defining = Defining {
-            field: self.field,
-            kind,
-            parameters: parameters.to_vec(),
-            active: active[0],
-            second: Some(active[1]),
-            scales: base.problem.scales.clone(),
-            period_scale: orbit.period,
-            parameter_scale: ranges[0],
-        };
-        let mut collocation = Collocation::new(defining, orbit.mesh.clone(), orbit.degree);
-        collocation.set_reference(&unknown);
-        let system = DefiningCurve { collocation, scales: Vec::new(), parameter_scales: ranges };
-        Ok((CycleLocusCurve::new(system, base, resting, active[1], self.resolution, self.settings), unknown))
+        let nodes = (orbit.mesh.clone(), orbit.degree);
+        let system = DefiningCurve::new(&base.problem, kind, nodes, (Some(active[1]), ranges), &unknown);
+        Ok((CycleLocusCurve::new(system, base, sizes, active[1], self.resolution, self.settings), unknown))
     }
 
     /// The first solution, corrected with one of the parameters fixed, and the tangent there.

@@ -2,9 +2,9 @@
 
 use crate::columns::Columns;
 use crate::document::{NamedNumbers, Schema};
-use crate::labels::{self, is_bifurcation};
+use crate::labels::is_bifurcation;
 use crate::models::branch::{
-    End, Origin, StoredModel, VaryingParameter, named_parameters, pairs, parameters, stability, test_names,
+    End, Origin, StoredModel, VaryingParameter, label_ends, named_parameters, pairs, parameters, stability,
     tests,
 };
 use crate::models::model::ChosenModel;
@@ -89,12 +89,7 @@ impl EquilibriaReport {
             End::of(&branch.backward_stop, &[&range.key], last(points.first())),
             End::of(&branch.forward_stop, &[&range.key], last(points.last())),
         ];
-        let count = points.len();
-        for (number, index) in [(1, 0), (2, count.saturating_sub(1))] {
-            if let Some(point) = points.get_mut(index).filter(|point| point.label.is_none()) {
-                point.label = Some(labels::end(number));
-            }
-        }
+        label_ends(&mut points, |point| &mut point.label);
         Self {
             parameters: named_parameters(chosen, &[branch.active]),
             model: chosen.stored.clone(),
@@ -196,19 +191,9 @@ impl Report for EquilibriaReport {
         for (index, name) in states.iter().enumerate() {
             columns = columns.optional_numbers(*name, points().map(|point| point.state.get(index)));
         }
-        for number in 0..states.len() {
-            for (part, name) in ["real", "imaginary"].into_iter().enumerate() {
-                columns = columns.optional_numbers(
-                    format!("eigenvalue_{}_{name}", number + 1),
-                    points().map(|point| point.eigenvalues.get(number).and_then(|pair| pair[part])),
-                );
-            }
-        }
-        for name in test_names(points().map(|point| &point.tests)) {
-            let values = points().map(|point| point.tests.named(&name));
-            columns = columns.optional_numbers(format!("test_{name}"), values);
-        }
         columns
+            .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))
+            .named_numbers("test", points().map(|point| &point.tests))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

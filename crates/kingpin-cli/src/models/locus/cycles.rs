@@ -4,7 +4,7 @@ use crate::columns::Columns;
 use crate::document::{NamedNumbers, Schema};
 use crate::labels::{self, is_bifurcation};
 use crate::models::branch::{
-    End, Origin, StoredModel, VaryingParameter, named_parameters, pairs, parameters, test_names, tests,
+    End, Origin, StoredModel, VaryingParameter, named_parameters, pairs, parameters, tests,
 };
 use crate::models::model::ChosenModel;
 use crate::models::picture::{self, Curve};
@@ -256,19 +256,9 @@ impl Report for CycleLocusReport {
                 .optional_numbers(format!("max_{name}"), points().map(|point| point.max.get(index)))
                 .optional_numbers(format!("min_{name}"), points().map(|point| point.min.get(index)));
         }
-        for number in 0..self.states().len() {
-            for (part, name) in ["real", "imaginary"].into_iter().enumerate() {
-                columns = columns.optional_numbers(
-                    format!("multiplier_{}_{name}", number + 1),
-                    points().map(|point| point.multipliers.get(number).and_then(|pair| pair[part])),
-                );
-            }
-        }
-        for name in test_names(points().map(|point| &point.tests)) {
-            let values = points().map(|point| point.tests.named(&name));
-            columns = columns.optional_numbers(format!("test_{name}"), values);
-        }
         columns
+            .complex_numbers("multiplier", self.states().len(), points().map(|point| &point.multipliers))
+            .named_numbers("test", points().map(|point| &point.tests))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -1,0 +1,133 @@
+//! Sizes of the states along a curve of cycles, and what they decide: where the amplitude passes zero, whether two cycles are the
+//! same, whether the period grows without bound.
+
+use super::extrema::Range;
+use super::limit_cycle::LimitCycle;
+use super::problem::PeriodicProblem;
+use crate::algebraic::scales::natural_scales;
+use std::cell::OnceCell;
+
+/// Part of its mean below which the amplitude of a state does not count as its size.
+const MEAN_PART: f64 = 0.01;
+/// Part of the largest amplitude met that a state keeps as its size.
+const LARGEST_PART: f64 = 0.1;
+/// Part of the size that the nonlinearity of the field gives a state below which it rests.
+const RESTING_PART: f64 = 1e-4;
+/// Noise floor of the error estimate: part of the mean that is rounding.
+const ROUNDING_PART: f64 = 1e-6;
+/// The period has to grow to this many times its start, and its logarithm this much faster than the parameters over their
+/// ranges, to count as unbounded.
+const HOMOCLINIC_GROWTH: f64 = 5.0;
+const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
+
+/// Sizes of the states met on a curve.
+#[derive(Debug)]
+pub(crate) struct StateSizes {
+    /// Largest amplitudes met.
+    largest: Vec<f64>,
+    /// Sizes below which a state counts as one that rests, from the nonlinearity of the field where the curve starts.
+    resting: Vec<f64>,
+    /// Sizes where the curve starts.
+    first: OnceCell<Vec<f64>>,
+    first_period: Option<f64>,
+}
+
+/// A state of one cycle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StateSize {
+    /// What errors count against: the amplitude, as far as it is not rounding.
+    pub amplitude: f64,
+    /// What steps and conditions are measured in.
+    pub scale: f64,
+}
+
+impl StateSizes {
+    /// `start` holds the unknowns of the first cycle.
+    pub fn new(problem: &LimitCycle<'_>, start: &[f64]) -> Self {
+        let n = problem.dimension();
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = start[start.len() - 1];
+        let natural = natural_scales(&problem.field, &start[..n], &parameters, &vec![0.0; n]);
+        Self {
+            largest: vec![0.0; n],
+            resting: natural.iter().map(|size| RESTING_PART * size).collect(),
+            first: OnceCell::new(),
+            first_period: None,
+        }
+    }
+
+    /// Sizes of the states of a cycle, given on its nodes.
+    pub fn measure(&mut self, states: &[f64]) -> Vec<StateSize> {
+        let n = self.largest.len();
+        (0..n)
+            .map(|component| {
+                let values = states.iter().skip(component).step_by(n);
+                let (smallest, largest) = values
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+                let amplitude = 0.5 * (largest - smallest);
+                let mean = 0.5 * (largest + smallest).abs();
+                self.largest[component] = self.largest[component].max(amplitude);
+                let resting = self.resting[component];
+                StateSize {
+                    amplitude: amplitude.max(ROUNDING_PART * mean).max(resting),
+                    scale: amplitude
+                        .max(MEAN_PART * mean)
+                        .max(LARGEST_PART * self.largest[component])
+                        .max(resting),
+                }
+            })
+            .collect()
+    }
+
+    /// Sizes that the nonlinearity of the field gives the states.
+    pub fn natural(&self) -> impl Iterator<Item = f64> + '_ {
+        self.resting.iter().map(|resting| resting / RESTING_PART)
+    }
+
+    fn met(&self) -> impl Iterator<Item = f64> + '_ {
+        self.largest.iter().zip(&self.resting).map(|(largest, resting)| largest.max(*resting))
+    }
+
+    /// Parameter value at which the amplitude passes zero between two cycles on the same nodes with the parameter values `a`
+    /// and `b`: behind it a curve goes on to the same cycles half a period later.
+    pub fn amplitude_passes_zero(&self, (one, a): (&[f64], f64), (other, b): (&[f64], f64)) -> Option<f64> {
+        let n = self.largest.len();
+        let nodes = (one.len() / n) as f64;
+        let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
+        for (component, scale) in self.met().enumerate() {
+            let mean = |states: &[f64]| states.iter().skip(component).step_by(n).sum::<f64>() / nodes;
+            let (mean_one, mean_other) = (mean(one), mean(other));
+            for (a, b) in one.iter().zip(other).skip(component).step_by(n) {
+                let (a, b) = ((a - mean_one) / scale, (b - mean_other) / scale);
+                first += a * a;
+                second += b * b;
+                mixed += a * b;
+            }
+        }
+        (mixed < 0.0).then(|| vanishing_point((a, first), (b, second)))
+    }
+
+    /// Extreme values in the sizes of the first cycle asked for (sizes grow along a curve), to tell whether two cycles are the
+    /// same.
+    pub fn signature(&self, ranges: &[Range]) -> Vec<f64> {
+        let scales = self.first.get_or_init(|| self.met().collect());
+        ranges
+            .iter()
+            .zip(scales)
+            .flat_map(|(range, scale)| [range.largest / scale, range.smallest / scale])
+            .collect()
+    }
+
+    /// Whether the period grows without bound; `sensitivity` is the rate of its logarithm over that of the parameters in parts of
+    /// their ranges.
+    pub fn period_is_unbounded(&mut self, period: f64, sensitivity: f64) -> bool {
+        let first = *self.first_period.get_or_insert(period);
+        period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY
+    }
+}
+
+/// Parameter value at which an amplitude vanishes, from two values with the squared amplitudes there: close to a pitchfork
+/// these are linear in the parameter.
+pub(crate) fn vanishing_point((a, size_a): (f64, f64), (b, size_b): (f64, f64)) -> f64 {
+    if size_a == size_b { 0.5 * (a + b) } else { (a * size_b - b * size_a) / (size_b - size_a) }
+}
