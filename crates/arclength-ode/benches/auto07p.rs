@@ -219,7 +219,7 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         worst
     };
     let mut ours = None;
-    for tolerance in [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
         let branch = run(tolerance)?;
         let error = worst(&cycles_at(case, &branch)?);
         if error <= measure.accuracy() {
@@ -284,7 +284,7 @@ fn follow(
         .parameters(parameters)
         .along(active, case.cycles.0..=case.cycles.1)
         .at(case.values)
-        .resolution(Resolution { tolerance, ..Resolution::default() })
+        .resolution(Resolution::with_tolerance(tolerance))
         .run()
         .map_err(|error| error.to_string())
 }

@@ -302,3 +302,118 @@ fn folds_and_tori_of_a_reaction_meet_in_the_same_resonance() {
         "{on_folds:?} {on_tori:?}"
     );
 }
+
+/// Circles of radius `s` with `a + b s^2 - s^4 = 0`: folds at `a = -b^2/4`, `b > 0`, that shrink to the generalised Hopf point at
+/// the origin; the angular velocity is `2 + s^2`.
+struct Bautin;
+
+impl VectorField for Bautin {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["a", "b"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [x, y] = [state[0], state[1]];
+        let square = x * x + y * y;
+        let growth = parameters[0] + parameters[1] * square - square * square;
+        let speed = square + 2.0;
+        derivative[0] = growth * x - speed * y;
+        derivative[1] = growth * y + speed * x;
+    }
+}
+
+#[test]
+fn folds_of_cycles_end_at_a_generalised_hopf_point() {
+    let parameters = [-0.25, 1.0];
+    let period = 2.0 * std::f64::consts::PI / 2.5;
+    let orbit = Orbit::from_time_history(&Bautin, &parameters, &[0.5_f64.sqrt(), 0.0], 1.1 * period)
+        .expect("a cycle");
+    let folds = CycleLocus::of(&Bautin)
+        .from_cycle(SpecialKind::FoldOfCycles, &orbit, &parameters)
+        .along("a", -1.0..=1.0)
+        .and("b", -1.0..=1.5)
+        .run()
+        .expect("exists");
+    let ends = [(&folds.backward_stop, folds.points.first()), (&folds.forward_stop, folds.points.last())];
+    let (stop, point) = ends
+        .into_iter()
+        .find(|(stop, _)| matches!(stop, Stop::GeneralizedHopfPoint { .. }))
+        .expect("a generalised Hopf point");
+    let Stop::GeneralizedHopfPoint { values, frequency } = stop else { unreachable!() };
+    assert!(values.iter().all(|value| value.abs() < 1e-10), "{values:?}");
+    assert_relative_eq!(*frequency, 2.0, max_relative = 1e-10);
+    let point = point.expect("not empty");
+    assert_eq!(point.label.map(|label| label.kind), Some(SpecialKind::GeneralizedHopf));
+    assert!(point.max.iter().chain(&point.min).all(|value| value.abs() < 1e-10));
+    for point in &folds.points {
+        assert!((point.values[0] + 0.25 * point.values[1].powi(2)).abs() < 1e-8, "{:?}", point.values);
+    }
+}
+
+/// A circle and beside it a linear oscillator that grows at the rate `a - b`: the coefficient of its torus bifurcations is zero.
+struct LinearBeside;
+
+impl VectorField for LinearBeside {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y", "u", "v"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["a", "b"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [x, y, u, v] = [state[0], state[1], state[2], state[3]];
+        let growth = T::one() - x * x - y * y;
+        derivative[0] = growth * x - y;
+        derivative[1] = growth * y + x;
+        let rate = parameters[0] - parameters[1];
+        // The circle modulates the oscillator, so that its coefficient comes out as noise and not as zero.
+        let speed = x * 0.1 + 0.3;
+        derivative[2] = rate * u - speed * v;
+        derivative[3] = rate * v + speed * u;
+    }
+}
+
+#[test]
+fn a_coefficient_that_is_zero_all_along_has_no_chenciner_points() {
+    let parameters = [0.1, 0.1];
+    let orbit =
+        Orbit::from_time_history(&LinearBeside, &parameters, &[1.0, 0.0, 0.0, 0.0], 7.0).expect("a cycle");
+    let tori = CycleLocus::of(&LinearBeside)
+        .from_cycle(SpecialKind::Torus, &orbit, &parameters)
+        .along("a", -1.0..=1.0)
+        .and("b", -1.0..=1.0)
+        .run()
+        .expect("exists");
+    assert!(tori.points.iter().any(|point| point.coefficient.is_some_and(|value| value != 0.0)));
+    assert_eq!(found(&tori), []);
+}
+
+#[test]
+fn a_branch_of_cycles_starts_at_its_fold() {
+    let period = 2.0 * std::f64::consts::PI / 2.5;
+    let orbit = Orbit::from_time_history(&Bautin, &[-0.25, 1.0], &[0.5_f64.sqrt(), 0.0], 1.1 * period)
+        .expect("a cycle");
+    let branch = |orbit: &Orbit, value: f64| {
+        Cycles::of(&Bautin, CycleStart::Orbit(orbit.clone()))
+            .parameters(&[value, 1.0])
+            .along(0, -1.0..=1.0)
+            .run()
+            .expect("exists")
+    };
+    let first = branch(&orbit, -0.25);
+    let (_, fold) = first.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    assert!((fold.value + 0.25).abs() < 1e-10);
+    let second = branch(&fold.orbit, fold.value);
+    let stops = [second.stops.0.as_ref(), Some(&second.stops.1)];
+    assert!(
+        stops.iter().any(|stop| matches!(stop, Some(Stop::HopfPoint { located: true, .. }))),
+        "{stops:?}"
+    );
+    assert!(stops.iter().any(|stop| matches!(stop, Some(Stop::RangeEnd { .. }))), "{stops:?}");
+    assert!(second.points.iter().all(|point| {
+        let square = point.max[0].powi(2);
+        (point.value + square - square * square).abs() < 1e-7
+    }));
+}

@@ -56,7 +56,9 @@ fn lure_period_doubling() {
         assert_relative_eq!(cycle.value.abs(), 0.6303020062, max_relative = 1e-9);
         assert_relative_eq!(cycle.period, 6.364071339, max_relative = 1e-9);
     }
-    let Stop::HopfPoint { parameter, frequency } = branch.stops.1 else { panic!("{}", branch.stops.1) };
+    let Stop::HopfPoint { parameter, frequency, located: true } = branch.stops.1 else {
+        panic!("{}", branch.stops.1)
+    };
     assert_relative_eq!(parameter, -1.0, max_relative = 1e-12);
     assert_relative_eq!(frequency, 1.0, max_relative = 1e-12);
 }

@@ -469,3 +469,32 @@ proptest! {
         }
     }
 }
+
+/// Two oscillators whose damping vanishes together at `p = 0`.
+struct TwoAtOnce;
+
+impl VectorField for TwoAtOnce {
+    fn state_names(&self) -> Vec<String> {
+        ["x1", "y1", "x2", "y2"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        for (at, frequency) in [(0, 1.0), (2, 1.3)] {
+            d[at] = x[at + 1];
+            d[at + 1] = p[0] * (T::one() - x[at] * x[at]) * x[at + 1] - x[at] * frequency * frequency
+                + (x[2 - at] - x[at]) * 0.2;
+        }
+    }
+}
+
+#[test]
+fn pairs_that_cross_together_are_found_wherever_the_steps_fall() {
+    for start in [-1.0, -1.03, -0.7, -0.512] {
+        let branch = Equilibria::of(&TwoAtOnce).parameters(&[start]).along("p", start..=1.0).run().unwrap();
+        assert_eq!(kinds(&branch), ["HB1"], "{start}");
+        let place = branch.special_points().next().map(|special| special.parameter()).unwrap();
+        assert!(place.abs() < 1e-8, "{start}: {place}");
+    }
+}

@@ -121,6 +121,9 @@ pub enum Failure {
         /// Where they are kept.
         kept: String,
     },
+    /// Ctrl-C was pressed on the way along a branch.
+    #[error("interrupted: what was computed before is in the result, which can be continued from its ends")]
+    BranchInterrupted,
     /// Ctrl-C could not be listened to.
     #[error("cannot listen to Ctrl-C: {0}")]
     Signals(#[from] ctrlc::Error),
@@ -158,6 +161,7 @@ impl Failure {
             | Self::Figure(_)
             | Self::Encoding { .. }
             | Self::Interrupted { .. }
+            | Self::BranchInterrupted
             | Self::Signals(_)
             | Self::Threads(_) => COMPUTATION_FAILED,
         }

@@ -1,5 +1,6 @@
 //! The run itself: predict, correct, adapt, inspect, locate, repeat.
 
+use super::closure::Closure;
 use super::corrector::{inner, norm};
 use super::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, correct};
 use crate::error::Error;
@@ -57,9 +58,6 @@ const STEP_REDUCTION: f64 = 0.4;
 const TANGENT_COSINE: f64 = 0.9;
 /// Corrections after a change of mesh that may follow each other at one point.
 const MOST_ADAPTATIONS: usize = 12;
-/// Relative agreement of signatures that makes a curve closed.
-const CLOSURE_TOLERANCE: f64 = 1e-6;
-
 /// Follows the curve from `start` (not necessarily converged) in the direction of `tangent`.
 ///
 /// `observer` is told every accepted solution and may end the run.
@@ -75,12 +73,11 @@ pub fn follow<C: Curve>(
 ) -> Result<Followed<C::Point>, Error> {
     let settings = &request.settings;
     let mut current = converge(curve, start, tangent, settings, &mut [])?;
-    let first_signature = curve.signature(&current.unknown);
-    let first_parameter =
-        request.bounds.first().map(|bound| current.unknown[current.unknown.len() - bound.from_end]);
-    let first_direction =
-        request.bounds.first().map(|bound| current.tangent[current.tangent.len() - bound.from_end]);
+    let mut closure = request.bounds.first().map(|bound| Closure::at(curve, &current, *bound));
     let mut solutions = vec![(current.clone(), Origin::Step)];
+    // Lengths of the curve up to the solutions.
+    let mut lengths = vec![0.0];
+    let mut length = 0.0;
     let mut previous: Option<(Vec<f64>, f64)> = None;
     let mut step = settings.initial_step;
     if observer(&current).is_break() {
@@ -136,33 +133,19 @@ pub fn follow<C: Curve>(
             solutions.extend(between);
             return Ok(Followed { solutions, stop: Stop::RangeEnd { bound, value } });
         }
-        let closed = match (first_parameter, first_direction) {
-            (Some(parameter), Some(direction)) if solutions.len() > 2 => {
-                let from_end = request.bounds[0].from_end;
-                let position = |solution: &Solution<C::Point>| {
-                    solution.unknown[solution.unknown.len() - from_end] - parameter
-                };
-                let crosses = position(&current) * position(&advanced) <= 0.0
-                    && position(&advanced) * direction >= 0.0
-                    && position(&current) != 0.0;
-                if crosses {
-                    match fix(curve, &current, &advanced, from_end, parameter, settings) {
-                        Ok(candidate) => {
-                            same(&curve.signature(&candidate.unknown), &first_signature).then_some(candidate)
-                        }
-                        Err(_) => None,
-                    }
-                } else {
-                    None
-                }
-            }
-            _ => None,
-        };
-        if let Some(candidate) = closed {
-            let reached = along(curve, &current, &candidate.unknown);
-            between.retain(|(solution, _)| along(curve, &current, &solution.unknown) < reached);
+        let index = solutions.len() - 1;
+        let closed = closure.as_ref().and_then(|closure| {
+            closure.reached(curve, &current, &advanced, index, settings).map(|end| (closure, end))
+        });
+        let place =
+            |curve: &C, solution: &Solution<C::Point>| length + along(curve, &current, &solution.unknown);
+        if let Some((closure, candidate)) = closed {
+            let reached = place(curve, &candidate);
+            between.retain(|(solution, _)| place(curve, solution) < reached);
             between.push((candidate, Origin::End));
+            lengths.extend(between.iter().map(|(solution, _)| place(curve, solution)));
             solutions.extend(between);
+            closure.cut(&mut solutions, &lengths, reached);
             return Ok(Followed { solutions, stop: Stop::Closed });
         }
         between.push((advanced, Origin::Step));
@@ -174,11 +157,16 @@ pub fn follow<C: Curve>(
         }
         let Some((next, _)) = between.last() else { continue };
         let next = next.clone();
+        lengths.extend(between.iter().map(|(solution, _)| place(curve, solution)));
+        let reached = place(curve, &next);
         solutions.extend(between);
         if let Some(stop) = ending {
             return Ok(Followed { solutions, stop });
         }
-        current = next;
+        (current, length) = (next, reached);
+        if let Some(closure) = &mut closure {
+            closure.consider(curve, &current, solutions.len() - 1, length);
+        }
     }
     Ok(Followed { solutions, stop: Stop::MostSteps })
 }
@@ -392,7 +380,7 @@ fn requested_values<C: Curve>(
 }
 
 /// The solution between two neighbours at which the unknown `from_end` has the given value.
-fn fix<C: Curve>(
+pub(super) fn fix<C: Curve>(
     curve: &mut C,
     before: &Solution<C::Point>,
     after: &Solution<C::Point>,
@@ -434,8 +422,8 @@ fn interpolate<C: Curve>(
         .collect()
 }
 
-/// Position along the tangent at `origin`.
-fn along<C: Curve>(curve: &C, origin: &Solution<C::Point>, unknown: &[f64]) -> f64 {
+/// Position along the tangent at `origin`, in the metric of the curve.
+pub(crate) fn along<C: Curve>(curve: &C, origin: &Solution<C::Point>, unknown: &[f64]) -> f64 {
     let image = metric_image(curve, &origin.tangent);
     unknown
         .iter()
@@ -450,15 +438,6 @@ fn metric_image<C: Curve>(curve: &C, vector: &[f64]) -> Vec<f64> {
     let mut image = vec![0.0; vector.len()];
     curve.apply_metric(vector, &mut image);
     image
-}
-
-/// Whether two signatures agree.
-fn same(one: &[f64], other: &[f64]) -> bool {
-    one.len() == other.len()
-        && one
-            .iter()
-            .zip(other)
-            .all(|(a, b)| (a - b).abs() <= CLOSURE_TOLERANCE * (1.0 + a.abs().max(b.abs())))
 }
 
 /// Locates a zero of `test` between two neighbouring solutions, by the Illinois variant of regula falsi

@@ -7,6 +7,7 @@
 //! (1977); Allgower and Georg, *Numerical Continuation Methods* (1990); Govaerts, *Numerical Methods
 //! for Bifurcations of Dynamical Equilibria* (2000).
 
+mod closure;
 mod corrector;
 mod curve;
 mod follow;
@@ -15,7 +16,7 @@ mod stop;
 
 pub use corrector::{Correction, CorrectionFailure, correct};
 pub use curve::{Adaptation, Curve, Ending, Solution};
-pub(crate) use follow::finish;
 pub use follow::{Bound, Followed, Origin, Request, follow, locate};
+pub(crate) use follow::{along, finish};
 pub use settings::Settings;
 pub use stop::Stop;

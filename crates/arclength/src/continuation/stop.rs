@@ -28,6 +28,15 @@ pub enum Stop {
         parameter: f64,
         /// Angular frequency there.
         frequency: f64,
+        /// Whether the point was located by Newton's method; otherwise both values are extrapolated from the last cycles.
+        located: bool,
+    },
+    /// The amplitude went to zero: the curve of folds of cycles ends at a generalised Hopf point.
+    GeneralizedHopfPoint {
+        /// Values of the two parameters there.
+        values: [f64; 2],
+        /// Angular frequency there.
+        frequency: f64,
     },
     /// The two halves of doubled cycles became equal: the branch ends at a period doubling.
     PeriodDoubling {
@@ -72,9 +81,17 @@ impl std::fmt::Display for Stop {
             Self::MostSteps => {
                 write!(formatter, "the most steps allowed were taken; allow more, or narrow the range")
             }
-            Self::HopfPoint { parameter, frequency } => write!(
+            Self::HopfPoint { parameter, frequency, located: true } => write!(
                 formatter,
                 "the cycles shrink to a Hopf point at {parameter} with angular frequency {frequency}"
+            ),
+            Self::HopfPoint { parameter, frequency, located: false } => write!(
+                formatter,
+                "the cycles shrink to a Hopf point near {parameter:.3e} with an angular frequency of about {frequency:.3e}"
+            ),
+            Self::GeneralizedHopfPoint { values: [first, second], frequency } => write!(
+                formatter,
+                "the cycles shrink to a generalised Hopf point at {first}, {second} with angular frequency {frequency}"
             ),
             Self::PeriodDoubling { parameter, period } => write!(
                 formatter,

@@ -7,18 +7,25 @@ use super::locating::doubling_near;
 use super::orbit::Orbit;
 use super::special::{Special, Unlocated};
 use super::switching::{Branching, HopfStart, Start};
-use crate::continuation::{Bound, Curve, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use crate::continuation::{
+    Bound, CorrectionFailure, Curve, Followed, Origin, Request, Settings, Solution, Stop, follow,
+};
 use crate::equilibrium::HopfPoint;
 use crate::equilibrium::locating::hopf_point_near;
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 use num_complex::Complex64;
+use std::f64::consts::PI;
 use std::ops::{ControlFlow, RangeInclusive};
 
 /// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there.
 const FIRST_DISTANCE: f64 = 0.02;
-/// Times that this distance is halved before a start is given up.
+/// Part of the parameter's range, and of the states, within which a Hopf point may be the end that the last cycle points to.
+const NEAR_END: f64 = 0.05;
+/// The logarithm of its frequency differs from that of the last cycle by less than this.
+const SAME_FREQUENCY: f64 = 0.5;
+/// Times that this distance is reduced before a start is given up.
 const MOST_HALVINGS: usize = 6;
 
 /// A limit cycle of a branch.
@@ -243,8 +250,7 @@ impl<'a> Cycles<'a> {
                     crossing_speed,
                     cubic_coefficient,
                 };
-                let start = hopf.cycle(self.parameters[self.active], width, degree);
-                let forward = self.follow(&start, &request, false, &mut unlocated)?;
+                let forward = self.be_born(&hopf, &request, &mut unlocated)?;
                 (points_of(&forward, degree), (None, forward.stop))
             }
             CycleStart::Orbit(orbit) => {
@@ -253,9 +259,20 @@ impl<'a> Cycles<'a> {
                 let mut tangent = vec![0.0; unknown.len()];
                 tangent[unknown.len() - 1] = width;
                 let mut start = Start { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree };
-                let forward = self.follow(&start, &request, false, &mut unlocated)?;
+                let forward = match self.follow(&start, &request, false, &mut unlocated) {
+                    // At a fold the parameter stands still: the size of the cycle changes.
+                    Err(Error::NotFound { sought, cause }) => {
+                        start.tangent = orbit.deviation();
+                        start.tangent.extend([0.0, 0.0]);
+                        self.follow(&start, &request, false, &mut unlocated)
+                            .map_err(|_| Error::NotFound { sought, cause })?
+                    }
+                    result => result?,
+                };
                 if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
-                    (points_of(&forward, start.degree), (Some(Stop::Closed), forward.stop))
+                    let other =
+                        if matches!(forward.stop, Stop::Closed) { Stop::Closed } else { Stop::Interrupted };
+                    (points_of(&forward, start.degree), (Some(other), forward.stop))
                 } else {
                     start.tangent.iter_mut().for_each(|entry| *entry = -*entry);
                     let backward = self.follow(&start, &request, false, &mut unlocated)?;
@@ -322,6 +339,31 @@ impl<'a> Cycles<'a> {
         Ok(followed)
     }
 
+    /// Follows the branch from a Hopf point, from a smaller first cycle where there is none near that of the normal form.
+    fn be_born(
+        &mut self,
+        hopf: &HopfStart<'_>,
+        request: &Request,
+        unlocated: &mut Vec<Unlocated>,
+    ) -> Result<Followed<CycleInspection>, Error> {
+        let width = self.range.1 - self.range.0;
+        // Shorter steps asked for mean a shorter first one.
+        let share = (self.settings.initial_step / Settings::default().initial_step).min(1.0);
+        let mut amplitude = share * hopf.first_amplitude(width);
+        let mut failure = None;
+        for _ in 0..MOST_HALVINGS {
+            let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
+            match self.follow(&start, request, false, unlocated) {
+                Err(Error::NotFound { sought, cause }) => {
+                    failure.get_or_insert(Error::NotFound { sought, cause });
+                    amplitude *= 0.25;
+                }
+                result => return result,
+            }
+        }
+        Err(failure.unwrap_or(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged }))
+    }
+
     /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.
     fn leave(
         &mut self,
@@ -347,17 +389,21 @@ impl<'a> Cycles<'a> {
         start.tangent.iter_mut().for_each(|entry| *entry *= sign / size);
         let origin = start.unknown.clone();
         let mut distance = FIRST_DISTANCE;
-        for halving in 0.. {
+        let mut failure = None;
+        for _ in 0..=MOST_HALVINGS {
             start.unknown.clone_from(&origin);
             for (entry, slope) in start.unknown.iter_mut().zip(&start.tangent) {
                 *entry += distance * slope;
             }
             match self.follow(&start, request, branching.doubled, unlocated) {
-                Err(Error::NotFound { .. }) if halving < MOST_HALVINGS => distance *= 0.5,
+                Err(Error::NotFound { sought, cause }) => {
+                    failure.get_or_insert(Error::NotFound { sought, cause });
+                    distance *= 0.5;
+                }
                 result => return result,
             }
         }
-        unreachable!("the loop above returns")
+        Err(failure.unwrap_or(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged }))
     }
 
     /// Replaces extrapolated ends of a branch, at Hopf points and period doublings, by the points themselves where Newton's
@@ -368,16 +414,14 @@ impl<'a> Cycles<'a> {
         for (index, stop) in ends {
             let (Some(stop), Some(point)) = (stop, branch.points.get(index)) else { continue };
             match stop {
-                Stop::HopfPoint { parameter, frequency } => {
+                Stop::HopfPoint { parameter, frequency, located } => {
                     let mean: Vec<f64> =
                         point.max.iter().zip(&point.min).map(|(max, min)| 0.5 * (max + min)).collect();
                     let mut parameters = self.parameters.clone();
                     parameters[self.active] = *parameter;
                     let found = hopf_point_near(self.field, &mean, &parameters, self.active, *frequency);
-                    if let Some((value, exact)) = found
-                        && (value - *parameter).abs() <= (point.value - *parameter).abs()
-                    {
-                        (*parameter, *frequency) = (value, exact);
+                    if let Some(found) = found.filter(|found| self.may_end_at(found, point, *parameter)) {
+                        (*parameter, *frequency, *located) = (found.parameter, found.frequency, true);
                     }
                 }
                 Stop::PeriodDoubling { parameter, period } => {
@@ -393,6 +437,19 @@ impl<'a> Cycles<'a> {
                 _ => {}
             }
         }
+    }
+
+    /// Whether the branch whose last cycle is `last`, and which seems to end at the parameter value `estimate`, may end at this
+    /// Hopf point.
+    fn may_end_at(&self, hopf: &HopfPoint, last: &CyclePoint, estimate: f64) -> bool {
+        let width = self.range.1 - self.range.0;
+        let distance = (last.value - estimate).abs().max(NEAR_END * width);
+        let inside = hopf.state.iter().zip(last.max.iter().zip(&last.min)).all(|(value, (max, min))| {
+            let margin = (max - min) + NEAR_END * max.abs().max(min.abs());
+            (min - margin..=max + margin).contains(value)
+        });
+        let frequencies = (hopf.frequency * last.period / (2.0 * PI)).ln().abs();
+        (hopf.parameter - estimate).abs() <= distance && inside && frequencies < SAME_FREQUENCY
     }
 
     fn validate(&self) -> Result<(), Error> {

@@ -26,9 +26,21 @@ pub struct Resolution {
     pub most_intervals: usize,
 }
 
+impl Resolution {
+    /// Resolution for a tolerance, with the degree that makes a branch cheapest: a matrix of `m` Gauss points costs `m^3` and
+    /// the intervals needed fall with the tolerance to the power `-1/(m+1)`. Measured on the cycles of four models at
+    /// tolerances of 1e-2 to 1e-10, the best degree grows by 0.6 to 0.7 per digit and a miss of one costs a tenth.
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        let digits = -tolerance.log10();
+        let degree = (2.5 + 0.6 * digits).round().clamp(3.0, 11.0) as usize;
+        Self { tolerance, degree, fewest_intervals: 4, most_intervals: 2000 }
+    }
+}
+
 impl Default for Resolution {
+    /// For a tolerance of 1e-8.
     fn default() -> Self {
-        Self { tolerance: 1e-8, degree: 7, fewest_intervals: 4, most_intervals: 2000 }
+        Self::with_tolerance(1e-8)
     }
 }
 
@@ -256,7 +268,7 @@ impl Curve for CycleCurve<'_> {
             self.sizes.amplitude_passes_zero((here, parameter_before), (there, parameter))
         {
             let frequency = 2.0 * std::f64::consts::PI / period;
-            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
+            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
         }
         None
     }

@@ -55,9 +55,12 @@ pub(crate) fn ranges<P: PeriodicProblem>(
                 if !(peak || valley) {
                     continue;
                 }
-                let left = if index == 0 { times[nodes - 1] - 1.0 } else { times[index - 1] };
-                let right = if index + 1 == nodes { 1.0 } else { times[index + 1] };
-                let refined = refine(collocation, unknown, component, left, times[index], right, size);
+                let sample =
+                    |index: usize| Sample::at_node(collocation, unknown, component, index % nodes, &times);
+                let (mut left, mut right) = (sample(index + nodes - 1), sample(index + 1));
+                left.time -= if index == 0 { 1.0 } else { 0.0 };
+                right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
+                let refined = refine(collocation, unknown, component, [left, sample(index), right], size);
                 range.largest = range.largest.max(refined);
                 range.smallest = range.smallest.min(refined);
             }
@@ -66,28 +69,51 @@ pub(crate) fn ranges<P: PeriodicProblem>(
         .collect()
 }
 
-/// Value at the zero of the slope between `left` and `right`, which enclose the extreme node `middle`.
+/// A component at one time.
+#[derive(Clone, Copy)]
+struct Sample {
+    time: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl Sample {
+    fn at_node<P: PeriodicProblem>(
+        collocation: &Collocation<P>,
+        unknown: &[f64],
+        component: usize,
+        index: usize,
+        times: &[f64],
+    ) -> Self {
+        let n = collocation.problem.dimension();
+        let count = collocation.gauss().degree() + 1;
+        let (interval, node) = (index / count, index % count);
+        let width = collocation.mesh()[interval + 1] - collocation.mesh()[interval];
+        let values = collocation.interval(unknown, interval).iter().skip(component).step_by(n);
+        let slopes = collocation.gauss().slopes_at_node(node);
+        let slope = values.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>() / width;
+        Self { time: times[index], value: unknown[index * n + component], slope }
+    }
+}
+
+/// Value at the zero of the slope around an extreme node, from its neighbours and itself.
 fn refine<P: PeriodicProblem>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     component: usize,
-    left: f64,
-    middle: f64,
-    right: f64,
+    [left, middle, right]: [Sample; 3],
     size: f64,
 ) -> f64 {
-    let (_, slope_middle) = value_and_slope(collocation, unknown, component, middle);
-    let (value_left, slope_left) = value_and_slope(collocation, unknown, component, left);
-    let (value_right, slope_right) = value_and_slope(collocation, unknown, component, right);
-    let (mut a, mut slope_a, mut b, mut slope_b) = if slope_middle * slope_left <= 0.0 {
-        (left, slope_left, middle, slope_middle)
-    } else if slope_middle * slope_right <= 0.0 {
-        (middle, slope_middle, right, slope_right)
+    let (left, right) = if middle.slope * left.slope <= 0.0 {
+        (left, middle)
+    } else if middle.slope * right.slope <= 0.0 {
+        (middle, right)
     } else {
         // A corner of the piecewise polynomial at a mesh point: its ends are all there is.
-        return if slope_middle > 0.0 { value_right } else { value_left };
+        return if middle.slope > 0.0 { right.value } else { left.value };
     };
-    let mut best = value_and_slope(collocation, unknown, component, a).0;
+    let (mut a, mut slope_a, mut b, mut slope_b) = (left.time, left.slope, right.time, right.slope);
+    let mut best = left.value;
     for _ in 0..MOST_ITERATIONS {
         if slope_a == slope_b {
             break;

@@ -22,6 +22,8 @@ pub struct Gauss {
     nodes: Vec<f64>,
     /// Barycentric weights of the nodes.
     barycentric: Vec<f64>,
+    /// Slopes at each node of the Lagrange polynomials of the nodes.
+    node_slopes: Vec<f64>,
 }
 
 impl Gauss {
@@ -45,7 +47,14 @@ impl Gauss {
         let barycentric = barycentric_weights(&nodes);
         let mut end = vec![0.0; degree + 1];
         lagrange(&nodes, &barycentric, 1.0, &mut end);
-        Self { points, weights, integration, end, nodes, barycentric }
+        let mut gauss =
+            Self { points, weights, integration, end, nodes, barycentric, node_slopes: Vec::new() };
+        let mut slopes = vec![0.0; (degree + 1) * (degree + 1)];
+        for (row, node) in slopes.chunks_exact_mut(degree + 1).zip(&gauss.nodes) {
+            gauss.basis_slopes(*node, row);
+        }
+        gauss.node_slopes = slopes;
+        gauss
     }
 
     /// Number of Gauss points.
@@ -72,6 +81,12 @@ impl Gauss {
             }
             *slope *= self.barycentric[k];
         }
+    }
+
+    /// Slopes at a node, counted from the start of the interval, of the Lagrange polynomials of the nodes.
+    pub fn slopes_at_node(&self, node: usize) -> &[f64] {
+        let nodes = self.nodes.len();
+        &self.node_slopes[node * nodes..(node + 1) * nodes]
     }
 
     /// Writes values and slopes at `position` together; faster than the two separately.

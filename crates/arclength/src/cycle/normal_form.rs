@@ -7,6 +7,7 @@
 //! bifurcations of limit cycles", *SIAM J. Numer. Anal.* 43 (2005).
 
 use super::collocation::Collocation;
+use super::defining::Kind;
 use super::eigenfunctions::{Eigenfunctions, Linearization};
 use super::limit_cycle::LimitCycle;
 use super::linear_problem::{LinearProblem, NodeFunction};
@@ -87,6 +88,27 @@ impl<'a> CriticalCycle<'a> {
         let coefficient = -scalars[1] / (2.0 * self.period);
         let scaled = (kappa.abs() > SMALLEST_SHIFT * size / self.period).then(|| coefficient / kappa);
         Some((coefficient, scaled))
+    }
+
+    /// What a coefficient of the normal form would be if the slow motion had the rate of one in a period where its amplitude is
+    /// `sizes`; coefficients are counted against it.
+    pub fn natural_coefficient(&self, kind: Kind, (functions, _): &Eigenfunctions, sizes: &[f64]) -> f64 {
+        let linear = &self.linearization;
+        let square = |dual: &dyn Fn(&NodeFunction) -> NodeFunction| -> f64 {
+            functions.iter().map(|function| linear.nodes.product(function, &dual(function))).sum()
+        };
+        let sized = square(&|function| {
+            function
+                .iter()
+                .enumerate()
+                .map(|(index, value)| value / sizes[index % sizes.len()].powi(2))
+                .collect()
+        });
+        match kind {
+            // The coefficient is quadratic, for a null function of unit size in the scales.
+            Kind::Fold => (sized / square(&|function| linear.dual(function))).sqrt() / self.period,
+            _ => sized / square(&NodeFunction::clone) / self.period,
+        }
     }
 
     /// The second-order response along the cycle: `h' = T f_x h - a T f + source`; returns `h` and `a`.

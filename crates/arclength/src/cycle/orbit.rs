@@ -125,6 +125,21 @@ impl Orbit {
         Ok(())
     }
 
+    /// Differences of the states from the middle of their ranges: the direction in which cycles grow.
+    pub(super) fn deviation(&self) -> Vec<f64> {
+        let middle: Vec<f64> = (0..self.dimension)
+            .map(|component| {
+                let values = self.states.iter().skip(component).step_by(self.dimension);
+                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(*value), high.max(*value))
+                });
+                0.5 * (low + high)
+            })
+            .collect();
+        let nodes = self.states.chunks_exact(self.dimension);
+        nodes.flat_map(|state| state.iter().zip(&middle).map(|(value, middle)| value - middle)).collect()
+    }
+
     /// States at `count` equidistant times `0, T/count, ...`, with the times.
     pub fn sample(&self, count: usize) -> Vec<(f64, Vec<f64>)> {
         let gauss = Gauss::new(self.degree);

@@ -8,7 +8,7 @@ use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
-use crate::continuation::{Solution, locate};
+use crate::continuation::{Solution, along, locate};
 use crate::error::Error;
 
 /// What is special about a cycle.
@@ -27,8 +27,10 @@ pub enum Special {
     BranchPoint,
 }
 
-/// Part of the bracket to which a test function's zero is bracketed before Newton's method takes over.
-const START_TOLERANCE: f64 = 1e-2;
+/// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
+const START_TOLERANCES: [f64; 3] = [1e-2, 1e-4, 1e-7];
+/// A special cycle may lie this part of the step outside it.
+const MARGIN: f64 = 0.1;
 
 /// All special cycles between two consecutive solutions.
 pub(super) fn between(
@@ -53,22 +55,34 @@ pub(super) fn between(
         (torus, Kind::Torus),
         (branch_point, Kind::BranchPoint),
     ];
+    let length = along(curve, before, &after.unknown);
     for (_, kind) in wanted.into_iter().filter(|(detected, _)| *detected) {
         let settings = curve.settings;
-        let start = locate(curve, before, after, &settings, START_TOLERANCE, |_, solution| {
-            let point = &solution.point;
-            match kind {
-                Kind::Fold => Some(point.fold_test),
-                Kind::Doubling => Some(point.doubling_test()),
-                Kind::Torus => torus_test(point, outside_before.min(outside_after)),
-                Kind::BranchPoint => branch_point_test(solution, sign),
+        let mut located = None;
+        for tolerance in START_TOLERANCES {
+            let start = locate(curve, before, after, &settings, tolerance, |_, solution| {
+                let point = &solution.point;
+                match kind {
+                    Kind::Fold => Some(point.fold_test),
+                    Kind::Doubling => Some(point.doubling_test()),
+                    Kind::Torus => torus_test(point, outside_before.min(outside_after)),
+                    Kind::BranchPoint => branch_point_test(solution, sign),
+                }
+            });
+            let converged = match start {
+                Ok(Some(start)) => converge(curve, &direction, &start, kind)?,
+                Ok(None) | Err(Error::NotFound { .. }) => None,
+                Err(error) => return Err(error),
+            };
+            // Newton's method may have left for a special cycle elsewhere.
+            located = converged.filter(|located| {
+                let position = along(curve, before, &located.solution.unknown);
+                (-MARGIN * length..=(1.0 + MARGIN) * length).contains(&position)
+            });
+            if located.is_some() {
+                break;
             }
-        });
-        let located = match start {
-            Ok(Some(start)) => converge(curve, &direction, &start, kind)?,
-            Ok(None) | Err(Error::NotFound { .. }) => None,
-            Err(error) => return Err(error),
-        };
+        }
         match located {
             Some(located) => found.push(describe(curve, located, kind)?),
             None => curve.unlocated.push(Unlocated {
@@ -110,9 +124,11 @@ fn describe(
     let point = &mut solution.point;
     (point.special, point.normal_form, point.branching) = match kind {
         Kind::Fold => {
-            let coefficient = critical.fold(&eigenfunctions);
-            let named =
-                coefficient.and_then(|(_, scaled)| scaled).map(|value| ("quadratic_coefficient", value));
+            // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
+            let named = critical.fold(&eigenfunctions).map(|(own, scaled)| match scaled {
+                Some(value) => ("quadratic_coefficient", value),
+                None => ("quadratic_coefficient_of_unit_function", own),
+            });
             (Some(Special::Fold), named.into_iter().collect(), None)
         }
         Kind::Doubling => {

@@ -191,9 +191,8 @@ pub(super) struct HopfStart<'a> {
 }
 
 impl HopfStart<'_> {
-    /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch; `width` is
-    /// the length of the parameter's range.
-    pub fn cycle(&self, parameter: f64, width: f64, degree: usize) -> Start {
+    /// Amplitude to start with, so that the first cycle is some part of the parameter's range `width` away.
+    pub fn first_amplitude(&self, width: f64) -> f64 {
         // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
         let natural = (width * self.crossing_speed / self.cubic_coefficient).abs().sqrt();
         let limit = self
@@ -205,8 +204,11 @@ impl HopfStart<'_> {
             .fold(0.0, f64::max);
         let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
         let natural_start = FIRST_AMPLITUDE * natural;
-        let amplitude =
-            if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit };
+        if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit }
+    }
+
+    /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
+    pub fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Start {
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
         let gauss = Gauss::new(degree);

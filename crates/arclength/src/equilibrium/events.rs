@@ -22,6 +22,8 @@ const COINCIDENT_PART: f64 = 0.02;
 const SUSPICIOUS: f64 = 0.3;
 /// A step is divided no closer to its ends than this part.
 const SMALLEST_FRACTION: f64 = 0.02;
+/// A step is divided at this part of the fraction where the fraction itself gives a special point.
+const ASIDE: f64 = 0.8;
 /// A rate of change of the parameter along the curve that may be rounding error.
 const UNDECIDED_FOLD: f64 = 1e-13;
 /// Rate of change of the parameter at a branch point, relative to its values around, below which the branch is tangential
@@ -164,7 +166,15 @@ impl Scan<'_, '_> {
             let settings = self.curve.settings;
             // A trial that fails (next to a branch point, where the equations are singular) ends the division: the point is
             // located from the ends.
-            if let Ok(middle) = between(self.curve, before, after, distance, fraction, &settings) {
+            for fraction in [fraction, ASIDE * fraction] {
+                let Ok(middle) = between(self.curve, before, after, distance, fraction, &settings) else {
+                    break;
+                };
+                // A trial that happens to be a special point itself explains nothing.
+                let undecided = middle.point.spectrum.stability == Stability::Undecided;
+                if undecided && changes.count() == 0 && fraction == 0.5 {
+                    continue;
+                }
                 self.part(before, &middle, share * fraction)?;
                 return self.part(&middle, after, share * (1.0 - fraction));
             }

@@ -240,14 +240,14 @@ pub(crate) fn normals(first: &[f64], second: &[f64], scales: &[f64]) -> Option<(
     conormal.iter().all(|entry| entry.is_finite()).then_some((normal, conormal))
 }
 
-/// Parameter value and frequency of the Hopf point close to an approximate equilibrium and frequency, by Newton's method.
+/// The Hopf point close to an approximate equilibrium and frequency, by Newton's method.
 pub(crate) fn hopf_point_near(
     field: ErasedField<'_>,
     state: &[f64],
     parameters: &[f64],
     active: usize,
     frequency: f64,
-) -> Option<(f64, f64)> {
+) -> Option<HopfPoint> {
     let n = state.len();
     let problem = super::problem::EquilibriumProblem::new(field, parameters, &[active]);
     let unknown = [state, &[parameters[active]]].concat();
@@ -263,11 +263,15 @@ pub(crate) fn hopf_point_near(
         .min_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()))?;
     let pair = [nearest, nearest.conj()];
     let (system, start) =
-        HopfSystem::from_pair(problem, &unknown, &matrix[..n * n], pair, &scales).ok()??;
+        HopfSystem::from_pair(problem.clone(), &unknown, &matrix[..n * n], pair, &scales).ok()??;
     let sizes = [&scales[..n], &scales[..n], &scales[..n], &[1.0], &scales[n..]].concat();
     let solved = solve_square(&system, &start, &sizes).ok()?;
     let kappa = solved.unknown[3 * n];
-    (kappa > 0.0).then(|| (solved.unknown[3 * n + 1], system.rate * kappa.sqrt()))
+    if kappa <= 0.0 {
+        return None;
+    }
+    let unknown = [&solved.unknown[..n], &solved.unknown[3 * n + 1..]].concat();
+    HopfPoint::at(&problem, &unknown, &scales, system.rate * kappa.sqrt(), location_error(&solved)).ok()
 }
 
 /// The branch point between two solutions.

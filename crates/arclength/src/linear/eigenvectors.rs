@@ -19,6 +19,8 @@ const MAXIMUM_STARTS: usize = 4;
 const SMALL_RESIDUAL: f64 = f64::EPSILON;
 /// With a relative residual below this no further starting vector is tried.
 const ACCEPTABLE_RESIDUAL: f64 = 1e-14;
+/// A balanced entry below this part of the largest is no influence: the square root of rounding.
+const NO_INFLUENCE: f64 = 1e-8;
 /// Components whose modulus is within this part of the largest count as largest; the first of them becomes
 /// real.
 const TIE: f64 = 1e-6;
@@ -61,8 +63,10 @@ pub fn right_eigenvector(
     let (a, b) = power_of_two(-exponent);
     balanced.iter_mut().for_each(|x| *x = *x * a * b);
     let eigenvalue = eigenvalue * a * b;
-    let mut scales = vec![1.0; n];
-    scale(&mut balanced, n, 0, n, &mut scales);
+    let scales = balancing_scales(&balanced, n);
+    for (entry, value) in balanced.iter_mut().enumerate() {
+        *value *= scales[entry / n] / scales[entry % n];
+    }
     let norm = balanced.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut shifted: Vec<Complex64> = balanced.iter().map(|x| Complex64::from(*x)).collect();
     (0..n).for_each(|i| shifted[i + n * i] -= eigenvalue);
@@ -85,6 +89,28 @@ pub fn right_eigenvector(
     normalize(&mut vector);
     fix_phase(&mut vector);
     Ok(Eigenvector { vector, residual })
+}
+
+/// Scales that balance the matrix. Influences on each other whose product is rounding are none: they would make components of
+/// very different size, and the error of the largest would swamp the smallest.
+fn balancing_scales(matrix: &[f64], n: usize) -> Vec<f64> {
+    let mut coupling = matrix.to_vec();
+    loop {
+        let mut balanced = coupling.clone();
+        let mut scales = vec![1.0; n];
+        scale(&mut balanced, n, 0, n, &mut scales);
+        let largest = balanced.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+        let mut changed = false;
+        for (entry, value) in balanced.iter().enumerate() {
+            if coupling[entry] != 0.0 && entry / n != entry % n && value.abs() < NO_INFLUENCE * largest {
+                coupling[entry] = 0.0;
+                changed = true;
+            }
+        }
+        if !changed {
+            return scales;
+        }
+    }
 }
 
 /// The vector `p` with `p^H A = lambda p^H`, that is `A^T p = conj(lambda) p`, normalised as the right one.
@@ -175,4 +201,23 @@ pub(super) fn fix_phase(vector: &mut [Complex64]) -> Complex64 {
     vector.iter_mut().for_each(|x| *x *= turn);
     vector[at].im = 0.0;
     turn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn couplings_at_rounding_do_not_spoil_the_vector() {
+        // Predator and prey with a third state that is almost extinct; its growth rate is zero.
+        for coupling in [0.0, 1e-300, -1.8e-40, 1e-25] {
+            let matrix = [-0.3, 2.0 / 3.0, 0.0, -4.0 / 3.0, 0.4, coupling, 0.0, -0.5, 0.0];
+            let vector = right_eigenvector(&matrix, 3, Complex64::ZERO).expect("finite").vector;
+            for row in 0..2 {
+                let image: Complex64 = (0..3).map(|column| matrix[row + 3 * column] * vector[column]).sum();
+                assert!(image.norm() < 1e-14, "{coupling}: {vector:?}");
+            }
+            assert!(vector[2].re.abs() > 0.1, "{coupling}: {vector:?}");
+        }
+    }
 }

@@ -60,7 +60,10 @@ pub struct EquilibriumLocus<'a> {
 impl<'a> EquilibriumLocus<'a> {
     /// A curve of special equilibria of `field`.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        let field = ErasedField::of(field);
+        Self::of_erased(ErasedField::of(field))
+    }
+
+    pub(super) fn of_erased(field: ErasedField<'a>) -> Self {
         Self { field, start: None, along: [None, None], at: Vec::new(), settings: equilibrium_settings() }
     }
 

@@ -2,14 +2,18 @@
 
 use super::model::ChosenModel;
 use crate::document::NamedNumbers;
+use crate::failure::Failure;
+use crate::journal::interruption;
 use crate::labels;
-use crate::numbers::readable;
+use crate::numbers::{readable, significant};
 use crate::range::Range;
 use arclength::Error;
 use arclength::continuation::{Settings, Stop};
 use clap::Args;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A model with its text, so that a result can be continued where the model's file is not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,10 +98,28 @@ impl End {
                 "the most steps allowed were taken".to_owned(),
                 Some("allow more with --steps, or start again from this end"),
             ),
-            Stop::HopfPoint { parameter, frequency } => (
+            Stop::HopfPoint { parameter, frequency, located: false } => (
+                format!(
+                    "the cycles shrink to a Hopf point near {key} = {} with an angular frequency of about {}; it was not located",
+                    significant(*parameter, 3),
+                    significant(*frequency, 3)
+                ),
+                Some("shorter steps (--finer 10)"),
+            ),
+            Stop::HopfPoint { parameter, frequency, .. } => (
                 format!(
                     "the cycles shrink to a Hopf point at {key} = {} with angular frequency {}",
                     readable(*parameter),
+                    readable(*frequency)
+                ),
+                None,
+            ),
+            Stop::GeneralizedHopfPoint { values: [first, second], frequency } => (
+                format!(
+                    "the cycles shrink to a generalised Hopf point at {key} = {}, {} = {} with angular frequency {}",
+                    readable(*first),
+                    keys.get(1).copied().unwrap_or_default(),
+                    readable(*second),
                     readable(*frequency)
                 ),
                 None,
@@ -161,6 +183,29 @@ pub fn label_ends<P>(points: &mut [P], label: impl Fn(&mut P) -> &mut Option<Str
         if let Some(point) = points.get_mut(index) {
             label(point).get_or_insert_with(|| labels::end(number));
         }
+    }
+}
+
+/// Ends a branch at the step that it is at once Ctrl-C was pressed.
+#[derive(Clone, Copy, Debug)]
+pub struct Interruption(&'static AtomicBool);
+
+impl Interruption {
+    /// # Errors
+    /// [`Failure::Signals`]
+    pub fn watch() -> Result<Self, Failure> {
+        interruption().map(Self)
+    }
+
+    /// Whether to go on.
+    pub fn flow(self) -> ControlFlow<()> {
+        if self.0.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    /// # Errors
+    /// [`Failure::BranchInterrupted`] if the branch was ended; its result has been delivered.
+    pub fn report(self) -> Result<(), Failure> {
+        if self.flow().is_break() { Err(Failure::BranchInterrupted) } else { Ok(()) }
     }
 }
 

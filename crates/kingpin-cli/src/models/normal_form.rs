@@ -90,6 +90,8 @@ pub fn of_cycle(label: Option<&str>, coefficients: &NamedNumbers) -> String {
         .map(|(name, value)| {
             let name = match name.as_str() {
                 "quadratic_coefficient" => "b",
+                "quadratic_coefficient_of_unit_function" => "b (null function of unit size)",
+                "cubic_coefficient_imaginary" => "Im d",
                 "cubic_coefficient" if label.is_some_and(|label| kind(label) == "NS") => "Re d",
                 "cubic_coefficient" => "c",
                 "argument" => "argument of the multipliers",

@@ -106,8 +106,9 @@ impl CycleLocusBranch {
 
 impl CycleLocusPoint {
     fn new(solution: Solution<Inspection>, degree: usize, label: Option<Label>) -> Self {
-        let Inspection { error_estimate, floquet, ranges, mesh, tests, coefficient, argument, special } =
-            solution.point;
+        let Inspection {
+            error_estimate, floquet, ranges, mesh, tests, coefficient, argument, special, ..
+        } = solution.point;
         let n = ranges.len();
         let nodes = (mesh.len() - 1) * (degree + 1);
         let length = solution.unknown.len();

@@ -47,6 +47,8 @@ pub(super) struct Inspection {
     pub tests: Vec<(SpecialKind, f64)>,
     /// Coefficient of the normal form.
     pub coefficient: Option<f64>,
+    /// What that coefficient counts against.
+    pub natural_coefficient: f64,
     /// Argument of the multipliers of a torus bifurcation.
     pub argument: Option<f64>,
     /// A point of codimension two, with error estimates of the two parameters.
@@ -130,15 +132,19 @@ impl<'a> CycleLocusCurve<'a> {
         all
     }
 
-    /// Coefficient of the normal form; the base has just been factorised.
-    fn coefficient(&self, cycle: &[f64], eigenfunctions: &Eigenfunctions) -> Option<f64> {
+    /// Coefficient of the normal form, and what it counts against; the base has just been factorised.
+    fn coefficient(&self, cycle: &[f64], eigenfunctions: &Eigenfunctions) -> (Option<f64>, f64) {
         let critical = CriticalCycle::of(&self.base, &cycle[..cycle.len() - 1]);
-        match self.kind() {
+        let coefficient = match self.kind() {
             Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
             Kind::Doubling => critical.doubling(eigenfunctions),
             Kind::Torus => critical.torus(eigenfunctions).map(|[real, _]| real),
             Kind::BranchPoint => None,
-        }
+        };
+        let scales = &self.system.collocation.problem.scales;
+        let sizes: Vec<f64> =
+            self.sizes.natural().zip(scales).map(|(natural, scale)| natural.max(*scale)).collect();
+        (coefficient, critical.natural_coefficient(self.kind(), eigenfunctions, &sizes))
     }
 
     /// The point at which a test function vanishes between two solutions.
@@ -224,7 +230,7 @@ impl Curve for CycleLocusCurve<'_> {
         let mut residual = vec![0.0; base.len()];
         self.base.factorize(base, &border, &mut residual);
         let floquet = floquet(&self.base, base, &self.base.problem.scales, &mut self.schur)?;
-        let coefficient = self.coefficient(&cycle, &eigenfunctions);
+        let (coefficient, natural_coefficient) = self.coefficient(&cycle, &eigenfunctions);
         let angle = eigenfunctions.1.first().copied().unwrap_or(0.0);
         let multipliers: Vec<Complex64> =
             floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
@@ -234,6 +240,7 @@ impl Curve for CycleLocusCurve<'_> {
             mesh: self.base.mesh().to_vec(),
             tests: monitor::tests(kind, &multipliers, coefficient, angle),
             coefficient,
+            natural_coefficient,
             argument: (kind == Kind::Torus).then_some(angle),
             special: None,
             floquet,
@@ -247,7 +254,12 @@ impl Curve for CycleLocusCurve<'_> {
     ) -> Result<Vec<Solution<Inspection>>, Error> {
         let mut found = Vec::new();
         for (kind, value) in before.point.tests.clone() {
-            if test_value(after, kind).is_none_or(|other| (value > 0.0) == (other > 0.0)) {
+            let Some(other) = test_value(after, kind).filter(|other| (value > 0.0) != (*other > 0.0)) else {
+                continue;
+            };
+            // A coefficient that is zero all along, by symmetry for instance, changes its sign at random.
+            let noise = self.resolution.tolerance * after.point.natural_coefficient;
+            if monitor::is_coefficient(kind) && value.abs().max(other.abs()) < noise {
                 continue;
             }
             let Some((mut solution, error)) = self.zero(before, after, kind)? else {
@@ -291,7 +303,7 @@ impl Curve for CycleLocusCurve<'_> {
         });
         if let Some(parameter) = self.sizes.amplitude_passes_zero((&here, a), (&there, b)) {
             let frequency = 2.0 * PI / period;
-            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency }));
+            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
         }
         let angle = |solution: &Solution<Inspection>| solution.point.argument;
         let (from, to) = (angle(before)?, angle(after)?);

@@ -6,6 +6,7 @@
 
 mod branch;
 mod curve;
+mod ends;
 mod monitor;
 mod run;
 

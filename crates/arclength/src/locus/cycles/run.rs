@@ -1,6 +1,6 @@
 //! Asking for a curve of special cycles.
 
-use super::branch::{CycleLocusBranch, CycleLocusPoint};
+use super::branch::CycleLocusBranch;
 use super::curve::{CycleLocusCurve, Inspection};
 use crate::branch::SpecialKind;
 use crate::continuation::{Followed, Request, Settings, Solution, Stop, correct, finish, follow};
@@ -18,13 +18,7 @@ use crate::error::Error;
 use crate::field::VectorField;
 use crate::locus::LocusObserver;
 use crate::locus::request::{Range, TwoParameters, invalid, point_forward};
-use std::f64::consts::PI;
 use std::ops::{ControlFlow, RangeInclusive};
-
-/// Steps either way in which the resonance at the end of a curve of torus bifurcations has to show.
-const RESONANCE_STEPS: usize = 20;
-/// Distance from the last point, in parts of the ranges and of the period, beyond which a resonance is another one.
-const NEAR_RESONANCE: f64 = 0.2;
 
 /// A curve of folds, period doublings or torus bifurcations of cycles, followed both ways from one of them while two
 /// parameters vary over ranges.
@@ -69,12 +63,12 @@ const NEAR_RESONANCE: f64 = 0.2;
 /// ```
 #[derive(Debug, Clone)]
 pub struct CycleLocus<'a> {
-    field: ErasedField<'a>,
-    start: Option<(SpecialKind, Orbit, Vec<f64>)>,
-    along: [Option<Range>; 2],
-    at: Vec<f64>,
-    resolution: Resolution,
-    settings: Settings,
+    pub(super) field: ErasedField<'a>,
+    pub(super) start: Option<(SpecialKind, Orbit, Vec<f64>)>,
+    pub(super) along: [Option<Range>; 2],
+    pub(super) at: Vec<f64>,
+    pub(super) resolution: Resolution,
+    pub(super) settings: Settings,
 }
 
 impl<'a> CycleLocus<'a> {
@@ -185,56 +179,8 @@ impl<'a> CycleLocus<'a> {
             follow(&mut curve, unknown, backward, &request, &mut observe)?
         };
         let mut branch = CycleLocusBranch::assemble(*special, active, degree, [backward, forward]);
-        let ends =
-            [(&branch.backward_stop, branch.points.first()), (&branch.forward_stop, branch.points.last())];
-        let [first, last] = ends.map(|(stop, point)| match stop {
-            Stop::StrongResonance { order } => self.resonance(*order, point?, parameters, active, ranges),
-            _ => None,
-        });
-        branch.extend(first, last);
+        self.solve_for_ends(&mut branch, parameters, ranges);
         Ok(branch)
-    }
-
-    /// The strong resonance in which a curve of torus bifurcations ends behind its point `last`. The curve of folds (1:1) or of
-    /// period doublings (1:2) that ends there too passes it regularly, so it is located on that one.
-    fn resonance(
-        &self,
-        order: u8,
-        last: &CycleLocusPoint,
-        parameters: &[f64],
-        active: [usize; 2],
-        ranges: [f64; 2],
-    ) -> Option<CycleLocusPoint> {
-        let (kind, sought, argument) = if order == 1 {
-            (SpecialKind::FoldOfCycles, SpecialKind::Resonance1, 0.0)
-        } else {
-            (SpecialKind::PeriodDoubling, SpecialKind::Resonance2, PI)
-        };
-        let mut parameters = parameters.to_vec();
-        active.iter().zip(last.values).for_each(|(&index, value)| parameters[index] = value);
-        let curve = CycleLocus {
-            field: self.field,
-            start: Some((kind, last.orbit.clone(), parameters)),
-            along: self.along.clone(),
-            at: Vec::new(),
-            resolution: self.resolution,
-            settings: Settings { most_steps: RESONANCE_STEPS, ..self.settings },
-        };
-        let found = curve.run().ok()?;
-        let distance = |point: &CycleLocusPoint| {
-            (0..2)
-                .map(|index| ((point.values[index] - last.values[index]) / ranges[index]).powi(2))
-                .sum::<f64>()
-                .sqrt()
-        };
-        let nearest = found
-            .points
-            .into_iter()
-            .filter(|point| point.label.is_some_and(|label| label.kind == sought))
-            .min_by(|one, other| distance(one).total_cmp(&distance(other)))?;
-        let near =
-            distance(&nearest) < NEAR_RESONANCE && (nearest.period / last.period).ln().abs() < NEAR_RESONANCE;
-        near.then_some(CycleLocusPoint { argument: Some(argument), coefficient: None, ..nearest })
     }
 
     /// The curve and an approximate first solution.

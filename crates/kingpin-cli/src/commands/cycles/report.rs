@@ -113,7 +113,7 @@ fn ending(along: &Along, stop: &Stop) -> String {
     let at = |value: f64| description::quantity(along.key(), as_followed(along, value));
     match stop {
         Stop::RangeEnd { value, .. } => format!("reached the end of the interval, {}", at(*value)),
-        Stop::HopfPoint { parameter, frequency } => format!(
+        Stop::HopfPoint { parameter, frequency, .. } => format!(
             "the cycles shrink to a Hopf point at {} with angular frequency {} rad/s",
             at(*parameter),
             readable(*frequency)

@@ -4,7 +4,7 @@ mod report;
 
 pub use report::{CycleReport, CyclesReport, UnlocatedReport};
 
-use super::branch::{Origin, StepOptions};
+use super::branch::{Interruption, Origin, StepOptions};
 use super::model::ParameterOptions;
 use super::start::{LabelledPoint, What, read};
 use crate::failure::Failure;
@@ -19,7 +19,6 @@ use arclength::continuation::Settings;
 use arclength::cycle::{CycleStart, Orbit, Resolution, Role};
 use arclength::equilibrium::SpecialPoint;
 use clap::Args;
-use std::ops::ControlFlow;
 
 /// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
 ///
@@ -90,6 +89,7 @@ impl Cycles {
         let at = chosen.values(active, &self.along, &self.at)?;
         let (start, origin) = self.start(&point, &chosen.parameters, &output)?;
         let name = &chosen.model.parameters()[active];
+        let interruption = Interruption::watch()?;
         let progress = Progress::spinner("cycles", output.is_quiet());
         let mut branch = arclength::cycle::Cycles::of(&chosen.model, start)
             .parameters(&chosen.parameters)
@@ -97,14 +97,13 @@ impl Cycles {
             .at(&at)
             .settings(self.steps.apply(Settings::default()))
             .resolution(Resolution {
-                tolerance: self.mesh.tolerance,
                 most_intervals: self.mesh.intervals as usize,
-                ..Resolution::default()
+                ..Resolution::with_tolerance(self.mesh.tolerance)
             })
             .observer(|value, period| {
                 let (value, period) = (readable(value), readable(period));
                 progress.message(format!("cycles, {name} = {value}, period {period}"));
-                ControlFlow::Continue(())
+                interruption.flow()
             })
             .run()?;
         drop(progress);
@@ -116,10 +115,9 @@ impl Cycles {
         }
         let mut report = CyclesReport::new(&chosen, active, &self.along, origin, branch);
         report.explain = self.explain;
-        for change in &report.unlocated {
-            output.warn(&change.text(name));
-        }
-        output.deliver(&report)
+        report.warn(name, &output);
+        output.deliver(&report)?;
+        interruption.report()
     }
 
     /// What the branch starts from.

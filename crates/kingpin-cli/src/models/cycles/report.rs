@@ -11,6 +11,7 @@ use crate::models::normal_form;
 use crate::models::picture::{self, Curve};
 use crate::models::story::{self, Part, Place};
 use crate::numbers::readable;
+use crate::output::Output;
 use crate::range::Range;
 use crate::report::Report;
 use crate::table::{Cell, Table};
@@ -19,6 +20,8 @@ use kingpin_figure::{Figure, FigureError, palette};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
+/// Changes that were not located that are warned of one by one.
+const MOST_WARNINGS: usize = 5;
 /// Digits of parameter and period at labelled points.
 const DIGITS: usize = 11;
 
@@ -147,6 +150,19 @@ impl CyclesReport {
             unlocated: branch.unlocated.iter().map(unlocated).collect(),
             points,
             explain: false,
+        }
+    }
+
+    /// Says what was detected but not located, each change once.
+    pub fn warn(&self, key: &str, output: &Output) {
+        let mut texts: Vec<String> = self.unlocated.iter().map(|change| change.text(key)).collect();
+        texts.dedup();
+        texts.iter().take(MOST_WARNINGS).for_each(|text| output.warn(text));
+        let left = texts.len().saturating_sub(MOST_WARNINGS);
+        if left > 0 {
+            output.warn(&format!(
+                "and {left} more such changes, all named under `unlocated` in a .json result"
+            ));
         }
     }
 

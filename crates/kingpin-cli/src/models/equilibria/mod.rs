@@ -4,7 +4,7 @@ mod report;
 
 pub use report::{EquilibriaReport, EquilibriumReport};
 
-use super::branch::{Origin, StepOptions};
+use super::branch::{Interruption, Origin, StepOptions};
 use super::model::ModelOptions;
 use super::start::{LabelledPoint, What};
 use crate::failure::Failure;
@@ -14,7 +14,6 @@ use crate::progress::Progress;
 use crate::range::{Range, Values};
 use arclength::equilibrium::{BranchPoint, SpecialPoint, equilibrium_settings};
 use clap::Args;
-use std::ops::ControlFlow;
 
 /// Equilibria along a parameter, with folds, branch points and Hopf points
 ///
@@ -63,6 +62,7 @@ impl Equilibria {
             None => (None, Origin::initial_state()),
         };
         let name = &chosen.model.parameters()[active];
+        let interruption = Interruption::watch()?;
         let progress = Progress::spinner("equilibria", output.is_quiet());
         let equilibria = arclength::equilibrium::Equilibria::of(&chosen.model)
             .start(&chosen.start)
@@ -79,12 +79,13 @@ impl Equilibria {
             .settings(self.steps.apply(equilibrium_settings()))
             .observed(&mut |value, _| {
                 progress.message(format!("equilibria, {name} = {}", readable(value)));
-                ControlFlow::Continue(())
+                interruption.flow()
             })?;
         drop(progress);
         let mut report = EquilibriaReport::new(&chosen, &self.along, origin, &branch);
         report.explain = self.explain;
-        output.deliver(&report)
+        output.deliver(&report)?;
+        interruption.report()
     }
 
     /// What to do at a labelled point: the other branch at a branch point, else the branch through it.

@@ -6,7 +6,7 @@ mod report;
 pub use cycles::{CycleLocusPointReport, CycleLocusReport};
 pub use report::{LocusPointReport, LocusReport};
 
-use super::branch::{Origin, StepOptions};
+use super::branch::{Interruption, Origin, StepOptions};
 use super::model::ChosenModel;
 use super::start::{What, read};
 use crate::failure::Failure;
@@ -119,18 +119,20 @@ impl Locus {
         };
         let [first, second] = request.ranges;
         let names = request.names();
+        let interruption = Interruption::watch()?;
         let progress = Progress::spinner("curve", output.is_quiet());
         let branch = curve
             .along(&names[0], first.start..=first.end)
             .and(&names[1], second.start..=second.end)
             .at(&request.at)
             .settings(self.steps.apply(equilibrium_settings()))
-            .observed(&mut |values, _| request.tell(&progress, values))?;
+            .observed(&mut |values, _| request.tell(&progress, interruption, values))?;
         drop(progress);
         let origin = Origin::labelled(label, what);
         let mut report = LocusReport::new(request.chosen, request.ranges, origin, &branch);
         report.explain = self.explain;
-        output.deliver(&report)
+        output.deliver(&report)?;
+        interruption.report()
     }
 
     fn of_cycles(
@@ -148,6 +150,7 @@ impl Locus {
         };
         let [first, second] = request.ranges;
         let names = request.names();
+        let interruption = Interruption::watch()?;
         let progress = Progress::spinner("curve", output.is_quiet());
         let branch = CycleLocus::of(&request.chosen.model)
             .from_cycle(special, orbit, &request.chosen.parameters)
@@ -155,12 +158,13 @@ impl Locus {
             .and(&names[1], second.start..=second.end)
             .at(&request.at)
             .settings(self.steps.apply(Settings::default()))
-            .observed(&mut |values, _| request.tell(&progress, values))?;
+            .observed(&mut |values, _| request.tell(&progress, interruption, values))?;
         drop(progress);
         let origin = Origin::labelled(label, what);
         let mut report = CycleLocusReport::new(request.chosen, request.ranges, origin, branch);
         report.explain = self.explain;
-        output.deliver(&report)
+        output.deliver(&report)?;
+        interruption.report()
     }
 }
 
@@ -180,10 +184,10 @@ impl Request<'_> {
         })
     }
 
-    fn tell(&self, progress: &Progress, values: [f64; 2]) -> ControlFlow<()> {
+    fn tell(&self, progress: &Progress, interruption: Interruption, values: [f64; 2]) -> ControlFlow<()> {
         let [one, two] = values.map(readable);
         let [first, second] = self.ranges.map(|range| range.key.as_str());
         progress.message(format!("curve, {first} = {one}, {second} = {two}"));
-        ControlFlow::Continue(())
+        interruption.flow()
     }
 }

@@ -1,0 +1,160 @@
+//! The points in which curves of special cycles end: curves of torus bifurcations in strong resonances, curves of folds in
+//! generalised Hopf points. The continuation cannot reach them; other curves on which they are regular points pass them.
+
+use super::branch::{CycleLocusBranch, CycleLocusPoint};
+use super::run::CycleLocus;
+use crate::branch::{Label, SpecialKind};
+use crate::continuation::{Settings, Stop};
+use crate::cycle::Orbit;
+use crate::equilibrium::locating::hopf_point_near;
+use crate::locus::EquilibriumLocus;
+use num_complex::Complex64;
+use std::f64::consts::{PI, TAU};
+
+/// Steps either way in which the end has to show on the other curve.
+const STEPS: usize = 20;
+/// Distance from the last point, in parts of the ranges and of the period, beyond which it is the end of something else.
+const NEAR: f64 = 0.2;
+/// Part of the largest amplitudes on the curve below which cycles may be about to vanish.
+const VANISHING: f64 = 0.3;
+
+impl CycleLocus<'_> {
+    /// Adds the ends of the curve that other curves lead to. `parameters` are those of the start.
+    pub(super) fn solve_for_ends(&self, branch: &mut CycleLocusBranch, parameters: &[f64], ranges: [f64; 2]) {
+        let mut largest: Vec<f64> = Vec::new();
+        for point in &branch.points {
+            largest.resize(point.max.len(), 0.0);
+            largest
+                .iter_mut()
+                .zip(amplitudes(point))
+                .for_each(|(largest, size)| *largest = largest.max(size));
+        }
+        let solve = |stop: &mut Stop, last: Option<&CycleLocusPoint>| -> Option<CycleLocusPoint> {
+            let last = last?;
+            let mut parameters = parameters.to_vec();
+            branch.active.iter().zip(last.values).for_each(|(&index, value)| parameters[index] = value);
+            match stop {
+                Stop::StrongResonance { order } => self.resonance(*order, last, parameters, ranges),
+                Stop::StepTooSmall { .. } | Stop::HopfPoint { .. }
+                    if branch.kind == SpecialKind::FoldOfCycles =>
+                {
+                    let vanishing =
+                        amplitudes(last).zip(&largest).all(|(size, largest)| size <= VANISHING * largest);
+                    let found = vanishing
+                        .then(|| self.generalized_hopf(last, &parameters, branch.active, ranges))
+                        .flatten()?;
+                    *stop =
+                        Stop::GeneralizedHopfPoint { values: found.values, frequency: TAU / found.period };
+                    Some(found)
+                }
+                _ => None,
+            }
+        };
+        let first = solve(&mut branch.backward_stop, branch.points.first());
+        let last = solve(&mut branch.forward_stop, branch.points.last());
+        branch.extend(first, last);
+    }
+
+    /// The strong resonance in which a curve of torus bifurcations ends behind its point `last`. The curve of folds (1:1) or of
+    /// period doublings (1:2) that ends there too passes it regularly, so it is located on that one.
+    fn resonance(
+        &self,
+        order: u8,
+        last: &CycleLocusPoint,
+        parameters: Vec<f64>,
+        ranges: [f64; 2],
+    ) -> Option<CycleLocusPoint> {
+        let (kind, sought, argument) = if order == 1 {
+            (SpecialKind::FoldOfCycles, SpecialKind::Resonance1, 0.0)
+        } else {
+            (SpecialKind::PeriodDoubling, SpecialKind::Resonance2, PI)
+        };
+        let curve = CycleLocus {
+            field: self.field,
+            start: Some((kind, last.orbit.clone(), parameters)),
+            along: self.along.clone(),
+            at: Vec::new(),
+            resolution: self.resolution,
+            settings: Settings { most_steps: STEPS, ..self.settings },
+        };
+        let found = curve.run().ok()?;
+        let distance = |point: &CycleLocusPoint| distance(point.values, last.values, ranges);
+        let nearest = found
+            .points
+            .into_iter()
+            .filter(|point| point.label.is_some_and(|label| label.kind == sought))
+            .min_by(|one, other| distance(one).total_cmp(&distance(other)))?;
+        let near = distance(&nearest) < NEAR && (nearest.period / last.period).ln().abs() < NEAR;
+        near.then_some(CycleLocusPoint { argument: Some(argument), coefficient: None, ..nearest })
+    }
+
+    /// The generalised Hopf point in which a curve of folds ends behind its point `last`, located on the curve of Hopf points.
+    fn generalized_hopf(
+        &self,
+        last: &CycleLocusPoint,
+        parameters: &[f64],
+        active: [usize; 2],
+        ranges: [f64; 2],
+    ) -> Option<CycleLocusPoint> {
+        let mean: Vec<f64> = last.max.iter().zip(&last.min).map(|(max, min)| 0.5 * (max + min)).collect();
+        let frequency = TAU / last.period;
+        let mut near = active
+            .iter()
+            .filter_map(|&index| hopf_point_near(self.field, &mean, parameters, index, frequency));
+        let hopf = near.next()?;
+        let [Some(first), Some(second)] = &self.along else { return None };
+        let curve = EquilibriumLocus::of_erased(self.field)
+            .from_hopf(&hopf)
+            .along(&first.0, first.1.clone())
+            .and(&second.0, second.1.clone())
+            .run()
+            .ok()?;
+        let distance = |values: [f64; 2]| distance(values, last.values, ranges);
+        let found = curve
+            .special_points()
+            .filter(|point| point.kind == SpecialKind::GeneralizedHopf && point.regular)
+            .min_by(|one, other| distance(one.values).total_cmp(&distance(other.values)))?;
+        let critical = found
+            .eigenvalues
+            .iter()
+            .filter(|value| value.im > 0.0)
+            .min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
+        let period = TAU / critical.im;
+        if distance(found.values) > NEAR || (period / last.period).ln().abs() > NEAR {
+            return None;
+        }
+        let mut multipliers: Vec<Complex64> =
+            found.eigenvalues.iter().map(|value| (value * period).exp()).collect();
+        multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
+        let nearest = multipliers.iter().map(|multiplier| (multiplier - 1.0).norm());
+        Some(CycleLocusPoint {
+            values: found.values,
+            period,
+            max: found.state.clone(),
+            min: found.state.clone(),
+            trivial_multiplier_error: nearest.fold(f64::INFINITY, f64::min),
+            multipliers,
+            error_estimate: 0.0,
+            argument: None,
+            coefficient: None,
+            label: Some(Label { kind: SpecialKind::GeneralizedHopf, number: 1 }),
+            location_error: Some(found.location_error),
+            tests: Vec::new(),
+            orbit: Orbit {
+                states: found.state.iter().copied().cycle().take(last.orbit.states.len()).collect(),
+                period,
+                ..last.orbit.clone()
+            },
+        })
+    }
+}
+
+fn amplitudes(point: &CycleLocusPoint) -> impl Iterator<Item = f64> + '_ {
+    point.max.iter().zip(&point.min).map(|(max, min)| 0.5 * (max - min))
+}
+
+/// Distance in parts of the ranges.
+fn distance(one: [f64; 2], other: [f64; 2], ranges: [f64; 2]) -> f64 {
+    let [first, second] = [0, 1].map(|index| (one[index] - other[index]) / ranges[index]);
+    first.hypot(second)
+}
