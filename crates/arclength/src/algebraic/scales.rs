@@ -14,8 +14,9 @@ const COUPLED_SHARE: f64 = 1e-2;
 const NONLINEAR_SHARE: f64 = 1e-3;
 /// and their sizes are this part of it.
 const AT_ZERO: f64 = 0.1;
-/// An influence of one state on another below this part of the fastest rate of their group is that of rounding.
-const NO_INFLUENCE: f64 = 1e-10;
+/// A balanced influence of one state on another below this part of the fastest rate of their group is that of rounding (of which
+/// balancing leaves the square root) or next to none.
+const NO_INFLUENCE: f64 = 1e-6;
 /// Sweeps of balancing.
 const SWEEPS: usize = 30;
 
@@ -252,7 +253,7 @@ mod tests {
     #[test]
     fn rounding_next_to_an_invariant_subspace_does_not_count() {
         let exact = natural_scales(&Invariant, &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
-        for predator in [1e-36, -1e-25] {
+        for predator in [1e-36, -1e-25, 1e-17, -1e-15] {
             let scales = natural_scales(&Invariant, &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
             for (scale, reference) in scales.iter().zip(&exact) {
                 assert!((scale / reference - 1.0).abs() < 1e-6, "{scales:?} {exact:?}");

@@ -50,10 +50,10 @@ pub(super) fn between(
     let sign = before.orientation;
     let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
     let wanted = [
+        (branch_point, Kind::BranchPoint),
         (fold, Kind::Fold),
         (doubling, Kind::Doubling),
         (torus, Kind::Torus),
-        (branch_point, Kind::BranchPoint),
     ];
     let length = along(curve, before, &after.unknown);
     for (_, kind) in wanted.into_iter().filter(|(detected, _)| *detected) {
@@ -71,6 +71,15 @@ pub(super) fn between(
             });
             let converged = match start {
                 Ok(Some(start)) => converge(curve, &direction, &start, kind)?,
+                // Next to a branch point the equations of the branch are singular, but its ends are good starts.
+                Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
+                    let ends = [before, after].into_iter();
+                    let distance = |end: &Solution<CycleInspection>| {
+                        branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs)
+                    };
+                    let nearest = ends.min_by(|one, other| distance(one).total_cmp(&distance(other)));
+                    nearest.map(|start| converge(curve, &direction, start, kind)).transpose()?.flatten()
+                }
                 Ok(None) | Err(Error::NotFound { .. }) => None,
                 Err(error) => return Err(error),
             };
@@ -85,6 +94,8 @@ pub(super) fn between(
         }
         match located {
             Some(located) => found.push(describe(curve, located, kind)?),
+            // On the branch that turns at a pitchfork the parameter turns too, but that is no fold.
+            None if kind == Kind::Fold && at_branch_point(&found) => {}
             None => curve.unlocated.push(Unlocated {
                 test: name(kind),
                 between: [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]),
@@ -92,6 +103,10 @@ pub(super) fn between(
         }
     }
     Ok(found)
+}
+
+fn at_branch_point(found: &[Solution<CycleInspection>]) -> bool {
+    found.iter().any(|solution| solution.point.special == Some(Special::BranchPoint))
 }
 
 fn name(kind: Kind) -> &'static str {
