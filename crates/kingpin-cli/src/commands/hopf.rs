@@ -81,7 +81,7 @@ pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Failure> {
         }
     }
     let straight = wheel.get(Key::TurningRadius).is_infinite() && along.key() != Key::TurningRadius;
-    if straight && wheel.get(Key::CU) == 0.0 {
+    if straight && wheel.get(Key::CU) == 0.0 && !wheel.has_lateral_elasticity_only() {
         message += "; on a straight path without c_u the longitudinal motion is undamped, which hides Hopf points: \
                     set a small c_u, or follow cycles from a circle with `kingpin cycles --along r=A:inf`";
         return Err(Failure::NothingFound(message));

@@ -30,7 +30,7 @@ pub struct Simulate {
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: f64,
 
-    /// Change a state (u, q, psi, V, Omega) at the start; repeatable
+    /// Change a state (u, q, psi, V, Omega; with k_u = inf q, psi, Omega) at the start; repeatable
     #[arg(long, value_name = "KEY=DELTA", allow_hyphen_values = true)]
     perturb: Vec<Assignment>,
 
