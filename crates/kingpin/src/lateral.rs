@@ -11,7 +11,7 @@
 //! ```
 //!
 //! with `F_y = -k_q q - c_q q'`. `V'` contains `Omega'`; the equation is solved for the latter. At `psi = pi/2` the
-//! constraints leave `V` free and the field is not defined.
+//! constraints leave `V` free and the field is not defined: motions that pass through lose digits there.
 
 use crate::active::ActiveParameters;
 use crate::contact::ContactForce;

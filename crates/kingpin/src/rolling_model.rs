@@ -12,6 +12,10 @@ use crate::wheel::Wheel;
 use arclength::cycle::CyclePoint;
 use arclength::{Dual, Scalar, VectorField};
 
+/// Where the caster of a wheel with lateral elasticity only comes nearer than this to `psi = pi/2`, the errors of the other
+/// states, divided by it, are too large for a `V` that follows from them.
+const SMALLEST_COSINE: f64 = 0.01;
+
 /// A rolling wheel, some of its parameters active, as a vector field over the states that it has.
 #[derive(Clone, Debug)]
 pub enum RollingModel {
@@ -83,11 +87,17 @@ impl RollingModel {
     }
 
     /// Gives the extrema of a cycle of this vector field in the states `(u, q, psi, V, Omega)`. Those of a `V` that follows
-    /// from the other states are its extrema along their interpolating polynomials.
+    /// from the other states are its extrema along their interpolating polynomials; where the cycle comes near
+    /// `psi = pi/2` these do not determine it, and it is not a number.
     pub(crate) fn complete_extrema(&self, cycle: &mut CyclePoint, parameters: &[f64]) {
         let Self::Lateral(lateral) = self else { return };
         let parameters: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
-        let [slowest, fastest] = cycle.orbit.range_of(|state| lateral.forward_speed_at(state, &parameters));
+        let [lowest, highest] = cycle.orbit.range_of(|state| state[1].cos());
+        let [slowest, fastest] = if lowest < SMALLEST_COSINE && highest > -SMALLEST_COSINE {
+            [f64::NAN; 2]
+        } else {
+            cycle.orbit.range_of(|state| lateral.forward_speed_at(state, &parameters))
+        };
         for (extremum, forward_speed) in [(&mut cycle.min, slowest), (&mut cycle.max, fastest)] {
             *extremum = vec![0.0, extremum[0], extremum[1], forward_speed, extremum[2]];
         }

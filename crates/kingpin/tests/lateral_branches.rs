@@ -18,12 +18,16 @@ fn short_caster(damping: f64) -> Wheel {
     wheel(&[(Key::L, 0.04), (Key::TurningRadius, f64::INFINITY), (Key::CQ, damping)])
 }
 
+fn on_a_circle() -> Wheel {
+    short_caster(0.05).with(Key::TurningRadius, 1.0).unwrap()
+}
+
 fn along(key: Key, start: f64, end: f64) -> Along {
     Along::new(key, start, end).unwrap()
 }
 
 fn cycles(wheel: &Wheel, along: Along, at: &[f64]) -> WheelCycles {
-    let hopf = wheel.hopf_points(along).unwrap().points.remove(0);
+    let hopf = wheel.hopf_points(along).unwrap().points.pop().unwrap();
     let options = CycleOptions { at: at.to_vec(), ..CycleOptions::default() };
     hopf.cycles(along, &options, |_, _| Continue(())).unwrap()
 }
@@ -43,8 +47,8 @@ fn hopf_points_of_the_short_caster() {
     let interval = along(Key::V, 0.1, 20.0);
     let search = short_caster(0.05).hopf_points(interval).unwrap();
     let [slow, fast] = &search.points[..] else { panic!("{} Hopf points", search.points.len()) };
-    close(slow.value, 0.788_629_146_247_029_7, 1e-11);
-    close(fast.value, 4.338_830_220_750_628, 1e-11);
+    close(slow.value, 0.788_629_146_247_029_7, 1e-10);
+    close(fast.value, 4.338_830_220_750_628, 1e-10);
     for hopf in [slow, fast] {
         let straight = [0.0, 0.0, 0.0, hopf.value, 0.0];
         assert!(hopf.state.iter().zip(straight).all(|(found, expected)| (found - expected).abs() < 1e-12));
@@ -96,18 +100,28 @@ fn the_isola() {
     }
 }
 
+/// The largest of samples over a period, refined by the parabola through it and its neighbours.
+fn peak(samples: &[f64]) -> f64 {
+    let last = samples.len() - 1;
+    let place = (0..last).max_by(|&a, &b| samples[a].total_cmp(&samples[b])).unwrap();
+    let [before, here, after] = [(place + last - 1) % last, place, place + 1].map(|index| samples[index]);
+    let curvature = before - 2.0 * here + after;
+    if curvature == 0.0 { here } else { here - (after - before).powi(2) / (8.0 * curvature) }
+}
+
 /// The motion from a point of a cycle is back after a period, and its largest and smallest values are those reported, `V`
 /// among them, of which the cycle holds no samples.
 #[test]
 fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
     for (start, interval, at) in [
-        (short_caster(0.05), along(Key::V, 0.1, 20.0), [2.0, 10.0]),
-        (wheel(&[]), along(Key::V, 2.0, 12.0), [4.0, 6.0]),
-        (wheel(&[(Key::V, 6.0)]), along(Key::TurningRadius, 0.5, 1.5), [1.0, 1.2]),
+        (short_caster(0.05), along(Key::V, 0.1, 20.0), [6.0, 10.0]),
+        (on_a_circle(), along(Key::V, 1.0, 11.0), [4.0, 10.0]),
+        (on_a_circle().with(Key::V, 4.0).unwrap(), along(Key::TurningRadius, 0.5, 20.0), [1.0, 3.0]),
+        (on_a_circle().with(Key::V, 4.0).unwrap(), along(Key::L, 0.03, 0.05), [0.04, 0.0375]),
     ] {
         let branch = cycles(&start, interval, &at);
         let found = requested(&branch);
-        assert!(found.len() >= 2, "{found:?}");
+        assert!(found.len() >= 2, "{} at {interval:?}", found.len());
         for cycle in found {
             let wheel = branch.wheel.with(interval.key(), cycle.value).unwrap();
             let model = wheel.rolling_model(&[]).unwrap();
@@ -115,10 +129,10 @@ fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
             let history = wheel.simulate_from(&initial, cycle.period, 20_001).unwrap();
             let allowed = f64::max(10.0 * cycle.error_estimate, 1e-8);
             for index in 0..5 {
-                let values = || history.states.iter().map(|state| state[index]);
-                let size = values().map(f64::abs).fold(1e-3, f64::max);
-                let largest = values().fold(f64::NEG_INFINITY, f64::max);
-                let smallest = values().fold(f64::INFINITY, f64::min);
+                let values: Vec<f64> = history.states.iter().map(|state| state[index]).collect();
+                let size = values.iter().fold(1e-3, |size: f64, value| size.max(value.abs()));
+                let mirrored: Vec<f64> = values.iter().map(|value| -value).collect();
+                let (largest, smallest) = (peak(&values), -peak(&mirrored));
                 let found = [history.states[20_000][index], cycle.max[index], cycle.min[index]];
                 for (found, expected) in found.into_iter().zip([initial[index], largest, smallest]) {
                     assert!((found - expected).abs() < allowed * size, "{index}: {found} {expected} {size}");
@@ -150,14 +164,15 @@ fn growth_rates_are_the_limit_of_a_stiff_longitudinal_spring() {
 /// Cycles on a circle tend to those of the five-state model as `1/k_u`.
 #[test]
 fn cycles_are_the_limit_of_a_stiff_longitudinal_spring() {
-    let (interval, damped) = (along(Key::V, 2.0, 12.0), wheel(&[(Key::CU, 20.0)]));
+    let interval = along(Key::V, 1.0, 7.0);
+    let damped = on_a_circle().with(Key::CU, 20.0).unwrap();
     let values = |wheel: Wheel| {
-        let branch = cycles(&wheel, interval, &[6.0]);
+        let branch = cycles(&wheel, interval, &[4.0]);
         let cycle = requested(&branch)[0];
         [cycle.period, cycle.max[1], cycle.max[2], cycle.min[2], cycle.max[3], cycle.min[3], cycle.max[4]]
     };
     let limit = values(damped);
-    let differences = [1e4, 1e5].map(|k_u| {
+    let differences = [1e5, 1e6].map(|k_u| {
         let stiff = values(damped.with(Key::KU, k_u).unwrap());
         let pairs = stiff.into_iter().zip(limit);
         pairs.map(|(one, other)| (one / other - 1.0).abs()).fold(0.0, f64::max)
@@ -168,7 +183,7 @@ fn cycles_are_the_limit_of_a_stiff_longitudinal_spring() {
 
 #[test]
 fn boundaries_and_critical_speeds_are_zeros_of_the_growth_rate() {
-    for damped in [short_caster(0.05), wheel(&[(Key::CQ, 0.03), (Key::KPsi, 0.05)])] {
+    for damped in [short_caster(0.05), on_a_circle(), on_a_circle().with(Key::KPsi, 0.001).unwrap()] {
         let critical = damped.critical_speed().unwrap();
         assert!(
             damped.with(Key::V, critical.speed).unwrap().uniform_motion().unwrap().growth_rate().abs() < 1e-9
@@ -196,6 +211,10 @@ fn states_that_follow_from_others_cannot_be_chosen() {
     assert!(matches!(wheel.simulate(1.0, &[("phi", 0.1)], 11), Err(SimulationError::UnknownState { .. })));
     let start = wheel.perturbed_uniform_motion(&[("psi", 0.1)]).unwrap();
     assert!(wheel.simulate_from(&start, 1.0, 11).is_ok());
+    let across = std::f64::consts::FRAC_PI_2 - start[2];
+    assert!(wheel.perturbed_uniform_motion(&[("psi", 0.1 + across)]).is_ok_and(|state| {
+        wheel.simulate_from(&state, 1.0, 11).unwrap_err().to_string().contains("not pi/2")
+    }));
     for index in [0, 3] {
         let mut other = start;
         other[index] += 0.01;
@@ -218,4 +237,16 @@ fn what_needs_a_longitudinal_elasticity_says_so() {
     assert!(matches!(Along::new(Key::KU, 50.0, f64::INFINITY), Err(KingpinError::InfiniteEnd { .. })));
     let damping = wheel.hopf_points(along(Key::CU, 0.0, 1.0));
     assert!(matches!(damping, Err(KingpinError::NoLongitudinalMotion { key: Key::CU })));
+}
+
+/// On a circle the branch goes on to cycles across `psi = -pi/2`, where the states do not determine `V`.
+#[test]
+fn no_forward_speed_is_claimed_where_the_states_do_not_determine_it() {
+    let branch = cycles(&on_a_circle(), along(Key::V, 1.0, 16.0), &[]);
+    let across = |cycle: &CyclePoint| cycle.min[2] < 0.01 - std::f64::consts::FRAC_PI_2;
+    assert!(branch.points.iter().any(across));
+    for cycle in &branch.points {
+        assert_eq!(cycle.max[3].is_nan(), across(cycle), "{} {}", cycle.value, cycle.min[2]);
+        assert_eq!(cycle.min[3].is_nan(), across(cycle));
+    }
 }

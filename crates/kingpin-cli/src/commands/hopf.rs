@@ -104,9 +104,10 @@ pub fn label(index: usize) -> String {
     format!("HB{}", index + 1)
 }
 
-/// A state of the wheel, by name.
+/// A state of the wheel, by name, without what is not a number.
 pub fn named_state(state: &[f64]) -> NamedNumbers {
-    NamedNumbers(STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied()).collect())
+    let numbers = STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied());
+    NamedNumbers(numbers.filter(|(_, value)| !value.is_nan()).collect())
 }
 
 /// A Hopf point in a result.

@@ -61,6 +61,13 @@ impl Simulate {
                 readable(time)
             ));
         }
+        let turned_across = |states: &[[f64; 5]]| (states[0][2].cos() < 0.0) != (states[1][2].cos() < 0.0);
+        if wheel.has_lateral_elasticity_only() && history.states.windows(2).any(turned_across) {
+            output.warn(
+                "the caster passes psi = pi/2, where V does not follow from q, psi and Omega: digits are lost there, \
+                 compare with a large finite k_u",
+            );
+        }
         output.deliver(&HistoryReport::new(wheel, &history))
     }
 }

@@ -88,7 +88,7 @@ impl Wheel {
     ///
     /// # Errors
     /// A perturbation, duration or number of samples that is not allowed, no uniform motion, or a motion that
-    /// grows without bound before the end (with lateral elasticity only also one that reaches `psi = pi/2`).
+    /// grows without bound before the end.
     ///
     /// ```
     /// use kingpin::Wheel;
@@ -156,7 +156,7 @@ impl Wheel {
         })
     }
 
-    /// That states which follow from others were given as they follow.
+    /// That states which follow from others do so, and were given as they follow.
     fn check_constraints(&self, given: &[f64; 5], following: &[f64; 5]) -> Result<(), SimulationError> {
         let scale = [self.get(Key::L), 1.0, 1.0, self.get(Key::V).abs() + following[3].abs(), 1.0];
         for (((name, given), following), scale) in STATE_NAMES.iter().zip(given).zip(following).zip(scale) {
@@ -165,6 +165,10 @@ impl Wheel {
                     "with lateral elasticity only, k_u = inf, u = 0 and V follows from q, psi and Omega";
                 return Err(SimulationError::out_of_range(name, *given, allowed));
             }
+        }
+        if self.has_lateral_elasticity_only() && given[2].cos().abs() < CONSTRAINT_TOLERANCE {
+            let allowed = "with lateral elasticity only, k_u = inf, not pi/2, where V does not follow from q, psi and Omega";
+            return Err(SimulationError::out_of_range("psi", given[2], allowed));
         }
         Ok(())
     }
