@@ -4,7 +4,6 @@
 //! the determinant of the Jacobian (divergence: a real eigenvalue crosses) at which the other conditions for stability
 //! hold. The rolling limit is the zero set of `F_f - mu_s N`.
 
-use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::plane::Plane;
 use crate::tracing::{Traced, trace_zero_set};
@@ -27,38 +26,27 @@ impl Wheel {
     /// use kingpin::{Axis, Key, Plane, Wheel};
     /// let plane = Plane::new(Axis::new(Key::V, 0.0..=10.0)?, Axis::new(Key::L, 0.02..=0.2)?)?;
     /// let wheel = Wheel::default();
-    /// for [v, l] in &wheel.stability_boundary(&plane)?[0].points {
+    /// for [v, l] in &wheel.stability_boundary(&plane)[0].points {
     ///     let critical = wheel.with(Key::L, *l)?.critical_yaw_rate().unwrap();
     ///     assert!((v * v - critical * critical).abs() < 1e-9);
     /// }
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
-    ///
-    /// # Errors
-    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
-    pub fn stability_boundary(&self, plane: &Plane) -> Result<Vec<Curve>, KingpinError> {
-        let mut boundary = self.zero_set(plane, Wheel::flutter_margin)?;
-        boundary.extend(self.zero_set(plane, Wheel::divergence_margin)?);
-        Ok(boundary)
+    pub fn stability_boundary(&self, plane: &Plane) -> Vec<Curve> {
+        let mut boundary = self.zero_set(plane, Wheel::flutter_margin);
+        boundary.extend(self.zero_set(plane, Wheel::divergence_margin));
+        boundary
     }
 
     /// The curves in the plane on which the ground can just hold the wheel in its uniform motion, `F_f = mu_s N`.
-    ///
-    /// # Errors
-    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
-    pub fn rolling_limit(&self, plane: &Plane) -> Result<Vec<Curve>, KingpinError> {
+    pub fn rolling_limit(&self, plane: &Plane) -> Vec<Curve> {
         self.zero_set(plane, |wheel| {
-            let force = wheel.rolling_contact_force(&wheel.uniform_state().ok()?);
+            let force = wheel.contact_force(&wheel.uniform_state().ok()?);
             Some(force.friction() - force.limit)
         })
     }
 
-    fn zero_set(
-        &self,
-        plane: &Plane,
-        function: impl Fn(&Wheel) -> Option<f64>,
-    ) -> Result<Vec<Curve>, KingpinError> {
-        plane.check(self)?;
+    fn zero_set(&self, plane: &Plane, function: impl Fn(&Wheel) -> Option<f64>) -> Vec<Curve> {
         let parameters = |[x, y]: [f64; 2]| [plane.x().at(x), plane.y().at(y)];
         let keys: [Key; 2] = [plane.x().key(), plane.y().key()];
         let curves = trace_zero_set(|point| {
@@ -69,6 +57,6 @@ impl Wheel {
             points: points.into_iter().map(parameters).collect(),
             closed,
         };
-        Ok(curves.into_iter().map(in_units).collect())
+        curves.into_iter().map(in_units).collect()
     }
 }

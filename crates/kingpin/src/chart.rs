@@ -65,15 +65,14 @@ impl Wheel {
     /// ```
     ///
     /// # Errors
-    /// [`GridSize`](KingpinError::GridSize), [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly) and
-    /// [`Cancelled`](KingpinError::Cancelled).
+    /// [`GridSize`](KingpinError::GridSize) and [`Cancelled`](KingpinError::Cancelled).
     pub fn growth_rate_chart(
         &self,
         plane: &Plane,
         points: [usize; 2],
         observer: &Observer,
     ) -> Result<GrowthRateChart, KingpinError> {
-        let (x, y) = axes(self, plane, points)?;
+        let (x, y) = axes(plane, points)?;
         let mut growth_rate = vec![None; x.len() * y.len()];
         let mut stable = vec![false; x.len() * y.len()];
         let mut rolls = vec![false; x.len() * y.len()];
@@ -108,7 +107,7 @@ impl Wheel {
         points: [usize; 2],
         observer: &Observer,
     ) -> Result<StabilityChart, KingpinError> {
-        let (x, y) = axes(self, plane, points)?;
+        let (x, y) = axes(plane, points)?;
         let keys = [plane.x().key(), plane.y().key()];
         let both = [Key::KU, Key::KQ].map(|key| keys.iter().any(|active| active.sets().contains(&key)));
         let stays_plain = [Key::KPsi, Key::CU, Key::CQ, Key::CPsi].iter().all(|key| !keys.contains(key))
@@ -140,12 +139,7 @@ impl Wheel {
     }
 }
 
-fn axes(
-    wheel: &Wheel,
-    plane: &Plane,
-    [columns, rows]: [usize; 2],
-) -> Result<(Vec<f64>, Vec<f64>), KingpinError> {
-    plane.check(wheel)?;
+fn axes(plane: &Plane, [columns, rows]: [usize; 2]) -> Result<(Vec<f64>, Vec<f64>), KingpinError> {
     let few_enough = columns.checked_mul(rows).is_some_and(|points| points <= MOST_POINTS);
     if columns < 2 || rows < 2 || !few_enough {
         return Err(KingpinError::GridSize { columns, rows, most: MOST_POINTS });

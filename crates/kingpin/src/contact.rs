@@ -9,7 +9,6 @@
 //!
 //! where `F2` includes the dampers at the king pin. The wheel rolls while `|T| < mu_s N`.
 
-use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::rolling::right_hand_side;
 use crate::wheel::Wheel;
@@ -40,19 +39,13 @@ impl ContactForce {
 }
 
 impl Wheel {
-    /// The force of the ground on the rolling wheel at a state `(u, q, psi, V, Omega)`.
-    ///
-    /// # Errors
-    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly) where `k_u = inf`.
-    pub fn contact_force(&self, state: &[f64; 5]) -> Result<ContactForce, KingpinError> {
-        if self.get(Key::KU).is_infinite() {
-            return Err(KingpinError::LateralElasticityOnly);
+    /// The force of the ground on the rolling wheel at a state `(u, q, psi, V, Omega)`; where `k_u = inf`, `u` and `V` do not
+    /// count, for they follow from the others.
+    pub fn contact_force(&self, state: &[f64; 5]) -> ContactForce {
+        if self.has_lateral_elasticity_only() {
+            let [_, q, psi, _, yaw_rate] = *state;
+            return self.lateral_contact_force(&[q, psi, yaw_rate]);
         }
-        Ok(self.rolling_contact_force(state))
-    }
-
-    /// The same, for a wheel whose `k_u` is known to be finite.
-    pub(crate) fn rolling_contact_force(&self, state: &[f64; 5]) -> ContactForce {
         let body = self.body();
         let mut derivative = [0.0; 5];
         let towing = (self.get(Key::V), self.towing_yaw_rate());

@@ -155,15 +155,33 @@ pub enum KingpinError {
         lateral: f64,
     },
     /// The five-state model needs longitudinal elasticity.
-    #[error("k_u = inf: this needs a finite k_u; with lateral elasticity only the model has three states")]
+    #[error(
+        "k_u = inf: this needs a finite k_u; with lateral elasticity only there are uniform motions, their stability, \
+         charts, Hopf points, cycles and simulations of ideal rolling"
+    )]
     LateralElasticityOnly,
     /// The three-state model has no longitudinal elasticity.
-    #[error(
-        "k_u = {longitudinal} N/m: the model with lateral elasticity only needs k_u = inf, and none of k, k_u, c_u varies"
-    )]
+    #[error("k_u = {longitudinal} N/m: the model with lateral elasticity only needs k_u = inf")]
     LongitudinalElasticity {
         /// `k_u` in N/m.
         longitudinal: f64,
+    },
+    /// In the three-state model nothing moves along the towing direction.
+    #[error(
+        "`{key}` cannot vary while k_u = inf: with lateral elasticity only the king pin does not move along the towing \
+         direction; vary another key or set a finite k_u"
+    )]
+    NoLongitudinalMotion {
+        /// The key.
+        key: Key,
+    },
+    /// An interval that reaches a limit in which the model has fewer states.
+    #[error(
+        "{key} = inf cannot be an end of the interval: the wheel has fewer states there; allowed: a finite end"
+    )]
+    InfiniteEnd {
+        /// The parameter.
+        key: Key,
     },
     /// A branch could not be followed.
     #[error(transparent)]

@@ -11,18 +11,15 @@
 //! ```
 //!
 //! with `F_y = -k_q q - c_q q'`. `V'` contains `Omega'`; the equation is solved for the latter. At `psi = pi/2` the
-//! constraints leave `V` free and the field is not defined.
+//! constraints leave `V` free and the field is not defined: motions that pass through lose digits there.
 
 use crate::active::ActiveParameters;
-use crate::characteristic::roots;
 use crate::contact::ContactForce;
 use crate::error::{KingpinError, NoUniformMotion};
-use crate::hurwitz::is_stable_cubic;
 use crate::parameters::Key;
 use crate::rolling::Body;
 use crate::wheel::Wheel;
 use arclength::{Dual, Scalar, VectorField};
-use num_complex::Complex64;
 use std::ops::Mul;
 
 /// Names of the states: lateral displacement of the king pin in m, caster angle in rad, absolute yaw rate of the caster
@@ -85,13 +82,6 @@ pub struct LateralWheel {
     active: ActiveParameters,
 }
 
-/// The uniform motion of a wheel with lateral elasticity only.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LateralUniformMotion {
-    wheel: Wheel,
-    state: [f64; 3],
-}
-
 impl Wheel {
     /// The wheel with lateral elasticity only, as a vector field in which the given keys are the parameters.
     ///
@@ -99,44 +89,27 @@ impl Wheel {
     /// use kingpin::{Key, Wheel};
     /// let wheel = Wheel::from_toml("k_u = inf\nc_q = 0.05\nr = inf\nl = 0.04")?;
     /// assert_eq!(wheel.lateral(&[Key::V])?.parameters(), [4.0]);
-    /// assert!(!wheel.lateral_uniform_motion()?.is_stable());
+    /// assert!(!wheel.uniform_motion()?.is_stable());
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     ///
     /// # Errors
-    /// [`LongitudinalElasticity`](KingpinError::LongitudinalElasticity) unless `k_u = inf`, and those of
-    /// [`rolling`](Self::rolling) for keys that cannot vary.
+    /// [`LongitudinalElasticity`](KingpinError::LongitudinalElasticity) unless `k_u = inf`,
+    /// [`NoLongitudinalMotion`](KingpinError::NoLongitudinalMotion) for `k`, `k_u` and `c_u`, and those of
+    /// [`rolling`](Self::rolling) for other keys that cannot vary.
     pub fn lateral(&self, active: &[Key]) -> Result<LateralWheel, KingpinError> {
-        self.check_lateral()?;
-        if [Key::K, Key::KU, Key::CU].iter().any(|key| active.contains(key)) {
+        if !self.has_lateral_elasticity_only() {
             return Err(KingpinError::LongitudinalElasticity { longitudinal: self.get(Key::KU) });
+        }
+        if let Some(&key) = active.iter().find(|key| [Key::K, Key::KU, Key::CU].contains(key)) {
+            return Err(KingpinError::NoLongitudinalMotion { key });
         }
         Ok(LateralWheel { active: ActiveParameters::new(self, active)? })
     }
 
-    /// The uniform motion of the wheel with lateral elasticity only.
-    ///
-    /// # Errors
-    /// [`LongitudinalElasticity`](KingpinError::LongitudinalElasticity) unless `k_u = inf`;
-    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails.
-    pub fn lateral_uniform_motion(&self) -> Result<LateralUniformMotion, KingpinError> {
-        self.check_lateral()?;
-        let state = self.lateral_uniform_state().map_err(|reason| self.no_uniform_motion(reason))?;
-        Ok(LateralUniformMotion { wheel: *self, state })
-    }
-
-    fn check_lateral(&self) -> Result<(), KingpinError> {
-        let longitudinal = self.get(Key::KU);
-        if longitudinal.is_infinite() {
-            Ok(())
-        } else {
-            Err(KingpinError::LongitudinalElasticity { longitudinal })
-        }
-    }
-
-    /// Without a spring about the king pin the closed form. With it one equation is left,
-    /// `sin psi (1 - k_psi psi cos psi/(k l r)) = (l - a0)/r`.
-    fn lateral_uniform_state(&self) -> Result<[f64; 3], NoUniformMotion> {
+    /// The state `(q, psi, Omega)` of the uniform motion. Without a spring about the king pin the closed form. With it one
+    /// equation is left, `sin psi (1 - k_psi psi cos psi/(k l r)) = (l - a0)/r`.
+    fn lateral_uniform_free_state(&self) -> Result<[f64; 3], NoUniformMotion> {
         let body = self.body();
         let [_, q, angle, _, omega] = self.isotropic_uniform_state(&body)?;
         if body.rotational_stiffness == 0.0 || omega == 0.0 {
@@ -160,6 +133,58 @@ impl Wheel {
         }
         Err(NoUniformMotion::NotFound { residual: equation(Dual::constant(psi)).value.abs() })
     }
+
+    /// The states `(u, q, psi, V, Omega)` of the uniform motion.
+    pub(crate) fn lateral_uniform_state(&self) -> Result<[f64; 5], NoUniformMotion> {
+        let state = self.lateral_uniform_free_state()?;
+        let (kinematics, _) = self.lateral_motion(&state);
+        let [q, psi, yaw_rate] = state;
+        Ok([0.0, q, psi, kinematics.forward_speed, yaw_rate])
+    }
+
+    /// What follows from the constraints at a state `(q, psi, Omega)`, and the vector field.
+    fn lateral_motion(&self, state: &[f64; 3]) -> (Kinematics<f64>, [f64; 3]) {
+        let mut derivative = [0.0; 3];
+        let towing = (self.get(Key::V), self.towing_yaw_rate());
+        let kinematics = right_hand_side(&self.body(), towing, state, &mut derivative);
+        (kinematics, derivative)
+    }
+
+    /// The vector field at a state `(q, psi, Omega)`, and its Jacobian.
+    pub(crate) fn lateral_linearisation(&self, state: &[f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+        type Gradient = Dual<f64, 3>;
+        let state: [Gradient; 3] = std::array::from_fn(|index| Gradient::variable(state[index], index));
+        let towing = [self.get(Key::V), self.towing_yaw_rate()].map(Gradient::constant);
+        let mut derivative = [Gradient::constant(0.0); 3];
+        right_hand_side(&self.body(), towing.into(), &state, &mut derivative);
+        (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
+    }
+
+    /// The force of the ground on the wheel at a state `(q, psi, Omega)`. The longitudinal force on the king pin, which
+    /// holds it at `u = 0`, is on the way: `M V' - m Omega^2 = F1`.
+    pub(crate) fn lateral_contact_force(&self, state: &[f64; 3]) -> ContactForce {
+        let body = self.body();
+        let (Kinematics { forward_speed, forward_acceleration }, [q_rate, _, yaw_acceleration]) =
+            self.lateral_motion(state);
+        let [q, psi, yaw_rate] = *state;
+        let force_y = -body.lateral_stiffness * q - body.lateral_damping * q_rate;
+        let force_along = body.rolling_mass * forward_acceleration - body.static_moment * yaw_rate * yaw_rate;
+        let force_x = (force_along + force_y * psi.sin()) / psi.cos();
+        let force_across = force_x * psi.sin() + force_y * psi.cos();
+        self.ground_force(
+            forward_acceleration,
+            forward_speed * yaw_rate,
+            body.static_moment * yaw_acceleration - force_across,
+        )
+    }
+}
+
+/// The coefficients of the characteristic polynomial `s^3 + c1 s^2 + c2 s + c3` of a matrix.
+pub(crate) fn characteristic_cubic(a: &[[f64; 3]; 3]) -> [f64; 3] {
+    let minor = |i: usize, j: usize| a[i][i] * a[j][j] - a[i][j] * a[j][i];
+    let cofactor = |i: usize, j: usize| a[1][i] * a[2][j] - a[1][j] * a[2][i];
+    let determinant = a[0][0] * cofactor(1, 2) - a[0][1] * cofactor(0, 2) + a[0][2] * cofactor(0, 1);
+    [-(a[0][0] + a[1][1] + a[2][2]), minor(0, 1) + minor(0, 2) + minor(1, 2), -determinant]
 }
 
 impl LateralWheel {
@@ -188,31 +213,26 @@ impl LateralWheel {
 
     /// Forward speed `V` of the wheel in m/s at a state `(q, psi, Omega)`.
     pub fn forward_speed(&self, state: &[f64; 3]) -> f64 {
-        let wheel = self.wheel();
-        let towing = (wheel.get(Key::V), wheel.towing_yaw_rate());
-        right_hand_side(&wheel.body(), towing, state, &mut [0.0; 3]).forward_speed
+        self.wheel().lateral_motion(state).0.forward_speed
     }
 
-    /// The force of the ground on the wheel at a state `(q, psi, Omega)`. The longitudinal force on the king pin, which
-    /// holds it at `u = 0`, is on the way: `M V' - m Omega^2 = F1`.
+    /// The same at other values of the active keys.
+    pub(crate) fn forward_speed_at<T: Scalar>(&self, state: &[T], parameters: &[T]) -> T {
+        self.motion(state, parameters, &mut [T::from(0.0); 3]).forward_speed
+    }
+
+    /// The force of the ground on the wheel at a state `(q, psi, Omega)`.
     pub fn contact_force(&self, state: &[f64; 3]) -> ContactForce {
-        let wheel = self.wheel();
-        let body = wheel.body();
-        let mut derivative = [0.0; 3];
-        let towing = (wheel.get(Key::V), wheel.towing_yaw_rate());
-        let Kinematics { forward_speed, forward_acceleration } =
-            right_hand_side(&body, towing, state, &mut derivative);
-        let [q, psi, yaw_rate] = *state;
-        let [q_rate, _, yaw_acceleration] = derivative;
-        let force_y = -body.lateral_stiffness * q - body.lateral_damping * q_rate;
-        let force_along = body.rolling_mass * forward_acceleration - body.static_moment * yaw_rate * yaw_rate;
-        let force_x = (force_along + force_y * psi.sin()) / psi.cos();
-        let force_across = force_x * psi.sin() + force_y * psi.cos();
-        wheel.ground_force(
-            forward_acceleration,
-            forward_speed * yaw_rate,
-            body.static_moment * yaw_acceleration - force_across,
-        )
+        self.wheel().lateral_contact_force(state)
+    }
+
+    #[inline]
+    fn motion<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) -> Kinematics<T> {
+        let towing = self.active.towing(parameters);
+        match self.active.fixed_body() {
+            Some(body) => right_hand_side(body, towing, state, derivative),
+            None => right_hand_side(&self.active.body(parameters), towing, state, derivative),
+        }
     }
 }
 
@@ -231,64 +251,6 @@ impl VectorField for LateralWheel {
 
     #[inline]
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        let towing = self.active.towing(parameters);
-        match self.active.fixed_body() {
-            Some(body) => right_hand_side(body, towing, state, derivative),
-            None => right_hand_side(&self.active.body(parameters), towing, state, derivative),
-        };
-    }
-}
-
-impl LateralUniformMotion {
-    /// The wheel that moves.
-    pub fn wheel(&self) -> &Wheel {
-        &self.wheel
-    }
-
-    /// The state `(q, psi, Omega)`.
-    pub fn state(&self) -> [f64; 3] {
-        self.state
-    }
-
-    /// Largest component of the vector field at the state; zero but for rounding.
-    pub fn residual(&self) -> f64 {
-        self.linearisation().map(|component| component.value.abs()).into_iter().fold(0.0, f64::max)
-    }
-
-    /// The Jacobian of the vector field, row by row.
-    pub fn jacobian(&self) -> [[f64; 3]; 3] {
-        self.linearisation().map(|component| component.derivatives)
-    }
-
-    fn linearisation(&self) -> [Dual<f64, 3>; 3] {
-        let state: [Dual<f64, 3>; 3] = std::array::from_fn(|index| Dual::variable(self.state[index], index));
-        let towing = [self.wheel.get(Key::V), self.wheel.towing_yaw_rate()].map(Dual::constant);
-        let mut derivative = [Dual::constant(0.0); 3];
-        right_hand_side(&self.wheel.body(), towing.into(), &state, &mut derivative);
-        derivative
-    }
-
-    /// The coefficients of the characteristic polynomial `s^3 + c1 s^2 + c2 s + c3`.
-    pub fn characteristic_polynomial(&self) -> [f64; 3] {
-        let a = self.jacobian();
-        let minor = |i: usize, j: usize| a[i][i] * a[j][j] - a[i][j] * a[j][i];
-        let cofactor = |i: usize, j: usize| a[1][i] * a[2][j] - a[1][j] * a[2][i];
-        let determinant = a[0][0] * cofactor(1, 2) - a[0][1] * cofactor(0, 2) + a[0][2] * cofactor(0, 1);
-        [-(a[0][0] + a[1][1] + a[2][2]), minor(0, 1) + minor(0, 2) + minor(1, 2), -determinant]
-    }
-
-    /// The eigenvalues in 1/s, largest real part first.
-    pub fn eigenvalues(&self) -> [Complex64; 3] {
-        roots(&self.characteristic_polynomial())
-    }
-
-    /// The largest real part of the eigenvalues, in 1/s.
-    pub fn growth_rate(&self) -> f64 {
-        self.eigenvalues()[0].re
-    }
-
-    /// Whether the uniform motion is linearly stable, by the Routh-Hurwitz conditions.
-    pub fn is_stable(&self) -> bool {
-        is_stable_cubic(&self.characteristic_polynomial())
+        self.motion(state, parameters, derivative);
     }
 }

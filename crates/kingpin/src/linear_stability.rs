@@ -8,9 +8,13 @@
 //! of wheel and king pin, and a cubic, of the lateral motion. Without longitudinal damping the former is neutral, at
 //! every wheel and speed, and turning however slightly damps it or not; growth rate and stability are then those of the
 //! lateral motion, on which shimmy depends. The eigenvalues show both.
+//!
+//! With lateral elasticity only, `k_u = inf`, there are three eigenvalues; in rectilinear towing they are those of the same
+//! cubic.
 
 use crate::characteristic::{characteristic_polynomial, largest_real_part_first, roots};
 use crate::hurwitz::{self, determinants, hopf_condition, plain_characteristic_polynomial};
+use crate::lateral::characteristic_cubic;
 use crate::parameters::Key;
 use crate::rolling::Body;
 use crate::uniform_motion::{UniformMotion, jacobian};
@@ -41,14 +45,27 @@ enum Characteristic {
     Circle([f64; 5]),
     /// In rectilinear towing: two factors.
     Straight { longitudinal: [f64; 2], lateral: [f64; 3] },
+    /// With lateral elasticity only, on a circle or straight.
+    Lateral([f64; 3]),
 }
 
 impl Characteristic {
     #[inline]
     fn at(wheel: &Wheel, state: &[f64; 5]) -> Self {
-        let (omega, forward_speed) = (wheel.towing_yaw_rate(), state[3]);
+        let [_, q, psi, forward_speed, yaw_rate] = *state;
+        let omega = wheel.towing_yaw_rate();
+        if wheel.has_lateral_elasticity_only() {
+            return Self::Lateral(if omega == 0.0 {
+                lateral_cubic(&wheel.body(), forward_speed)
+            } else {
+                characteristic_cubic(&wheel.lateral_linearisation(&[q, psi, yaw_rate]).1)
+            });
+        }
         if omega == 0.0 {
-            return Self::straight(&wheel.body(), forward_speed);
+            let body = wheel.body();
+            let longitudinal = [body.longitudinal_damping, body.longitudinal_stiffness]
+                .map(|coefficient| coefficient * body.inverse_rolling_mass);
+            return Self::Straight { longitudinal, lateral: lateral_cubic(&body, forward_speed) };
         }
         if !wheel.is_plain() {
             return Self::Circle(characteristic_polynomial(&jacobian(wheel, state).1));
@@ -57,37 +74,23 @@ impl Characteristic {
         Self::Circle([forward_speed * c1, c2, forward_speed * c3, c4, forward_speed * c5])
     }
 
-    fn straight(body: &Body<f64>, v: f64) -> Self {
-        let (l, inverse_inertia) = (body.caster_length, body.inverse_yaw_inertia);
-        let damping = body.static_moment * v + body.rotational_damping + body.lateral_damping * l * l;
-        let stiffness =
-            body.rotational_stiffness + l * body.lateral_damping * v + l * l * body.lateral_stiffness;
-        Self::Straight {
-            longitudinal: [body.longitudinal_damping, body.longitudinal_stiffness]
-                .map(|coefficient| coefficient * body.inverse_rolling_mass),
-            lateral: [damping, stiffness, l * body.lateral_stiffness * v]
-                .map(|coefficient| coefficient * inverse_inertia),
-        }
-    }
-
-    fn coefficients(&self) -> [f64; 5] {
+    fn coefficients(&self) -> Vec<f64> {
         match *self {
-            Self::Circle(coefficients) => coefficients,
-            Self::Straight { longitudinal: [a1, a2], lateral: [b1, b2, b3] } => {
-                [a1 + b1, a2 + a1 * b1 + b2, a2 * b1 + a1 * b2 + b3, a2 * b2 + a1 * b3, a2 * b3]
-            }
+            Self::Circle(coefficients) => coefficients.into(),
+            Self::Straight { longitudinal, lateral } => product(longitudinal, lateral).into(),
+            Self::Lateral(cubic) => cubic.into(),
         }
     }
 
-    fn eigenvalues(&self) -> [Complex64; 5] {
+    fn eigenvalues(&self) -> Vec<Complex64> {
         match self {
-            Self::Circle(coefficients) => roots(coefficients),
+            Self::Circle(coefficients) => roots(coefficients).into(),
             Self::Straight { longitudinal, lateral } => {
-                let ([a, b], [c, d, e]) = (roots(longitudinal), roots(lateral));
-                let mut eigenvalues = [a, b, c, d, e];
+                let mut eigenvalues = [&roots(longitudinal)[..], &roots(lateral)].concat();
                 eigenvalues.sort_unstable_by(largest_real_part_first);
                 eigenvalues
             }
+            Self::Lateral(cubic) => roots(cubic).into(),
         }
     }
 
@@ -95,7 +98,9 @@ impl Characteristic {
     fn growth_rate(&self) -> f64 {
         match self {
             Self::Circle(coefficients) => roots(coefficients)[0].re,
-            Self::Straight { longitudinal: [0.0, _], lateral } => roots(lateral)[0].re,
+            Self::Straight { longitudinal: [0.0, _], lateral } | Self::Lateral(lateral) => {
+                roots(lateral)[0].re
+            }
             Self::Straight { .. } => self.eigenvalues()[0].re,
         }
     }
@@ -104,9 +109,23 @@ impl Characteristic {
         match self {
             Self::Circle(coefficients) => hurwitz::is_stable(coefficients),
             // The longitudinal damping is not negative.
-            Self::Straight { lateral, .. } => hurwitz::is_stable_cubic(lateral),
+            Self::Straight { lateral, .. } | Self::Lateral(lateral) => hurwitz::is_stable_cubic(lateral),
         }
     }
+}
+
+/// The characteristic polynomial of the lateral motion in rectilinear towing.
+fn lateral_cubic(body: &Body<f64>, v: f64) -> [f64; 3] {
+    let l = body.caster_length;
+    let damping = body.static_moment * v + body.rotational_damping + body.lateral_damping * l * l;
+    let stiffness = body.rotational_stiffness + l * body.lateral_damping * v + l * l * body.lateral_stiffness;
+    [damping, stiffness, l * body.lateral_stiffness * v]
+        .map(|coefficient| coefficient * body.inverse_yaw_inertia)
+}
+
+/// The product of a quadratic and a cubic.
+fn product([a1, a2]: [f64; 2], [b1, b2, b3]: [f64; 3]) -> [f64; 5] {
+    [a1 + b1, a2 + a1 * b1 + b2, a2 * b1 + a1 * b2 + b3, a2 * b2 + a1 * b3, a2 * b3]
 }
 
 impl UniformMotion {
@@ -114,8 +133,9 @@ impl UniformMotion {
         Characteristic::at(self.wheel(), &self.state())
     }
 
-    /// The coefficients `c1 ... c5` of the characteristic polynomial `s^5 + c1 s^4 + ... + c5`.
-    pub fn characteristic_polynomial(&self) -> [f64; 5] {
+    /// The coefficients `c1 ... cn` of the characteristic polynomial `s^n + c1 s^(n-1) + ... + cn` for the number `n` of
+    /// [free states](Wheel::free_states).
+    pub fn characteristic_polynomial(&self) -> Vec<f64> {
         self.characteristic().coefficients()
     }
 
@@ -126,7 +146,7 @@ impl UniformMotion {
     /// assert!(motion.eigenvalues().iter().all(|eigenvalue| eigenvalue.re < 0.0));
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
-    pub fn eigenvalues(&self) -> [Complex64; 5] {
+    pub fn eigenvalues(&self) -> Vec<Complex64> {
         self.characteristic().eigenvalues()
     }
 
@@ -150,7 +170,7 @@ impl Wheel {
     pub(crate) fn growth_rate_and_rolling(&self) -> Option<(f64, bool)> {
         let state = self.uniform_state().ok()?;
         let growth_rate = Characteristic::at(self, &state).growth_rate();
-        Some((growth_rate, self.rolling_contact_force(&state).rolls()))
+        Some((growth_rate, self.contact_force(&state).rolls()))
     }
 
     /// A smooth function of the parameters, positive where the uniform motion is stable and zero at a Hopf point on the
@@ -176,7 +196,8 @@ impl Wheel {
                 let others = [c1, c3, c5, second].into_iter().all(|condition| condition > 0.0);
                 others.then_some(fourth / (scale * vanishing))
             }
-            Characteristic::Straight { lateral: [c1, c2, c3], .. } => {
+            Characteristic::Straight { lateral: [c1, c2, c3], .. }
+            | Characteristic::Lateral([c1, c2, c3]) => {
                 (c1 > 0.0 && c3 > 0.0).then_some((c1 * c2 - c3) / (c1 * c2 + c3))
             }
         }
@@ -185,7 +206,13 @@ impl Wheel {
     /// As [`flutter_margin`](Self::flutter_margin), but zero where a real eigenvalue is.
     pub(crate) fn divergence_margin(&self) -> Option<f64> {
         let state = self.uniform_state().ok()?;
-        let coefficients = Characteristic::at(self, &state).coefficients();
+        let coefficients = match Characteristic::at(self, &state) {
+            Characteristic::Circle(coefficients) => coefficients,
+            Characteristic::Straight { longitudinal, lateral } => product(longitudinal, lateral),
+            Characteristic::Lateral([c1, c2, c3]) => {
+                return (c1 > 0.0 && c1 * c2 > c3).then_some(c3 / (c1 * c2).abs());
+            }
+        };
         let [c1, _, c3, c4, c5] = coefficients;
         let [second, fourth] = determinants(coefficients);
         let others = [c1, c3, second, fourth].into_iter().all(|condition| condition > 0.0);
@@ -223,9 +250,6 @@ impl Wheel {
     /// A plain wheel on a circle has it in closed form, `r w_crit(l)`. Otherwise the growth rate is sampled at 400
     /// speeds from 1 mm/s to the largest at which the motion exists, and its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
-        if self.get(Key::KU).is_infinite() {
-            return None;
-        }
         let radius = self.get(Key::TurningRadius);
         let growth_rate = |speed: f64| {
             let (growth_rate, _) = self.with(Key::V, speed).ok()?.growth_rate_and_rolling()?;

@@ -2,7 +2,6 @@
 
 use crate::error::KingpinError;
 use crate::parameters::Key;
-use crate::wheel::Wheel;
 use std::ops::RangeInclusive;
 
 /// A parameter with the interval in which it varies.
@@ -17,16 +16,19 @@ impl Axis {
     /// A parameter with its interval; both ends must be finite and allowed.
     ///
     /// # Errors
-    /// [`OutOfRange`](KingpinError::OutOfRange), [`InfiniteRadius`](KingpinError::InfiniteRadius) and
-    /// [`EmptyInterval`](KingpinError::EmptyInterval).
+    /// [`OutOfRange`](KingpinError::OutOfRange), [`InfiniteRadius`](KingpinError::InfiniteRadius),
+    /// [`InfiniteEnd`](KingpinError::InfiniteEnd) and [`EmptyInterval`](KingpinError::EmptyInterval).
     pub fn new(key: Key, interval: RangeInclusive<f64>) -> Result<Self, KingpinError> {
         let (start, end) = interval.into_inner();
         for value in [start, end] {
             if key == Key::TurningRadius && value == f64::INFINITY {
                 return Err(KingpinError::InfiniteRadius);
             }
-            if !key.allowed().contains(value) || value.is_infinite() {
+            if !key.allowed().contains(value) {
                 return Err(KingpinError::OutOfRange { key, value, position: None });
+            }
+            if value.is_infinite() {
+                return Err(KingpinError::InfiniteEnd { key });
             }
         }
         if start < end {
@@ -91,15 +93,5 @@ impl Plane {
     /// The parameter along y.
     pub fn y(&self) -> &Axis {
         &self.y
-    }
-
-    /// That the wheel is one of the five-state model throughout the plane.
-    pub(crate) fn check(&self, wheel: &Wheel) -> Result<(), KingpinError> {
-        let keys = [self.x.key, self.y.key];
-        let varies = |key: Key| keys.iter().any(|active| active.sets().contains(&key));
-        if wheel.get(Key::KU).is_infinite() && !varies(Key::KU) {
-            return Err(KingpinError::LateralElasticityOnly);
-        }
-        Ok(())
     }
 }

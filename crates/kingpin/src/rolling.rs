@@ -146,9 +146,7 @@ impl Wheel {
     /// [`AmbiguousStiffness`](KingpinError::AmbiguousStiffness) and, where `k_u = inf`,
     /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
     pub fn rolling(&self, active: &[Key]) -> Result<RollingWheel, KingpinError> {
-        if self.get(Key::KU).is_infinite() {
-            return Err(KingpinError::LateralElasticityOnly);
-        }
+        self.check_elastic()?;
         let active = ActiveParameters::new(self, active)?;
         Ok(RollingWheel {
             damped: active.matters(Key::CU) || active.matters(Key::CQ),

@@ -12,7 +12,7 @@
 //! The dampers do not enter, for nothing moves. Without `k_psi` the longitudinal displacement `u0` is exactly zero, since
 //! the power of the forces at the king pin, `k_u v u0 - (k_u - k_q) omega u0 q0`, must vanish; then `k_u` does not enter
 //! either and the formulas hold for every `k_u` with `k = k_q`. With both `k_psi` and `k_u != k_q` Newton's method follows
-//! the motion from the isotropic wheel.
+//! the motion from the isotropic wheel. With `k_u = inf` the motion is that of the [`lateral`](crate::lateral) model.
 
 use crate::contact::ContactForce;
 use crate::error::{KingpinError, NoUniformMotion};
@@ -83,15 +83,19 @@ impl UniformMotion {
     }
     /// The force of the ground on the wheel.
     pub fn contact_force(&self) -> ContactForce {
-        self.wheel.rolling_contact_force(&self.state)
+        self.wheel.contact_force(&self.state)
     }
     /// Whether the ground can hold the wheel in this motion.
     pub fn rolls(&self) -> bool {
         self.contact_force().rolls()
     }
-    /// The Jacobian of the vector field, row by row.
-    pub fn jacobian(&self) -> [[f64; 5]; 5] {
-        jacobian(&self.wheel, &self.state).1
+    /// The Jacobian of the vector field over the [free states](Wheel::free_states), row by row.
+    pub fn jacobian(&self) -> Vec<Vec<f64>> {
+        if self.wheel.has_lateral_elasticity_only() {
+            let [_, q, psi, _, yaw_rate] = self.state;
+            return self.wheel.lateral_linearisation(&[q, psi, yaw_rate]).1.map(Vec::from).into();
+        }
+        jacobian(&self.wheel, &self.state).1.map(Vec::from).into()
     }
 }
 
@@ -99,27 +103,27 @@ impl Wheel {
     /// The uniform motion.
     ///
     /// # Errors
-    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails;
-    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly) where `k_u = inf`.
+    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails.
     pub fn uniform_motion(&self) -> Result<UniformMotion, KingpinError> {
-        if self.get(Key::KU).is_infinite() {
-            return Err(KingpinError::LateralElasticityOnly);
-        }
         let state = self.uniform_state().map_err(|reason| self.no_uniform_motion(reason))?;
         Ok(self.motion_at(state))
     }
 
-    /// The uniform motion by Newton's method from a state near it; `None` where the method does not converge.
+    /// The uniform motion by Newton's method from a state near it; `None` where the method does not converge, and where
+    /// `k_u = inf`.
     pub fn uniform_motion_near(&self, start: &[f64; 5]) -> Option<UniformMotion> {
-        self.get(Key::KU)
-            .is_finite()
-            .then(|| newton(self, start).ok())
-            .flatten()
-            .map(|state| self.motion_at(state))
+        self.check_elastic().ok()?;
+        newton(self, start).ok().map(|state| self.motion_at(state))
     }
 
     fn motion_at(&self, state: [f64; 5]) -> UniformMotion {
-        UniformMotion { wheel: *self, state, residual: largest(&derivative(self, &state)) }
+        let residual = if self.has_lateral_elasticity_only() {
+            let [_, q, psi, _, yaw_rate] = state;
+            largest(&self.lateral_linearisation(&[q, psi, yaw_rate]).0)
+        } else {
+            largest(&derivative(self, &state))
+        };
+        UniformMotion { wheel: *self, state, residual }
     }
 
     pub(crate) fn no_uniform_motion(&self, reason: NoUniformMotion) -> KingpinError {
@@ -127,8 +131,11 @@ impl Wheel {
         KingpinError::NoUniformMotion { v, l, r, reason }
     }
 
-    /// The state of the uniform motion.
+    /// The states `(u, q, psi, V, Omega)` of the uniform motion.
     pub(crate) fn uniform_state(&self) -> Result<[f64; 5], NoUniformMotion> {
+        if self.has_lateral_elasticity_only() {
+            return self.lateral_uniform_state();
+        }
         let closed_form = self.isotropic_uniform_state(&self.body())?;
         let target = self.get(Key::KU);
         let lateral = self.get(Key::KQ);
@@ -270,6 +277,6 @@ fn solve(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
     Some(right)
 }
 
-fn largest(values: &[f64; 5]) -> f64 {
+fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |largest, value| largest.max(value.abs()))
 }

@@ -102,14 +102,12 @@ fn bad_axes_and_grids_are_refused() {
     assert!(message(Key::V, -1.0, 2.0).contains("v = -1: out of range; allowed: 0 to 1e4 m/s"));
     assert!(message(Key::V, 0.0, f64::NAN).contains("v = NaN: out of range"));
     assert!(message(Key::TurningRadius, 1.0, f64::INFINITY).contains("`curvature`"));
-    assert!(message(Key::KU, 1.0, f64::INFINITY).contains("out of range"));
+    assert!(message(Key::KU, 1.0, f64::INFINITY).contains("a finite end"));
     let plane = plane(SPEED_AND_LENGTH.0, SPEED_AND_LENGTH.1);
     for points in [[1, 5], [5, 0], [usize::MAX, 2], [100_000, 100_000]] {
         let refused = Wheel::default().growth_rate_chart(&plane, points, &|_| Continue(()));
         assert!(matches!(refused, Err(KingpinError::GridSize { .. })));
     }
-    let lateral = wheel(&[(Key::KU, f64::INFINITY)]);
-    assert!(matches!(lateral.stability_boundary(&plane), Err(KingpinError::LateralElasticityOnly)));
 }
 
 /// Figure 3: one curve for each radius, v = r w_crit(l).
@@ -118,7 +116,7 @@ fn stability_boundary_is_the_closed_form() {
     for r in [0.5, 1.0, 2.0, 5.0] {
         let wheel = wheel(&[(Key::TurningRadius, r)]);
         let plane = plane((Key::V, 0.0, 12.0), (Key::L, 0.02, 0.2));
-        let curves = wheel.stability_boundary(&plane).unwrap();
+        let curves = wheel.stability_boundary(&plane);
         // At r = 5 m the boundary leaves the plane at v = 12 m/s.
         assert_eq!(curves.len(), 1, "r = {r}");
         for curve in &curves {
@@ -142,7 +140,7 @@ fn stability_boundary_is_the_closed_form() {
 fn rectilinear_boundary_is_the_critical_caster_length() {
     let wheel = wheel(&[(Key::TurningRadius, f64::INFINITY)]);
     let critical = wheel.critical_caster_length().unwrap();
-    let curves = wheel.stability_boundary(&plane((Key::L, 0.02, 0.2), (Key::V, 0.0, 12.0))).unwrap();
+    let curves = wheel.stability_boundary(&plane((Key::L, 0.02, 0.2), (Key::V, 0.0, 12.0)));
     assert_eq!(curves.len(), 1);
     let points = &curves[0].points;
     assert!(points.iter().all(|[l, _]| (l - critical).abs() < 1e-9));
@@ -158,7 +156,7 @@ fn boundary_of_a_damped_wheel() {
     let wheel = wheel(&[(Key::CQ, 0.05), (Key::CU, 0.05)]);
     for axes in [((Key::V, 0.1, 12.0), (Key::L, 0.02, 0.2)), ((Key::V, 0.1, 12.0), (Key::CQ, 0.0, 0.5))] {
         let plane = plane(axes.0, axes.1);
-        let curves = wheel.stability_boundary(&plane).unwrap();
+        let curves = wheel.stability_boundary(&plane);
         assert!(!curves.is_empty());
         for &[x, y] in curves.iter().flat_map(|curve| &curve.points) {
             let here = wheel.with(axes.0.0, x).unwrap().with(axes.1.0, y).unwrap();
@@ -174,7 +172,7 @@ fn rolling_limit_for_several_loads() {
     let mut fastest = 0.0;
     for load in [0.0, -10.0, -20.0, -50.0] {
         let wheel = wheel(&[(Key::FAz, load)]);
-        let curves = wheel.rolling_limit(&plane((Key::V, 0.0, 14.0), (Key::L, 0.02, 0.2))).unwrap();
+        let curves = wheel.rolling_limit(&plane((Key::V, 0.0, 14.0), (Key::L, 0.02, 0.2)));
         assert_eq!(curves.len(), 1, "{load}");
         let mut at_8_centimetres: f64 = 0.0;
         for &[v, l] in &curves[0].points {

@@ -35,7 +35,7 @@ proptest! {
         let state = [u, q, psi, forward_speed, yaw_rate];
         let mut rate = [0.0; 5];
         wheel.rolling(&[]).unwrap().evaluate(&state, &[], &mut rate);
-        let force = wheel.contact_force(&state).unwrap();
+        let force = wheel.contact_force(&state);
         // Momentum of the two bodies in an inertial frame that coincides with the body frame: the wheel's centre has
         // the velocity (V, 0), C has (V, d Omega).
         let (m_w, m_c, d) = (0.3519, 0.0668, 0.08 - 0.012);

@@ -12,7 +12,7 @@ fn wheel(settings: &[(Key, f64)]) -> Wheel {
 
 /// Zero of the growth rate in the speed.
 fn hopf_speed(wheel: &Wheel, mut low: f64, mut high: f64) -> f64 {
-    let growth_rate = |v: f64| wheel.with(Key::V, v).unwrap().lateral_uniform_motion().unwrap().growth_rate();
+    let growth_rate = |v: f64| wheel.with(Key::V, v).unwrap().uniform_motion().unwrap().growth_rate();
     assert!(growth_rate(low) * growth_rate(high) < 0.0);
     while high - low > 1e-15 * high {
         let middle = 0.5 * (low + high);
@@ -45,7 +45,7 @@ fn hopf_points_of_straight_running() {
     // Twice the damping: stable at every speed.
     for v in 1..200 {
         let damped = lateral.with(Key::CQ, 0.1).unwrap().with(Key::V, 0.1 * f64::from(v)).unwrap();
-        assert!(damped.lateral_uniform_motion().unwrap().is_stable());
+        assert!(damped.uniform_motion().unwrap().is_stable());
     }
 }
 
@@ -56,11 +56,11 @@ fn limit_of_large_longitudinal_stiffness() {
         [&[(Key::CQ, 0.05)][..], &[(Key::CQ, 0.2), (Key::KPsi, 0.2), (Key::CPsi, 1e-3), (Key::V, 3.0)]]
     {
         let rigid = wheel(settings);
-        let motion = rigid.lateral_uniform_motion().unwrap();
+        let motion = rigid.uniform_motion().unwrap();
         let differences = [1e5, 1e6].map(|k_u| {
             // Longitudinal damping that lets the fast motion decay does not enter the limit.
             let elastic = rigid.with(Key::KU, k_u).unwrap().uniform_motion().unwrap();
-            let [q, psi, omega] = motion.state();
+            let [_, q, psi, _, omega] = motion.state();
             let shift =
                 (elastic.q() - q).abs() + (elastic.psi() - psi).abs() + (elastic.yaw_rate() - omega).abs();
             let of_eigenvalues: f64 = motion
@@ -114,7 +114,7 @@ proptest! {
     #[test]
     fn uniform_motion(v in 0.1..6.0, l in 0.03..0.2, curvature in 0.0..2.0, k_psi in 0.0..0.5) {
         let wheel = wheel(&[(Key::V, v), (Key::L, l), (Key::Curvature, curvature), (Key::KPsi, k_psi)]);
-        if let Ok(motion) = wheel.lateral_uniform_motion() {
+        if let Ok(motion) = wheel.uniform_motion() {
             prop_assert!(motion.residual() < 1e-10 * (1.0 + v / l), "{}", motion.residual());
             if motion.growth_rate().abs() > 1e-8 {
                 prop_assert_eq!(motion.is_stable(), motion.growth_rate() < 0.0);
@@ -130,7 +130,7 @@ proptest! {
 #[test]
 fn contact_force_in_the_uniform_motion() {
     let rigid = wheel(&[(Key::V, 5.0)]);
-    let force = rigid.lateral(&[]).unwrap().contact_force(&rigid.lateral_uniform_motion().unwrap().state());
+    let force = rigid.uniform_motion().unwrap().contact_force();
     let elastic = rigid.with(Key::KU, 50.0).unwrap().uniform_motion().unwrap().contact_force();
     assert_relative_eq!(force.lateral, elastic.lateral, max_relative = 1e-13);
     assert!(force.longitudinal.abs() < 1e-13);
@@ -141,14 +141,18 @@ fn contact_force_in_the_uniform_motion() {
 fn it_needs_an_infinite_stiffness() {
     for refused in [
         Wheel::default().lateral(&[]).map(|_| ()),
-        Wheel::default().lateral_uniform_motion().map(|_| ()),
-        wheel(&[]).lateral(&[Key::KU]).map(|_| ()),
+        Wheel::default().with(Key::KU, 1e9).unwrap().lateral(&[]).map(|_| ()),
     ] {
         assert!(matches!(refused, Err(KingpinError::LongitudinalElasticity { .. })));
     }
+    for key in [Key::K, Key::KU, Key::CU] {
+        assert!(wheel(&[]).rolling_model(&[key]).is_err());
+    }
+    assert!(matches!(wheel(&[]).rolling(&[]), Err(KingpinError::LateralElasticityOnly)));
     let field = wheel(&[]).lateral(&[Key::V, Key::MW]).unwrap();
     let mut derivative = [0.0; 3];
-    let motion = wheel(&[]).lateral_uniform_motion().unwrap();
-    field.evaluate(&motion.state(), &field.parameters(), &mut derivative);
+    let [_, q, psi, speed, yaw_rate] = wheel(&[]).uniform_motion().unwrap().state();
+    field.evaluate(&[q, psi, yaw_rate], &field.parameters(), &mut derivative);
+    assert_eq!(field.forward_speed(&[q, psi, yaw_rate]), speed);
     assert!(derivative.iter().all(|component| component.abs() < 1e-12));
 }

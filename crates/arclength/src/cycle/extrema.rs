@@ -1,7 +1,11 @@
-//! Largest and smallest values of the state variables along a cycle, of the interpolating polynomial.
+//! Largest and smallest values along a cycle, of the interpolating polynomial: of the state variables, and of any smooth
+//! function of them.
 
 use super::collocation::{Collocation, MOST_NODES};
+use super::gauss::Gauss;
+use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
+use crate::differentiation::Dual;
 
 /// Local extrema among the nodes within this part of the amplitude of the extreme node are refined too.
 const CANDIDATE_MARGIN: f64 = 0.2;
@@ -23,53 +27,121 @@ pub(crate) fn ranges<P: PeriodicProblem>(
     count: usize,
 ) -> Vec<Range> {
     let n = collocation.problem.dimension();
-    let degree = collocation.gauss().degree();
-    let intervals = collocation.intervals();
-    let mut times = Vec::with_capacity(intervals * (degree + 1));
-    for pair in collocation.mesh().windows(2) {
-        times.push(pair[0]);
-        times.extend(collocation.gauss().points.iter().map(|point| pair[0] + point * (pair[1] - pair[0])));
-    }
-    let nodes = times.len();
-    let value = |index: usize, component: usize| unknown[(index % nodes) * n + component];
+    let cycle = Polynomials { mesh: collocation.mesh(), gauss: collocation.gauss(), states: unknown, n };
+    let times = cycle.node_times();
+    let mut values = vec![0.0; times.len()];
     (0..count)
         .map(|component| {
-            let mut range = (0..nodes).map(|index| value(index, component)).fold(
-                Range { largest: f64::NEG_INFINITY, smallest: f64::INFINITY },
-                |range, value| Range {
-                    largest: range.largest.max(value),
-                    smallest: range.smallest.min(value),
-                },
-            );
-            let margin = CANDIDATE_MARGIN * (range.largest - range.smallest);
-            let coarse = range;
-            let size = range.largest.abs().max(range.smallest.abs());
-            for index in 0..nodes {
-                let (before, here, after) = (
-                    value(index + nodes - 1, component),
-                    value(index, component),
-                    value(index + 1, component),
-                );
-                let peak = here >= before && here >= after && here > coarse.largest - margin;
-                let valley = here <= before && here <= after && here < coarse.smallest + margin;
-                if !(peak || valley) {
-                    continue;
-                }
-                let sample =
-                    |index: usize| Sample::at_node(collocation, unknown, component, index % nodes, &times);
-                let (mut left, mut right) = (sample(index + nodes - 1), sample(index + 1));
-                left.time -= if index == 0 { 1.0 } else { 0.0 };
-                right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
-                let refined = refine(collocation, unknown, component, [left, sample(index), right], size);
-                range.largest = range.largest.max(refined);
-                range.smallest = range.smallest.min(refined);
+            for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
+                *value = state[component];
             }
-            range
+            range(Curve {
+                times: &times,
+                values: &values,
+                slope_at_node: &|index| cycle.slope_at_node(index, component),
+                at: &|time| cycle.at(time, component),
+            })
         })
         .collect()
 }
 
-/// A component at one time.
+impl Orbit {
+    /// Smallest and largest value along the orbit of a smooth function of the state, of which the dual numbers give the slope.
+    /// The orbit must be one that passes [`check`](Self::check).
+    ///
+    /// ```
+    /// use arclength::cycle::Orbit;
+    /// // A parabola that is passed to and fro: x = (1 - s^2)/2, with nodes 0 and the Gauss points of degree 2.
+    /// let gauss = 0.5 - 1.0 / 12.0_f64.sqrt();
+    /// let parabola = |s: f64| 0.5 * (1.0 - s * s);
+    /// let nodes = [0.0, gauss, 1.0 - gauss].map(|node| parabola(2.0 * node - 1.0));
+    /// let orbit = Orbit { mesh: vec![0.0, 1.0], degree: 2, dimension: 1, states: nodes.to_vec(), period: 3.0 };
+    /// let [smallest, largest] = orbit.range_of(|state| state[0] * state[0] * 4.0);
+    /// assert!(smallest.abs() < 1e-15 && (largest - 1.0).abs() < 1e-15);
+    /// ```
+    pub fn range_of(&self, function: impl Fn(&[Dual<f64, 1>]) -> Dual<f64, 1>) -> [f64; 2] {
+        let gauss = Gauss::new(self.degree);
+        let n = self.dimension;
+        let cycle = Polynomials { mesh: &self.mesh, gauss: &gauss, states: &self.states, n };
+        let times = cycle.node_times();
+        let value_and_slope = |component: &dyn Fn(usize) -> (f64, f64)| {
+            let along = |index: usize| {
+                let (value, slope) = component(index);
+                Dual { value, derivatives: [slope] }
+            };
+            let Dual { value, derivatives: [slope] } = function(&(0..n).map(along).collect::<Vec<_>>());
+            (value, slope)
+        };
+        let at_node = |node: usize| {
+            value_and_slope(&|index| (self.states[node * n + index], cycle.slope_at_node(node, index)))
+        };
+        let values: Vec<f64> = (0..times.len()).map(|node| at_node(node).0).collect();
+        let Range { smallest, largest } = range(Curve {
+            times: &times,
+            values: &values,
+            slope_at_node: &|node| at_node(node).1,
+            at: &|time| value_and_slope(&|index| cycle.at(time, index)),
+        });
+        [smallest, largest]
+    }
+}
+
+/// A cycle in the unit time: states of `n` components at the left end and at the Gauss points of every interval.
+struct Polynomials<'a> {
+    mesh: &'a [f64],
+    gauss: &'a Gauss,
+    states: &'a [f64],
+    n: usize,
+}
+
+impl Polynomials<'_> {
+    fn node_times(&self) -> Vec<f64> {
+        let mut times = Vec::with_capacity((self.mesh.len() - 1) * (self.gauss.degree() + 1));
+        for pair in self.mesh.windows(2) {
+            times.push(pair[0]);
+            times.extend(self.gauss.points.iter().map(|point| pair[0] + point * (pair[1] - pair[0])));
+        }
+        times
+    }
+
+    /// Slope of a component at a node.
+    fn slope_at_node(&self, index: usize, component: usize) -> f64 {
+        let count = self.gauss.degree() + 1;
+        let (interval, node) = (index / count, index % count);
+        let width = self.mesh[interval + 1] - self.mesh[interval];
+        let values = self.states[interval * count * self.n..].iter().skip(component).step_by(self.n);
+        let slopes = self.gauss.slopes_at_node(node);
+        values.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>() / width
+    }
+
+    /// Value and slope of a component.
+    fn at(&self, time: f64, component: usize) -> (f64, f64) {
+        let time = time - time.floor();
+        let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= time);
+        let width = self.mesh[interval + 1] - self.mesh[interval];
+        let nodes = self.gauss.degree() + 1;
+        let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);
+        let position = (time - self.mesh[interval]) / width;
+        self.gauss.basis_with_slopes(position, &mut basis[..nodes], &mut slopes[..nodes]);
+        let size = nodes * self.n;
+        let values = &self.states[interval * size..(interval + 1) * size];
+        let sum = |weights: &[f64]| -> f64 {
+            weights.iter().enumerate().map(|(node, weight)| weight * values[node * self.n + component]).sum()
+        };
+        (sum(&basis[..nodes]), sum(&slopes[..nodes]) / width)
+    }
+}
+
+/// A periodic function of the unit time, by its values at the nodes and its slopes there and anywhere.
+struct Curve<'a> {
+    times: &'a [f64],
+    values: &'a [f64],
+    slope_at_node: &'a dyn Fn(usize) -> f64,
+    /// Value and slope.
+    at: &'a dyn Fn(f64) -> (f64, f64),
+}
+
+/// A curve at one time.
 #[derive(Clone, Copy)]
 struct Sample {
     time: f64,
@@ -77,33 +149,42 @@ struct Sample {
     slope: f64,
 }
 
-impl Sample {
-    fn at_node<P: PeriodicProblem>(
-        collocation: &Collocation<P>,
-        unknown: &[f64],
-        component: usize,
-        index: usize,
-        times: &[f64],
-    ) -> Self {
-        let n = collocation.problem.dimension();
-        let count = collocation.gauss().degree() + 1;
-        let (interval, node) = (index / count, index % count);
-        let width = collocation.mesh()[interval + 1] - collocation.mesh()[interval];
-        let values = collocation.interval(unknown, interval).iter().skip(component).step_by(n);
-        let slopes = collocation.gauss().slopes_at_node(node);
-        let slope = values.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>() / width;
-        Self { time: times[index], value: unknown[index * n + component], slope }
+/// Range of a curve: of its values at the nodes, and at the zeros of the slope around the extreme ones.
+fn range(curve: Curve) -> Range {
+    let (times, values) = (curve.times, curve.values);
+    let nodes = times.len();
+    let mut range =
+        values.iter().fold(Range { largest: f64::NEG_INFINITY, smallest: f64::INFINITY }, |range, &value| {
+            Range { largest: range.largest.max(value), smallest: range.smallest.min(value) }
+        });
+    let margin = CANDIDATE_MARGIN * (range.largest - range.smallest);
+    let coarse = range;
+    let size = range.largest.abs().max(range.smallest.abs());
+    for index in 0..nodes {
+        let (previous, next) = ((index + nodes - 1) % nodes, (index + 1) % nodes);
+        let (before, here, after) = (values[previous], values[index], values[next]);
+        let peak = here >= before && here >= after && here > coarse.largest - margin;
+        let valley = here <= before && here <= after && here < coarse.smallest + margin;
+        if !(peak || valley) {
+            continue;
+        }
+        let sample = |index: usize| Sample {
+            time: times[index],
+            value: values[index],
+            slope: (curve.slope_at_node)(index),
+        };
+        let (mut left, mut right) = (sample(previous), sample(next));
+        left.time -= if index == 0 { 1.0 } else { 0.0 };
+        right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
+        let refined = refine(curve.at, [left, sample(index), right], size);
+        range.largest = range.largest.max(refined);
+        range.smallest = range.smallest.min(refined);
     }
+    range
 }
 
 /// Value at the zero of the slope around an extreme node, from its neighbours and itself.
-fn refine<P: PeriodicProblem>(
-    collocation: &Collocation<P>,
-    unknown: &[f64],
-    component: usize,
-    [left, middle, right]: [Sample; 3],
-    size: f64,
-) -> f64 {
+fn refine(at: &dyn Fn(f64) -> (f64, f64), [left, middle, right]: [Sample; 3], size: f64) -> f64 {
     let (left, right) = if middle.slope * left.slope <= 0.0 {
         (left, middle)
     } else if middle.slope * right.slope <= 0.0 {
@@ -119,7 +200,7 @@ fn refine<P: PeriodicProblem>(
             break;
         }
         let trial = (a * slope_b - b * slope_a) / (slope_b - slope_a);
-        let (value, slope) = value_and_slope(collocation, unknown, component, trial);
+        let (value, slope) = at(trial);
         best = value;
         // An error of dt in the place changes the value by slope dt / 2 only.
         if slope.abs() * (b - a).abs() <= ROUNDING * size || !(a < trial && trial < b) {
@@ -134,26 +215,4 @@ fn refine<P: PeriodicProblem>(
         }
     }
     best
-}
-
-fn value_and_slope<P: PeriodicProblem>(
-    collocation: &Collocation<P>,
-    unknown: &[f64],
-    component: usize,
-    time: f64,
-) -> (f64, f64) {
-    let n = collocation.problem.dimension();
-    let time = time - time.floor();
-    let mesh = collocation.mesh();
-    let interval = mesh[1..mesh.len() - 1].partition_point(|&point| point <= time);
-    let width = mesh[interval + 1] - mesh[interval];
-    let nodes = collocation.gauss().degree() + 1;
-    let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);
-    let position = (time - mesh[interval]) / width;
-    collocation.gauss().basis_with_slopes(position, &mut basis[..nodes], &mut slopes[..nodes]);
-    let values = collocation.interval(unknown, interval);
-    let sum = |weights: &[f64]| -> f64 {
-        weights.iter().enumerate().map(|(node, weight)| weight * values[node * n + component]).sum()
-    };
-    (sum(&basis[..nodes]), sum(&slopes[..nodes]) / width)
 }

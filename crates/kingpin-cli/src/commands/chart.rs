@@ -78,8 +78,8 @@ impl Chart {
             growth_rate,
             stable,
             rolls,
-            stability_boundary: points_of(wheel.stability_boundary(&plane)?),
-            rolling_limit: points_of(wheel.rolling_limit(&plane)?),
+            stability_boundary: points_of(wheel.stability_boundary(&plane)),
+            rolling_limit: points_of(wheel.rolling_limit(&plane)),
         })
     }
 }

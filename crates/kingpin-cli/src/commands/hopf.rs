@@ -81,7 +81,7 @@ pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Failure> {
         }
     }
     let straight = wheel.get(Key::TurningRadius).is_infinite() && along.key() != Key::TurningRadius;
-    if straight && wheel.get(Key::CU) == 0.0 {
+    if straight && wheel.get(Key::CU) == 0.0 && !wheel.has_lateral_elasticity_only() {
         message += "; on a straight path without c_u the longitudinal motion is undamped, which hides Hopf points: \
                     set a small c_u, or follow cycles from a circle with `kingpin cycles --along r=A:inf`";
         return Err(Failure::NothingFound(message));
@@ -104,9 +104,10 @@ pub fn label(index: usize) -> String {
     format!("HB{}", index + 1)
 }
 
-/// A state of the wheel, by name.
+/// A state of the wheel, by name, without what is not a number.
 pub fn named_state(state: &[f64]) -> NamedNumbers {
-    NamedNumbers(STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied()).collect())
+    let numbers = STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied());
+    NamedNumbers(numbers.filter(|(_, value)| !value.is_nan()).collect())
 }
 
 /// A Hopf point in a result.

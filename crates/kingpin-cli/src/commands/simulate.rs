@@ -30,7 +30,7 @@ pub struct Simulate {
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: f64,
 
-    /// Change a state (u, q, psi, V, Omega) at the start; repeatable
+    /// Change a state (u, q, psi, V, Omega; with k_u = inf q, psi, Omega) at the start; repeatable
     #[arg(long, value_name = "KEY=DELTA", allow_hyphen_values = true)]
     perturb: Vec<Assignment>,
 
@@ -60,6 +60,13 @@ impl Simulate {
                 "rolling needs more than the static friction from t = {} s on; the history goes on as if it rolled",
                 readable(time)
             ));
+        }
+        let turned_across = |states: &[[f64; 5]]| (states[0][2].cos() < 0.0) != (states[1][2].cos() < 0.0);
+        if wheel.has_lateral_elasticity_only() && history.states.windows(2).any(turned_across) {
+            output.warn(
+                "the caster passes psi = pi/2, where V does not follow from q, psi and Omega: digits are lost there, \
+                 compare with a large finite k_u",
+            );
         }
         output.deliver(&HistoryReport::new(wheel, &history))
     }

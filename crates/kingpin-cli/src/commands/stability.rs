@@ -37,7 +37,11 @@ impl Stability {
         let critical = wheel.critical_speed();
         output.deliver(&StabilityReport {
             wheel,
-            eigenvalues: motion.eigenvalues().map(|eigenvalue| [eigenvalue.re, eigenvalue.im]),
+            eigenvalues: motion
+                .eigenvalues()
+                .iter()
+                .map(|eigenvalue| [eigenvalue.re, eigenvalue.im])
+                .collect(),
             growth_rate: motion.growth_rate(),
             stable: motion.is_stable(),
             critical_speed: critical.map(|critical| critical.speed),
@@ -51,7 +55,7 @@ impl Stability {
 struct StabilityReport {
     #[serde(skip)]
     wheel: Wheel,
-    eigenvalues: [[f64; 2]; 5],
+    eigenvalues: Vec<[f64; 2]>,
     growth_rate: f64,
     stable: bool,
     critical_speed: Option<f64>,
@@ -71,13 +75,13 @@ impl Report for StabilityReport {
         let verdict = if self.stable { "stable" } else { "unstable" };
         writeln!(out, "uniform motion at {}: {verdict}\n", description::of(&self.wheel, &[]))?;
         let mut table = Table::new(["eigenvalue", "real part (1/s)", "imaginary part (rad/s)"]);
-        for (number, [real, imaginary]) in (1..).zip(self.eigenvalues) {
-            table.row([format!("{number}").into(), real.into(), imaginary.into()]);
+        for (number, [real, imaginary]) in (1..).zip(&self.eigenvalues) {
+            table.row([format!("{number}").into(), (*real).into(), (*imaginary).into()]);
         }
         table.write(out)?;
         writeln!(out)?;
         let straight = self.wheel.get(Key::TurningRadius).is_infinite();
-        if straight && self.wheel.get(Key::CU) == 0.0 {
+        if straight && self.wheel.get(Key::CU) == 0.0 && !self.wheel.has_lateral_elasticity_only() {
             writeln!(out, "on a straight path without c_u, the undamped longitudinal motion does not count")?;
         }
         writeln!(out, "growth rate {} 1/s", readable(self.growth_rate))?;
@@ -94,7 +98,7 @@ impl Report for StabilityReport {
 
     fn columns(&self) -> Columns {
         Columns::new()
-            .numbers("real_part", self.eigenvalues.map(|[real, _]| real))
-            .numbers("imaginary_part", self.eigenvalues.map(|[_, imaginary]| imaginary))
+            .numbers("real_part", self.eigenvalues.iter().map(|[real, _]| *real))
+            .numbers("imaginary_part", self.eigenvalues.iter().map(|[_, imaginary]| *imaginary))
     }
 }

@@ -47,7 +47,7 @@ impl RollingLimits {
         let limit = |load: f64| {
             let wheel = paper_wheel(FASTEST, LENGTHS[1], SHADED_RADIUS)?.with(Key::FAz, load)?;
             let mut curves: Vec<Vec<[f64; 2]>> =
-                wheel.rolling_limit(&plane)?.into_iter().map(|curve| curve.points).collect();
+                wheel.rolling_limit(&plane).into_iter().map(|curve| curve.points).collect();
             curves.iter_mut().for_each(|points| upwards(points));
             Ok::<_, PaperError>(RollingLimit { load, curves })
         };

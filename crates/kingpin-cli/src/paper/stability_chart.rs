@@ -214,7 +214,7 @@ pub(super) fn boundary(radius: f64) -> Result<Boundary, PaperError> {
     let plane =
         Plane::new(Interval::new(Key::V, 0.0..=fastest)?, Interval::new(Key::L, LENGTHS[0]..=LENGTHS[1])?)?;
     let wheel = paper_wheel(fastest, LENGTHS[1], radius)?;
-    let curves = wheel.stability_boundary(&plane)?;
+    let curves = wheel.stability_boundary(&plane);
     let lowest = |points: &[[f64; 2]]| points.iter().map(|[_, l]| *l).fold(f64::INFINITY, f64::min);
     let mut points = curves
         .into_iter()
@@ -258,7 +258,7 @@ fn crossing(radius: f64, caster_length: f64) -> Result<Crossing, PaperError> {
 /// Largest real part of the eigenvalues in 1/s, by QR iteration on the Jacobian.
 pub(super) fn growth_rate(wheel: &Wheel) -> Result<f64, PaperError> {
     let jacobian = wheel.uniform_motion()?.jacobian();
-    let columns: Vec<f64> = (0..5).flat_map(|column| jacobian.map(|row| row[column])).collect();
+    let columns: Vec<f64> = (0..5).flat_map(|column| jacobian.iter().map(move |row| row[column])).collect();
     let eigenvalues = eigenvalues(&columns, 5)?;
     Ok(eigenvalues.iter().map(|eigenvalue| eigenvalue.re).fold(f64::NEG_INFINITY, f64::max))
 }

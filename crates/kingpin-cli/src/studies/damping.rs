@@ -56,13 +56,13 @@ fn chart(damper: Key, damping: f64) -> Result<Boundary, Failure> {
         Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?,
         Interval::new(Key::L, LENGTHS.0..=LENGTHS.1)?,
     )?;
-    let curves = wheel(&[(Key::TurningRadius, RADIUS), (damper, damping)])?.stability_boundary(&plane)?;
+    let curves = wheel(&[(Key::TurningRadius, RADIUS), (damper, damping)])?.stability_boundary(&plane);
     Ok(Boundary { damper, value: damping, curves })
 }
 
 fn section(damper: Key, length: f64, most: f64) -> Result<Boundary, Failure> {
     let plane = Plane::new(Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?, Interval::new(damper, 0.0..=most)?)?;
-    let curves = wheel(&[(Key::TurningRadius, RADIUS), (Key::L, length)])?.stability_boundary(&plane)?;
+    let curves = wheel(&[(Key::TurningRadius, RADIUS), (Key::L, length)])?.stability_boundary(&plane);
     Ok(Boundary { damper, value: length, curves })
 }
 

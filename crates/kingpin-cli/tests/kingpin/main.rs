@@ -4,6 +4,7 @@ mod bad_input;
 mod basin;
 mod branches;
 mod formats;
+mod lateral;
 mod studies;
 mod tables;
 

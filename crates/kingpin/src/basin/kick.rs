@@ -95,13 +95,14 @@ impl Disturbance {
     /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W).
     ///
     /// # Errors
-    /// A magnitude at which there is no uniform motion.
+    /// A magnitude at which there is no uniform motion, or `k_u = inf`.
     pub fn apply(
         self,
         wheel: &Wheel,
         model: ContactModel,
         magnitude: f64,
     ) -> Result<(Wheel, [f64; 7]), SimulationError> {
+        wheel.check_elastic()?;
         let rolling = |[u, q, psi, speed, yaw]: [f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
         let start = |wheel: &Wheel| Ok::<_, SimulationError>(rolling(wheel.uniform_motion()?.state()));
         match self {

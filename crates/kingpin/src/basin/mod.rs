@@ -92,6 +92,7 @@ impl Destinations {
         settings: ClassificationSettings,
     ) -> Result<Self, SimulationError> {
         settings.check()?;
+        wheel.check_elastic()?;
         let motion = wheel.uniform_motion()?;
         if model == ContactModel::Sliding && !motion.rolls() {
             return Err(SimulationError::UniformMotionSlides {

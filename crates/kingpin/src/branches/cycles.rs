@@ -24,7 +24,9 @@ pub struct WheelCycles {
     pub wheel: Wheel,
     /// The parameter and its interval.
     pub along: Along,
-    /// The cycles, with `value` a value of the key; states are `u q psi V Omega`.
+    /// The cycles, with `value` a value of the key; extrema are those of `u q psi V Omega`, the states of the orbits are the
+    /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
+    /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
     /// Why the branch ends, at its first and at its last point; the first is `None` at a Hopf point.
     pub stops: (Option<Stop>, Stop),
@@ -91,9 +93,9 @@ impl Wheel {
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end });
         }
         let key = along.followed();
-        let field = self.rolling(&[key])?;
+        let model = self.rolling_model(&[key])?;
         let at: Vec<f64> = options.at.iter().map(|value| along.convert(*value)).collect();
-        let mut branch = Cycles::of(&field, start)
+        let mut branch = Cycles::of(&model, start)
             .parameters(&[along.convert(value)])
             .along(0, along.range())
             .at(&at)
@@ -102,6 +104,7 @@ impl Wheel {
             .observer(|value, period| observer(along.convert(value), period))
             .run()?;
         for point in &mut branch.points {
+            model.complete_extrema(point, &[point.value]);
             point.value = along.convert(point.value);
         }
         for missed in &mut branch.unlocated {

@@ -17,7 +17,7 @@ pub struct HopfPoint {
     /// Whether the cycles that are born are unstable (subcritical) or stable (supercritical).
     pub criticality: Criticality,
     /// State `u q psi V Omega` of the uniform motion.
-    pub state: Vec<f64>,
+    pub state: [f64; 5],
     /// The wheel at this point.
     pub wheel: Wheel,
     /// The point as the continuation engine knows it, to start cycles from.
@@ -62,9 +62,9 @@ impl Wheel {
                     continue;
                 }
             };
-            let field = wheel.rolling(&[key])?;
-            let branch = Equilibria::of(&field)
-                .start(&motion.state())
+            let model = wheel.rolling_model(&[key])?;
+            let branch = Equilibria::of(&model)
+                .start(&model.free_state(&motion.state()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
                 .run()?;
@@ -76,7 +76,7 @@ impl Wheel {
                         frequency: point.frequency,
                         first_lyapunov: point.first_lyapunov,
                         criticality: point.criticality,
-                        state: point.state.clone(),
+                        state: model.full_state(&point.state, &[point.parameter]),
                         wheel: wheel.with(key, point.parameter)?,
                         detail: point.clone(),
                     })

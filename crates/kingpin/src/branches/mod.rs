@@ -32,11 +32,14 @@ impl Along {
     ///
     /// # Errors
     /// [`KingpinError::EmptyInterval`] unless `start < end`, [`KingpinError::OutOfRange`] for values that the
-    /// parameter may not take.
+    /// parameter may not take, [`KingpinError::InfiniteEnd`] for `k_u = inf`.
     pub fn new(key: Key, start: f64, end: f64) -> Result<Self, KingpinError> {
         for value in [start, end] {
             if !key.allowed().contains(value) {
                 return Err(KingpinError::OutOfRange { key, value, position: None });
+            }
+            if value.is_infinite() && key != Key::TurningRadius {
+                return Err(KingpinError::InfiniteEnd { key });
             }
         }
         if start < end {

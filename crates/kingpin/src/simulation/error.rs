@@ -14,6 +14,17 @@ pub enum SimulationError {
         /// Names of the states, separated by commas.
         allowed: String,
     },
+    /// A state that follows from others.
+    #[error(
+        "`{given}` cannot be chosen: with lateral elasticity only, k_u = inf, u = 0 and V follows from the other states; \
+         the states that can are {allowed}"
+    )]
+    DependentState {
+        /// What was given.
+        given: String,
+        /// Names of the states that can be chosen, separated by commas.
+        allowed: String,
+    },
     /// A number that is out of range.
     #[error("{name} = {value} is not allowed: {allowed}")]
     OutOfRange {

@@ -12,11 +12,14 @@ mod tests;
 pub use error::SimulationError;
 
 use crate::rolling::STATE_NAMES;
-use crate::{ContactForce, Wheel};
+use crate::{ContactForce, Key, Wheel};
 use arclength::integration::{Event, Integrator, Statistics, autonomous};
 
 /// Relative tolerance of a simulation; the absolute one is a hundredth of it in SI units.
 pub const SIMULATION_TOLERANCE: f64 = 1e-11;
+
+/// States that follow from others may differ from what follows by this, relative to caster length and speed.
+const CONSTRAINT_TOLERANCE: f64 = 1e-9;
 
 /// A motion of the rolling wheel, sampled at equal intervals. Everything is SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,25 +55,32 @@ impl TimeHistory {
 }
 
 impl Wheel {
-    /// The uniform motion with some states, given by name, changed by some amount.
+    /// The uniform motion with some of its [free states](Self::free_states), given by name, changed by some amount.
     ///
     /// # Errors
-    /// An unknown name, an amount that is not finite, or no uniform motion.
+    /// A name that is unknown or of a state that is not free, an amount that is not finite, or no uniform motion.
     pub fn perturbed_uniform_motion(
         &self,
         perturbations: &[(&str, f64)],
     ) -> Result<[f64; 5], SimulationError> {
-        let mut state = self.uniform_motion()?.state();
+        let model = self.rolling_model(&[])?;
+        let names = self.free_states();
+        let mut state = model.free_state(&self.uniform_motion()?.state());
         for &(name, amount) in perturbations {
-            let index = STATE_NAMES.iter().position(|&candidate| candidate == name).ok_or_else(|| {
-                SimulationError::UnknownState { given: name.to_owned(), allowed: STATE_NAMES.join(", ") }
+            let index = names.iter().position(|&candidate| candidate == name).ok_or_else(|| {
+                let (given, allowed) = (name.to_owned(), names.join(", "));
+                if STATE_NAMES.contains(&name) {
+                    SimulationError::DependentState { given, allowed }
+                } else {
+                    SimulationError::UnknownState { given, allowed }
+                }
             })?;
             if !amount.is_finite() {
                 return Err(SimulationError::out_of_range(name, amount, "a finite change"));
             }
             state[index] += amount;
         }
-        Ok(state)
+        Ok(model.full_state(&state, &[]))
     }
 
     /// Simulates from the uniform motion with some states perturbed, sampled at `samples` equidistant times
@@ -101,7 +111,7 @@ impl Wheel {
     /// Simulates from a state `(u, q, psi, V, Omega)`; otherwise like [`simulate`](Self::simulate).
     ///
     /// # Errors
-    /// As [`simulate`](Self::simulate).
+    /// As [`simulate`](Self::simulate); with lateral elasticity only also a `u` or `V` that breaks the constraints.
     pub fn simulate_from(
         &self,
         initial: &[f64; 5],
@@ -114,37 +124,52 @@ impl Wheel {
         if samples < 2 {
             return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
         }
-        let field = self.rolling(&[])?;
+        let model = self.rolling_model(&[])?;
+        let free = model.free_state(initial);
+        self.check_constraints(initial, &model.full_state(&free, &[]))?;
         let last = (samples - 1) as f64;
         let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
+        let full_state = |state: &[f64]| model.full_state(state, &[]);
         let reserve = |state: &[f64]| {
-            let force = self.rolling_contact_force(&as_array(state));
+            let force = self.contact_force(&full_state(state));
             // Squares keep the function smooth where the force vanishes.
             force.limit * force.limit.abs() - force.longitudinal.powi(2) - force.lateral.powi(2)
         };
         let mut events = [Event::new(|_, state| reserve(state)).falling()];
         let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).with_events(
-            autonomous(&field, &[]),
+            autonomous(&model, &[]),
             0.0,
-            initial,
+            &free,
             duration,
             &times,
             &mut events,
         )?;
-        let states: Vec<[f64; 5]> = solution.samples().map(|(_, state)| as_array(state)).collect();
-        let lost_at_once = reserve(initial) <= 0.0;
+        let states: Vec<[f64; 5]> = solution.samples().map(|(_, state)| full_state(state)).collect();
+        let lost_at_once = reserve(&free) <= 0.0;
         let first_loss = solution.crossings.first().map(|crossing| crossing.time);
         Ok(TimeHistory {
-            contact_forces: states.iter().map(|state| self.rolling_contact_force(state)).collect(),
+            contact_forces: states.iter().map(|state| self.contact_force(state)).collect(),
             states,
             rolling_lost_at: if lost_at_once { Some(0.0) } else { first_loss },
             times: solution.times,
             statistics: solution.statistics,
         })
     }
-}
 
-/// The five states of a slice that has five.
-fn as_array(state: &[f64]) -> [f64; 5] {
-    std::array::from_fn(|index| state[index])
+    /// That states which follow from others do so, and were given as they follow.
+    fn check_constraints(&self, given: &[f64; 5], following: &[f64; 5]) -> Result<(), SimulationError> {
+        let scale = [self.get(Key::L), 1.0, 1.0, self.get(Key::V).abs() + following[3].abs(), 1.0];
+        for (((name, given), following), scale) in STATE_NAMES.iter().zip(given).zip(following).zip(scale) {
+            if (given - following).abs() > CONSTRAINT_TOLERANCE * scale {
+                let allowed =
+                    "with lateral elasticity only, k_u = inf, u = 0 and V follows from q, psi and Omega";
+                return Err(SimulationError::out_of_range(name, *given, allowed));
+            }
+        }
+        if self.has_lateral_elasticity_only() && given[2].cos().abs() < CONSTRAINT_TOLERANCE {
+            let allowed = "with lateral elasticity only, k_u = inf, not pi/2, where V does not follow from q, psi and Omega";
+            return Err(SimulationError::out_of_range("psi", given[2], allowed));
+        }
+        Ok(())
+    }
 }

@@ -14,7 +14,6 @@ use crate::stored::{LabelledPoint, PointReference};
 use arclength::continuation::Stop;
 use clap::Args;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
-use kingpin::rolling::STATE_NAMES;
 use kingpin::{KingpinError, Wheel};
 use report::CyclesReport;
 use std::ops::ControlFlow;
@@ -117,7 +116,17 @@ impl Cycles {
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
         }
         if let Some(orbit) = orbit {
-            reference.check(&orbit, STATE_NAMES.len())?;
+            let states = wheel.free_states();
+            if orbit.dimension != states.len() {
+                return Err(reference.failure(format!(
+                    "the orbit of {} has {} states, this wheel {} ({}): leave k_u as it is in the file",
+                    reference.label,
+                    orbit.dimension,
+                    states.len(),
+                    states.join(", ")
+                )));
+            }
+            reference.check(&orbit, states.len())?;
             return Ok((wheel, Start::Cycle { origin: reference.label.clone(), orbit }));
         }
         // The point of an earlier search is found again along the parameter that now varies, on the way from one end: a

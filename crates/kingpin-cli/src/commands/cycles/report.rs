@@ -153,7 +153,8 @@ fn at_cycle(branch: u64, cycle: &CyclePoint, label: Option<String>) -> PointRepo
 fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<PointReport, Failure> {
     let period = TAU / hopf.frequency;
     let eigenvalues = hopf.wheel.uniform_motion()?.eigenvalues();
-    let multipliers = eigenvalues.map(|eigenvalue| (eigenvalue * period).exp());
+    let multipliers: Vec<Complex64> =
+        eigenvalues.iter().map(|eigenvalue| (eigenvalue * period).exp()).collect();
     let nearest =
         multipliers.iter().map(|multiplier| (multiplier - 1.0).norm()).fold(f64::INFINITY, f64::min);
     Ok(PointReport {
