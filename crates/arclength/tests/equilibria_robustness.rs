@@ -498,3 +498,37 @@ fn pairs_that_cross_together_are_found_wherever_the_steps_fall() {
         assert!(place.abs() < 1e-8, "{start}: {place}");
     }
 }
+
+/// A Hopf point at `p = 0.3` beside an oscillation that is damped at the rate `.0` for every `p`.
+struct HopfBesideRinging(f64);
+
+impl VectorField for HopfBesideRinging {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "u", "v"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        let growth = p[0] - 0.3 - x[0] * x[0] - x[1] * x[1];
+        d[0] = growth * x[0] - x[1] * 2.0;
+        d[1] = x[0] * 2.0 + growth * x[1];
+        d[2] = x[3];
+        d[3] = x[2] * -25.0 - x[3] * self.0 + x[0] * x[0];
+    }
+}
+
+#[test]
+fn a_ringing_mode_hides_no_hopf_point() {
+    for damping in [0.0, 1e-9, 1e-6, -1e-6, 1e-3] {
+        let branch = Equilibria::of(&HopfBesideRinging(damping))
+            .parameters(&[0.0])
+            .along("p", 0.0..=1.0)
+            .run()
+            .unwrap();
+        assert_eq!(kinds(&branch), ["HB1"], "{damping}");
+        let hopf = branch.hopf_points().next().unwrap();
+        assert_relative_eq!(hopf.parameter, 0.3, max_relative = 1e-12);
+        assert_relative_eq!(hopf.frequency, 2.0, max_relative = 1e-12);
+    }
+}

@@ -52,8 +52,7 @@ impl Changes {
                 && one.tests.fold.abs().max(other.tests.fold.abs()) > UNDECIDED_FOLD,
             branch_point: before.orientation * after.orientation < 0.0,
             hopf: opposite(one.tests.hopf, other.tests.hopf)
-                && one.spectrum.hopf_decided
-                && other.spectrum.hopf_decided,
+                && one.spectrum.hopf_undecided == other.spectrum.hopf_undecided,
         }
     }
 
@@ -103,7 +102,7 @@ fn closest_approach(values: [f64; 2], slopes: [f64; 2]) -> Option<f64> {
 /// Where a second look is needed although no test function changes sign.
 fn suspicious(before: &Node, after: &Node, distance: f64) -> Option<f64> {
     let tests = |pick: fn(&Tests) -> f64| [pick(&before.point.tests), pick(&after.point.tests)];
-    let decided = before.point.spectrum.hopf_decided && after.point.spectrum.hopf_decided;
+    let decided = before.point.spectrum.hopf_undecided == after.point.spectrum.hopf_undecided;
     let hopf = decided
         .then(|| {
             let slopes = [before.point.hopf_slope * distance, after.point.hopf_slope * distance];

@@ -6,7 +6,7 @@ use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::{NeutralSaddle, SpecialPoint};
-use super::spectrum::critical_pair;
+use super::spectrum::critical_pairs;
 use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, finish, locate};
@@ -20,6 +20,8 @@ use num_complex::Complex64;
 const BRACKETS: [f64; 2] = [1e-2, 1e-6];
 /// The same where Newton's method fails and the bracket is all there is.
 const LAST_BRACKET: f64 = 1e-10;
+/// Pairs of eigenvalues that are tried for a Hopf point.
+const CANDIDATES: usize = 3;
 /// A located point may lie this part of the bracket outside it.
 const MARGIN: f64 = 0.1;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
@@ -136,9 +138,14 @@ pub(super) fn hopf(
 ) -> Result<Node, Error> {
     let n = curve.dimension();
     let test = |point: &Inspection| point.spectrum.hopf_closest;
-    for tolerance in BRACKETS {
+    // Pairs that stay on the axis are not what crosses it; of the others a weakly damped one may be closer to it.
+    let neutral = before.point.spectrum.hopf_undecided;
+    for (tolerance, candidate) in
+        BRACKETS.into_iter().flat_map(|part| (0..CANDIDATES).map(move |k| (part, k)))
+    {
         let near = near_zero(curve, before, after, tolerance, test);
-        let Some(pair) = critical_pair(&near.point.spectrum.eigenvalues) else { continue };
+        let pairs = critical_pairs(&near.point.spectrum.eigenvalues);
+        let Some(&pair) = pairs.get(neutral + candidate) else { continue };
         let matrix = curve.jacobian(&near.unknown);
         let scales = curve.system.scales.clone();
         let Some((system, start)) =

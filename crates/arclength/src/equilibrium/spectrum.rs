@@ -23,13 +23,13 @@ pub(crate) struct Spectrum {
     /// Number with positive real part, decided or not.
     pub unstable: usize,
     /// Product over all pairs of `(a + b)/(|a| + |b|)`, each saturating at +-1: changes sign where two eigenvalues have
-    /// the sum zero. Continuous, independent of the unit of time.
+    /// the sum zero. Continuous, independent of the unit of time. Pairs whose sum may be rounding do not count.
     pub hopf_test: f64,
     /// The sum closest to zero, relative to the moduli, with the sign of the product. Where many pairs are close to the
     /// axis the product is small between its zeros too; this is not.
     pub hopf_closest: f64,
-    /// Whether no sum is so small that its sign is rounding error.
-    pub hopf_decided: bool,
+    /// Number of sums so small that their sign is rounding error. An oscillation without damping has one all along a branch.
+    pub hopf_undecided: usize,
 }
 
 impl Spectrum {
@@ -48,9 +48,9 @@ impl Spectrum {
         } else {
             Stability::Stable
         };
-        let HopfTest { product: hopf_test, closest, decided: hopf_decided } = HopfTest::of(&eigenvalues);
+        let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } = HopfTest::of(&eigenvalues);
         let hopf_closest = closest.copysign(hopf_test);
-        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_closest, hopf_decided })
+        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_closest, hopf_undecided })
     }
 
     /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has
@@ -71,16 +71,19 @@ pub(crate) struct HopfTest {
     pub product: f64,
     /// Modulus of the sum closest to zero, of complex conjugate or real eigenvalues.
     pub closest: f64,
-    pub decided: bool,
+    pub undecided: usize,
 }
 
 impl HopfTest {
     pub fn of(eigenvalues: &[Complex64]) -> Self {
-        let mut test = Self { product: 1.0, closest: 1.0, decided: true };
+        let mut test = Self { product: 1.0, closest: 1.0, undecided: 0 };
         for_each_pair(eigenvalues, |one, other| {
             let ratio = sum_ratio(one, other);
+            if ratio.abs() <= UNDECIDED_SUM {
+                test.undecided += 1;
+                return;
+            }
             test.product *= ratio / ratio.hypot(SATURATION);
-            test.decided &= ratio.abs() > UNDECIDED_SUM;
             if one.im == -other.im {
                 test.closest = test.closest.min(ratio.abs());
             }
@@ -91,15 +94,19 @@ impl HopfTest {
 
 /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
 pub(crate) fn critical_pair(eigenvalues: &[Complex64]) -> Option<[Complex64; 2]> {
-    let mut smallest = None;
+    critical_pairs(eigenvalues).into_iter().next()
+}
+
+/// All pairs that are complex conjugate or both real, the sum closest to zero first.
+pub(crate) fn critical_pairs(eigenvalues: &[Complex64]) -> Vec<[Complex64; 2]> {
+    let mut pairs = Vec::new();
     for_each_pair(eigenvalues, |one, other| {
-        let ratio = sum_ratio(one, other).abs();
-        let candidate = one.im == -other.im;
-        if candidate && smallest.as_ref().is_none_or(|(least, _)| ratio < *least) {
-            smallest = Some((ratio, [one, other]));
+        if one.im == -other.im {
+            pairs.push((sum_ratio(one, other).abs(), [one, other]));
         }
     });
-    smallest.map(|(_, pair)| pair)
+    pairs.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+    pairs.into_iter().map(|(_, pair)| pair).collect()
 }
 
 /// The eigenvalues without those closest to the ones given.

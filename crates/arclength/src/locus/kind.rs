@@ -153,7 +153,7 @@ impl<'a> LocusKind<'a> for FoldSystem<'a> {
             tests.push((SpecialKind::BogdanovTakens, double));
         }
         let pairs = HopfTest::of(&rest);
-        if n > 2 && pairs.decided {
+        if n > 2 && pairs.undecided == 0 {
             tests.push((SpecialKind::ZeroHopf, pairs.closest.copysign(pairs.product)));
         }
         self.left = left;
@@ -245,7 +245,7 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
             monitor.tests.push((SpecialKind::ZeroHopf, zero_test(&rest, largest)));
         }
         let pairs = HopfTest::of(&rest);
-        if n > 3 && pairs.decided {
+        if n > 3 && pairs.undecided == 0 {
             monitor.tests.push((SpecialKind::HopfHopf, pairs.closest.copysign(pairs.product)));
         }
         let parameters = self.equilibria.parameters_at(&point.unknown[3 * n + 1..]);
