@@ -2,7 +2,7 @@
 
 use crate::document::{NamedNumbers, Number, Schema};
 use crate::failure::Failure;
-use arclength::cycle::Orbit;
+use arclength::cycle::{Branching, Orbit};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -55,6 +55,7 @@ struct StoredPoint {
     value: Number,
     label: Option<String>,
     orbit: Option<Orbit>,
+    branching: Option<Branching>,
 }
 
 /// A labelled point: all parameters, and the cycle where it is one.
@@ -64,6 +65,8 @@ pub struct LabelledPoint {
     pub parameters: Vec<(String, f64)>,
     /// The cycle, where it is one.
     pub orbit: Option<Orbit>,
+    /// The branch that leaves there, and the parameter along which it was found.
+    pub branching: Option<(Branching, String)>,
 }
 
 impl PointReference {
@@ -80,8 +83,9 @@ impl PointReference {
         };
         let point = file.points.swap_remove(place);
         let mut parameters = file.parameters.0;
+        let branching = point.branching.map(|branching| (branching, file.along.key.clone()));
         parameters.push((file.along.key, point.value.0));
-        Ok(LabelledPoint { parameters, orbit: point.orbit })
+        Ok(LabelledPoint { parameters, orbit: point.orbit, branching })
     }
 
     /// That the orbit that was read is one of a model with so many states.

@@ -105,3 +105,22 @@ fn the_same_bytes_every_time() {
         assert!(one == two, "{ending}");
     }
 }
+
+#[test]
+fn cycles_start_at_folds_and_leave_at_branch_points() {
+    let folder = Folder::new();
+    // An aircraft's nose wheel; its cycles in straight towing are symmetric up to a branch point.
+    let wheel = "l = 0.15\nr = inf\nm_w = 300.0\nm_c = 40.0\nJ_wxi = 12.0\nJ_wzeta = 7.0\nJ_Cz = 1.5\nR = 0.35\n\
+                 l_c = 0.05\nk = 2e6\nk_psi = 2e4\nc_psi = 200.0\nc_u = 1000.0\nF_Az = -3e4\n";
+    std::fs::write(folder.path("nose.toml"), wheel).unwrap();
+    folder.succeed("cycles --wheel nose.toml --along v=5:8 -q -o cycles.json");
+    let skew = |point: &Value| number(&point["psi_max"]) + number(&point["psi_min"]);
+
+    let through = folder.json("cycles --from cycles.json:LPC1 --along v=5:8");
+    let points = through["points"].as_array().unwrap();
+    assert!(points.len() > 5 && points.iter().all(|point| skew(point).abs() < 1e-6));
+
+    let other = folder.json("cycles --from cycles.json:BPC1 --along v=5:8");
+    let skews: Vec<f64> = other["points"].as_array().unwrap().iter().map(skew).collect();
+    assert!(skews.iter().any(|skew| *skew > 0.1) && skews.iter().any(|skew| *skew < -0.1), "{skews:?}");
+}

@@ -59,7 +59,7 @@ impl HopfPoint {
         options: &CycleOptions,
         observer: impl FnMut(f64, f64) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
-        self.wheel.follow_cycles(CycleStart::from(&self.detail), along, options, observer)
+        self.wheel.cycles_from(CycleStart::from(&self.detail), along, options, observer)
     }
 }
 
@@ -77,10 +77,15 @@ impl Wheel {
         options: &CycleOptions,
         observer: impl FnMut(f64, f64) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
-        self.follow_cycles(CycleStart::Orbit(orbit.clone()), along, options, observer)
+        self.cycles_from(CycleStart::Orbit(orbit.clone()), along, options, observer)
     }
 
-    fn follow_cycles(
+    /// The branch of limit cycles from any start that the continuation knows, such as the branch that leaves a period doubling
+    /// or a branch point of cycles, followed over the interval.
+    ///
+    /// # Errors
+    /// As [`cycles_through`](Self::cycles_through).
+    pub fn cycles_from(
         &self,
         start: CycleStart,
         along: Along,

@@ -6,12 +6,14 @@ mod report;
 use crate::along::{along, as_followed, values_on};
 use crate::commands::hopf;
 use crate::failure::Failure;
+use crate::models::branch::Interruption;
 use crate::numbers::readable;
 use crate::options::{OutputOptions, WheelOptions, parameter_help};
 use crate::progress::Progress;
 use crate::range::{Range, Values};
 use crate::stored::{LabelledPoint, PointReference};
 use arclength::continuation::Stop;
+use arclength::cycle::CycleStart;
 use clap::Args;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use kingpin::{KingpinError, Wheel};
@@ -41,6 +43,10 @@ pub struct Cycles {
     #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "wheel")]
     from: Option<PointReference>,
 
+    /// At a period doubling or a branch point follow the branch of the point itself, not the one that leaves there
+    #[arg(long, requires = "from")]
+    stay: bool,
+
     #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
@@ -56,7 +62,7 @@ enum Start {
     },
     Cycle {
         origin: String,
-        orbit: arclength::cycle::Orbit,
+        start: CycleStart,
     },
 }
 
@@ -83,22 +89,36 @@ impl Cycles {
         let options = CycleOptions { at, ..CycleOptions::default() };
         let (wheel, start) = self.start(along)?;
         let progress = Progress::spinner("cycles", output.is_quiet());
+        let interruption = Interruption::watch()?;
         let mut found = 0;
         let mut observer = |value: f64, period: f64| {
             found += 1;
             let (value, period) = (readable(value), readable(period));
             progress.message(format!("{found} cycles, {} = {value}, period {period} s", along.key()));
-            ControlFlow::Continue(())
+            interruption.flow()
         };
         let branches = match start {
-            Start::Cycle { origin, orbit } => {
-                let cycles = wheel.cycles_through(&orbit, along, &options, &mut observer)?;
+            Start::Cycle { origin, start } => {
+                let cycles = wheel.cycles_from(start, along, &options, &mut observer)?;
                 vec![Branch { origin, hopf: None, reached: None, cycles }]
             }
             Start::Hopf { points, only } => from_hopf_points(&points, only, along, &options, &mut observer)?,
         };
         drop(progress);
-        output.deliver(&CyclesReport::new(wheel, along, &branches)?)
+        let on_branches = |value: f64| {
+            branches.iter().flat_map(|branch| &branch.cycles.points).any(|cycle| cycle.value == value)
+        };
+        for value in
+            options.at.iter().filter(|value| !on_branches(as_followed(&along, as_followed(&along, **value))))
+        {
+            output.warn(&format!(
+                "no cycle at {} = {}: no branch passes there",
+                along.key(),
+                readable(*value)
+            ));
+        }
+        output.deliver(&CyclesReport::new(wheel, along, &branches)?)?;
+        interruption.report()
     }
 
     fn start(&self, along: Along) -> Result<(Wheel, Start), Failure> {
@@ -107,7 +127,7 @@ impl Cycles {
             let points = hopf::search(&wheel, along)?.points;
             return Ok((wheel, Start::Hopf { points, only: None }));
         };
-        let LabelledPoint { parameters, orbit, .. } = reference.read(&SCHEMAS)?;
+        let LabelledPoint { parameters, orbit, branching } = reference.read(&SCHEMAS)?;
         let wheel = stored_wheel(&parameters).map_err(|error| reference.failure(error.to_string()))?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
@@ -127,7 +147,25 @@ impl Cycles {
                 )));
             }
             reference.check(&orbit, states.len())?;
-            return Ok((wheel, Start::Cycle { origin: reference.label.clone(), orbit }));
+            // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
+            let branching = branching
+                .filter(|(branching, key)| {
+                    !self.stay && (branching.doubled || *key == along.key().to_string())
+                })
+                .map(|(branching, _)| branching);
+            let origin = match &branching {
+                Some(branching) if branching.doubled => format!("{}, the doubled cycles", reference.label),
+                Some(_) => format!("{}, the other branch through it", reference.label),
+                None => reference.label.clone(),
+            };
+            let start = match branching {
+                Some(branching) => {
+                    branching.check(states.len()).map_err(|error| reference.failure(error.to_string()))?;
+                    CycleStart::Branching(branching)
+                }
+                None => CycleStart::Orbit(orbit),
+            };
+            return Ok((wheel, Start::Cycle { origin, start }));
         }
         // The point of an earlier search is found again along the parameter that now varies, on the way from one end: a
         // search that starts at the point itself would not see the growth rate change its sign.

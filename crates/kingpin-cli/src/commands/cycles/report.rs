@@ -14,7 +14,7 @@ use crate::report::Report;
 use crate::table::{Cell, Table};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::{CyclePoint, Orbit};
+use arclength::cycle::{Branching, CyclePoint, Orbit};
 use kingpin::Wheel;
 use kingpin::branches::{Along, HopfPoint};
 use kingpin::rolling::STATE_NAMES;
@@ -48,6 +48,9 @@ pub struct PointReport {
     /// The cycle itself, where a computation can start from it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Orbit>,
+    /// The start of the branch that leaves there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub branching: Option<Branching>,
 }
 
 /// Where a branch starts and why it ends.
@@ -143,6 +146,7 @@ fn at_cycle(branch: u64, cycle: &CyclePoint, label: Option<String>) -> PointRepo
         stable: cycle.stable,
         error_estimate: cycle.error_estimate,
         orbit: label.as_ref().map(|_| cycle.orbit.clone()),
+        branching: cycle.branching.clone(),
         label,
         max: named_state(&cycle.max),
         min: named_state(&cycle.min),
@@ -171,6 +175,7 @@ fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<PointReport, 
         max: named_state(&hopf.state),
         min: named_state(&hopf.state),
         orbit: None,
+        branching: None,
     })
 }
 
