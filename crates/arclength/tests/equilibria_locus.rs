@@ -554,3 +554,41 @@ proptest! {
         }
     }
 }
+
+/// A pitchfork of `z` at `a = 0` beside an oscillator damped at the rate `b` and a state that decays at the rate `1 - 2 b`.
+struct PitchforkBeside;
+
+impl VectorField for PitchforkBeside {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z", "w"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["a".into(), "b".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        d[0] = -p[1] * s[0] - s[1] * 2.0 + s[2] * s[2];
+        d[1] = s[0] * 2.0 - p[1] * s[1];
+        d[2] = p[0] * s[2] - s[2] * s[2] * s[2];
+        d[3] = (p[1] * 2.0 - 1.0) * s[3] + s[2] * s[2];
+    }
+}
+
+#[test]
+fn curves_of_branch_points_have_their_points_of_codimension_two() {
+    let branch =
+        Equilibria::of(&PitchforkBeside).parameters(&[-1.0, -0.4]).along("a", -1.0..=1.0).run().unwrap();
+    let point = branch.branch_points().next().unwrap();
+    let curve = EquilibriumLocus::of(&PitchforkBeside)
+        .from_branch_point(point)
+        .along("a", -1.0..=1.0)
+        .and("b", -1.0..=1.0)
+        .run()
+        .unwrap();
+    let found: Vec<_> = curve.special_points().map(|point| (point.kind, point.values)).collect();
+    for (kind, b) in [(SpecialKind::ZeroHopf, 0.0), (SpecialKind::BogdanovTakens, 0.5)] {
+        let near = found
+            .iter()
+            .any(|(other, values)| *other == kind && values[0].abs() < 1e-8 && (values[1] - b).abs() < 1e-8);
+        assert!(near, "{kind:?} among {found:?}");
+    }
+}

@@ -58,6 +58,9 @@ const STEP_REDUCTION: f64 = 0.4;
 const TANGENT_COSINE: f64 = 0.9;
 /// Corrections after a change of mesh that may follow each other at one point.
 const MOST_ADAPTATIONS: usize = 12;
+/// Part of its range by which a parameter of the start may move by rounding.
+const START_ROUNDING: f64 = 1e-13;
+
 /// Follows the curve from `start` (not necessarily converged) in the direction of `tangent`.
 ///
 /// `observer` is told every accepted solution and may end the run.
@@ -72,7 +75,16 @@ pub fn follow<C: Curve>(
     observer: &mut dyn FnMut(&Solution<C::Point>) -> ControlFlow<()>,
 ) -> Result<Followed<C::Point>, Error> {
     let settings = &request.settings;
+    let asked = start.clone();
     let mut current = converge(curve, start, tangent, settings, &mut [])?;
+    // A start on the curve stays exactly at its parameter values.
+    for bound in &request.bounds {
+        let value = asked[asked.len() - bound.from_end];
+        let place = current.unknown.len() - bound.from_end;
+        if (current.unknown[place] - value).abs() <= START_ROUNDING * (bound.upper - bound.lower) {
+            current.unknown[place] = value;
+        }
+    }
     let mut closure = request.bounds.first().map(|bound| Closure::at(curve, &current, *bound));
     let mut solutions = vec![(current.clone(), Origin::Step)];
     // Lengths of the curve up to the solutions.

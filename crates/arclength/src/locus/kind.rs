@@ -304,8 +304,21 @@ impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
         self.normal = normal;
     }
 
-    fn monitor(&mut self, _point: &Linearized<'_>) -> Result<Monitor, Error> {
-        Ok(Monitor::default())
+    fn monitor(&mut self, point: &Linearized<'_>) -> Result<Monitor, Error> {
+        let n = point.scales.len();
+        let largest = point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let rest = without(point.eigenvalues, &[Complex64::ZERO]);
+        let mut monitor = Monitor::default();
+        if n > 1 {
+            monitor.tests.push((SpecialKind::BogdanovTakens, zero_test(&rest, largest)));
+        }
+        let pairs = HopfTest::of(&rest);
+        if n > 2 {
+            // The secant method may hit the point itself.
+            let value = if pairs.undecided == 0 { pairs.closest.copysign(pairs.product) } else { 0.0 };
+            monitor.tests.push((SpecialKind::ZeroHopf, value));
+        }
+        Ok(monitor)
     }
 
     fn critical_eigenvalues(&self, _unknown: &[f64]) -> Vec<Complex64> {

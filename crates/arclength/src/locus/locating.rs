@@ -36,7 +36,9 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     distance: f64,
     kind: SpecialKind,
 ) -> Result<Option<Node>, Error> {
-    if kind != SpecialKind::GeneralizedHopf {
+    // On a curve of branch points the defining systems of the others are singular.
+    let by_secant = kind == SpecialKind::GeneralizedHopf || K::KIND == SpecialKind::BranchPoint;
+    if !by_secant {
         for tolerance in BRACKETS {
             let near = near_zero(curve, before, after, tolerance, kind);
             match newton(curve, &near, kind)? {
@@ -79,8 +81,13 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
         (part * change).max(f64::EPSILON * near.unknown[end + index].abs())
     });
     let unknown = near.unknown.clone();
-    let regular = kind == SpecialKind::GeneralizedHopf;
-    Ok(Some(complete(curve, near, unknown, error, kind, regular)?))
+    // Two real eigenvalues of opposite sign are no pair on the axis.
+    let eigenvalues = without(&near.point.spectrum.eigenvalues, &[Complex64::ZERO]);
+    let pair = critical_pair(&eigenvalues);
+    if by_secant && kind == SpecialKind::ZeroHopf && pair.is_none_or(|pair| pair[0].im == 0.0) {
+        return Ok(None);
+    }
+    Ok(Some(complete(curve, near, unknown, error, kind, by_secant)?))
 }
 
 /// A solution close to the zero of a test function.

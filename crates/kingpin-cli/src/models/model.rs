@@ -113,6 +113,10 @@ impl ModelOptions {
 pub fn read_model(path: &Path, output: &Output) -> Result<ChosenModel, Failure> {
     let unreadable = |source| Failure::Unreadable { path: path.to_owned(), source };
     let bytes = std::fs::read(path).map_err(unreadable)?;
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        let problem = format!("this is a result, not a model; try: --from {}:LABEL", path.display());
+        return Err(Failure::ResultFile { path: path.to_owned(), problem });
+    }
     let model = Model::parse_bytes(&bytes)
         .map_err(|source| Failure::Model { path: path.to_owned(), source: source.into() })?;
     for warning in model.warnings() {
