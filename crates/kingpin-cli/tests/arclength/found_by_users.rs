@@ -1,0 +1,94 @@
+//! Models on which the program went wrong once: each test is the case as it was met.
+
+use crate::{Folder, labelled};
+use serde_json::Value;
+
+/// A food chain. With `u2 = p3/p5 = 1/6` the top species may live, and then `u1 = 1 - p4/6 = 1/3`.
+const FOOD_CHAIN: &str = "par p1=0,p2=.25,p3=.5,p4=4,p5=3,p6=5
+u1'=u1*(1-u1)-p4*u1*u2
+u2'=-p2*u2+p4*u1*u2-p5*u2*u3-p1*(1-exp(-p6*u2))
+u3'=-p3*u3+p5*u2*u3
+init u1=1 u2=0 u3=0
+done
+";
+
+/// Two coupled cells with substrate inhibition.
+const TWO_CELLS: &str = "par s0=0,mu=0,rho=100,kappa=1
+f(s)=s/(1+s+kappa*s^2)
+s1'=(s0-s1)+(s2-s1)-rho*f(s1)
+s2'=(s0+mu-s2)+(s1-s2)-rho*f(s2)
+done
+";
+
+/// The Oregonator with three variables.
+const OREGONATOR: &str = "par f=1,q=.002,eps=.04,epsp=.0004
+x'=(q*y-x*y+x*(1-x))/eps
+y'=(-q*y-x*y+f*z)/epsp
+z'=x-z
+init x=.1,y=.1,z=.1
+done
+";
+
+fn folder(text: &str) -> Folder {
+    let folder = Folder::with("lure.ode");
+    std::fs::write(folder.0.path().join("model.ode"), text).unwrap();
+    folder
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
+}
+
+fn points(result: &Value) -> &[Value] {
+    result["points"].as_array().unwrap()
+}
+
+#[test]
+fn an_almost_extinct_species_does_not_spoil_the_branch_point() {
+    let folder = folder(FOOD_CHAIN);
+    folder.succeed("equilibria model.ode --along p1=0:2 -q -o first.json");
+    folder.succeed("equilibria --from first.json:BP1 --along p1=0:2 -q -o second.json");
+    let third = folder.json("equilibria --from second.json:BP1 --along p1=0:2");
+    assert!(points(&third).iter().all(|point| (number(&point["state"]["u1"]) - 1.0 / 3.0).abs() < 1e-9));
+    // Where the eigenvalues that NumPy finds there cross the axis.
+    assert!((number(&labelled(&third, "HB1")["value"]) - 0.229356976992).abs() < 1e-11);
+}
+
+#[test]
+fn cycles_leave_a_branch_point_into_the_plane_without_the_third_species() {
+    let folder = folder(FOOD_CHAIN);
+    folder.succeed("equilibria model.ode -s p1=.2 --start u1=.33,u2=.17,u3=.2 --along p1=0:2 -q -o eq.json");
+    folder.succeed("cycles --from eq.json:HB1 --along p1=0:1 -q -o po.json");
+    let other = folder.json("cycles --from po.json:BPC1 --along p1=0:1");
+    assert!(points(&other).len() > 5);
+    assert!(points(&other).iter().all(|point| number(&point["max"]["u3"]).abs() < 1e-12));
+}
+
+#[test]
+fn a_closed_branch_through_pitchforks_ends_after_one_lap() {
+    let folder = folder(TWO_CELLS);
+    folder.succeed("equilibria model.ode --along s0=0:70 -q -o eq.json");
+    let lap = folder.json("equilibria --from eq.json:BP1 --along s0=0:70");
+    let labels: Vec<&str> = points(&lap).iter().filter_map(|point| point["label"].as_str()).collect();
+    let of = |kind: &str| labels.iter().filter(|label| label.starts_with(kind)).count();
+    assert_eq!((of("BP"), of("LP")), (2, 4), "{labels:?}");
+    assert!(lap["ends"][1]["cause"].as_str().unwrap().contains("closed"));
+}
+
+#[test]
+fn a_branch_of_cycles_ends_at_the_hopf_point_that_there_is() {
+    let folder = folder(OREGONATOR);
+    let equilibria = folder.json("equilibria model.ode --along f=0.2:3");
+    let value = number(&labelled(&equilibria, "HB2")["value"]);
+    folder.succeed("equilibria model.ode --along f=0.2:3 -q -o eq.json");
+    let cycles = folder.json("cycles --from eq.json:HB1 --along f=0.2:3");
+    let cause = cycles["ends"][1]["cause"].as_str().unwrap();
+    assert!(cause.contains(&format!("Hopf point at f = {value:.7}")), "{cause}, not {value}");
+}
+
+#[test]
+fn a_result_is_no_model() {
+    let folder = folder(FOOD_CHAIN);
+    folder.succeed("equilibria model.ode --along p1=0:2 -q -o eq.json");
+    folder.fails("equilibria eq.json --along p1=0:2", 2, &["eq.json", "--from eq.json:LABEL"]);
+}
