@@ -70,11 +70,7 @@ impl SlidingWheel {
         duration: f64,
         samples: usize,
     ) -> Result<SlidingHistory, SimulationError> {
-        let [u, q, psi, forward, lateral, yaw, rim] = *initial;
-        let state = [u, q, psi, forward, lateral, yaw, forward - rim];
-        let slips = state[S1] != 0.0 || state[S2] != 0.0;
-        let contact = if slips { Contact::Sliding } else { Contact::Rolling };
-        self.simulate_hybrid(HybridState { contact, state }, duration, samples)
+        self.simulate_hybrid(self.slipping_state(initial), duration, samples)
     }
 
     pub(crate) fn simulate_hybrid(
