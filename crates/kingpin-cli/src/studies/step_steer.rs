@@ -178,11 +178,12 @@ impl Map {
         }
         let lowest = curves()
             .filter(|(_, outcome)| matches!(outcome, Outcome::Ends(fate) if fails(*fate)))
+            .filter(|(curve, _)| self.is_stable(*curve))
             .map(|((speed, radius), _)| speed / radius)
             .fold(f64::INFINITY, f64::min);
         if lowest.is_finite() {
             findings.push(Finding::new(
-                "  lowest yaw rate v/r of a failing step on the grid",
+                "  lowest yaw rate v/r of a stable curve on which it fails",
                 lowest,
                 "rad/s",
             ));

@@ -127,10 +127,10 @@ fn an_interrupted_run_says_what_is_finished() {
     let output = child.wait_with_output().unwrap();
     let messages = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{messages}");
-    assert!(messages.contains("of 8 cells are finished, kept in a.csv.journal"), "{messages}");
+    assert!(messages.contains("of 8 parts are finished, kept in a.csv.journal"), "{messages}");
     assert!(!folder.path("a.csv").exists());
     let resumed = folder.succeed(&format!("{long} --resume"));
-    assert!(resumed.messages.contains("of 8 values were finished"), "{}", resumed.messages);
+    assert!(resumed.messages.contains("of 8 parts were finished"), "{}", resumed.messages);
     folder.succeed(&long.replace("a.csv", "whole.csv"));
     assert!(read(&folder.path("a.csv")) == read(&folder.path("whole.csv")));
     assert_eq!(folder.files(), ["a.csv", "whole.csv"]);

@@ -148,7 +148,8 @@ pub struct DisturbedMotion {
 pub struct SafeKick {
     /// Largest magnitude, below the first failure, from which it was seen to return.
     pub returns: f64,
-    /// Smallest magnitude, next to that, from which it does not.
+    /// Smallest magnitude, next to that, from which it does not; both are 0 where the uniform motion is unstable, and the fate is
+    /// that of a small disturbance.
     pub fails: f64,
     /// What becomes of it from there. [`Fate::Undecided`] where it did none of the other things in the time that it was
     /// followed: then this is only where the patience ends and no edge. `None` where there is no uniform motion (that rolls)
@@ -200,7 +201,8 @@ impl SafeKick {
             return Ok(None);
         };
         let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
-        let mut beyond = scanned[first];
+        // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
+        let mut beyond = scanned[first.max(1)];
         while (fails - returns).abs() > RESOLUTION * largest.abs() {
             let middle = 0.5 * (returns + fails);
             match fate(middle)? {
