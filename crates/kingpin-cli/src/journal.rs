@@ -220,8 +220,7 @@ mod tests {
         std::fs::write(&path, &text).unwrap();
         assert!(Journal::open::<Vec<u8>>(Some(&result), &computation, false).is_err());
         let other = json!({"command": "basin", "parameters": {"v": 5.0}});
-        let refused =
-            || Journal::open::<Vec<u8>>(Some(&result), &other, true).unwrap_err().to_string();
+        let refused = || Journal::open::<Vec<u8>>(Some(&result), &other, true).unwrap_err().to_string();
         assert!(refused().contains("v was 4.0, now it is 5.0"), "{}", refused());
         for (content, reason) in
             [("", "it is empty"), ("null\n", "its first line"), ("{\"comm", "it is empty")]

@@ -82,11 +82,7 @@ impl SlidingReport {
             phases: history
                 .phases
                 .iter()
-                .map(|phase| PhaseReport {
-                    contact: word(phase.contact),
-                    start: phase.start,
-                    end: phase.end,
-                })
+                .map(|phase| PhaseReport { contact: word(phase.contact), start: phase.start, end: phase.end })
                 .collect(),
             sliding_fraction: history.sliding_fraction(),
             t: history.times,

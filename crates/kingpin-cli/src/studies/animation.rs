@@ -70,10 +70,8 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
     let place = |index: usize| pair(pin(index));
     let turned = |index: usize| format!("{:.2}", history.states[index][2].to_degrees());
     let path: Vec<String> = (0..=FRAMES).map(|index| pair(contact_point(index))).collect();
-    let color =
-        |index: usize| if slides(history.times[index]) { "#d55e00" } else { "#0072b2" }.to_owned();
-    let shown =
-        |index: usize, sliding: bool| u8::from(slides(history.times[index]) == sliding).to_string();
+    let color = |index: usize| if slides(history.times[index]) { "#d55e00" } else { "#0072b2" }.to_owned();
+    let shown = |index: usize, sliding: bool| u8::from(slides(history.times[index]) == sliding).to_string();
     let arrow = |index: usize| {
         let [along, across] = history.friction[index];
         // Across is along e2 = (sin psi, cos psi), upwards in the frame of the wheel.

@@ -88,11 +88,7 @@ fn curve(model: ContactModel, speed: f64, radius: f64) -> Result<Wheel, KingpinE
 }
 
 /// What becomes of the straight running wheel on its curve.
-fn outcome(
-    wheel: &Wheel,
-    model: ContactModel,
-    settings: ClassificationSettings,
-) -> Result<Outcome, Failure> {
+fn outcome(wheel: &Wheel, model: ContactModel, settings: ClassificationSettings) -> Result<Outcome, Failure> {
     let destinations = match Destinations::new(wheel, model, settings) {
         Ok(destinations) => destinations,
         Err(SimulationError::UniformMotionSlides { .. }) => return Ok(Outcome::Slides),

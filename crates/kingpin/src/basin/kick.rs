@@ -193,10 +193,8 @@ impl SafeKick {
             }
         };
         let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
-        let scanned: Vec<Option<Fate>> = (0..=SCAN)
-            .into_par_iter()
-            .map(|index| fate(magnitude(index)))
-            .collect::<Result<_, _>>()?;
+        let scanned: Vec<Option<Fate>> =
+            (0..=SCAN).into_par_iter().map(|index| fate(magnitude(index))).collect::<Result<_, _>>()?;
         let Some(first) = scanned.iter().position(|&fate| fate != Some(Fate::UniformMotion)) else {
             return Ok(None);
         };

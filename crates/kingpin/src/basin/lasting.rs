@@ -76,7 +76,12 @@ impl<'a> Lasting<'a> {
     ///
     /// # Errors
     /// A motion that cannot be followed for another reason than that it grows without bound or takes too many steps.
-    pub fn follow(&mut self, until: f64, target: &Target, watch: &mut Watch) -> Result<Seen, SimulationError> {
+    pub fn follow(
+        &mut self,
+        until: f64,
+        target: &Target,
+        watch: &mut Watch,
+    ) -> Result<Seen, SimulationError> {
         let piece = PERIODS_AT_A_TIME * target.natural_period;
         let spacing = target.natural_period / NODES_PER_PERIOD;
         let mut nodes = Vec::new();
@@ -269,11 +274,7 @@ mod tests {
         assert!((single.maxima[0] - 1.0).abs() < 1e-7 && (single.range - 2.0).abs() < 1e-6);
         let double = maxima(200.0, |time| {
             let half = 0.5 * time;
-            [
-                time.sin() + 0.3 * half.cos(),
-                time.cos() - 0.15 * half.sin(),
-                -time.sin() - 0.075 * half.cos(),
-            ]
+            [time.sin() + 0.3 * half.cos(), time.cos() - 0.15 * half.sin(), -time.sin() - 0.075 * half.cos()]
         });
         assert_eq!(double.cycle().unwrap().maxima.len(), 2);
         assert!(maxima(200.0, modulated(|time| (-1e-5 * time).exp())).cycle().is_none());

@@ -226,7 +226,9 @@ fn unstable_cycles(
         // Only as far down as it is needed: slow cycles take long.
         let (lowest, highest) = searched.ends();
         let lowest = if hopf.value > start { lowest.max(BELOW * start) } else { lowest };
-        let branch = match hopf.cycles(Along::new(key, lowest, highest)?, &options, |_, _| ControlFlow::Continue(())) {
+        let branch = match hopf
+            .cycles(Along::new(key, lowest, highest)?, &options, |_, _| ControlFlow::Continue(()))
+        {
             Ok(branch) => branch,
             Err(error) => {
                 found.remarks.push(format!("{born}: {error}"));
@@ -235,15 +237,14 @@ fn unstable_cycles(
         };
         for cycle in branch.points.iter().filter(|cycle| cycle.unstable_multipliers > 0) {
             let amplitude = 0.5 * (cycle.max[2] - cycle.min[2]);
-            let places =
-                values.iter().zip(&mut found.amplitudes).filter(|(value, _)| **value == cycle.value);
+            let places = values.iter().zip(&mut found.amplitudes).filter(|(value, _)| **value == cycle.value);
             for (_, smallest) in places {
                 *smallest = Some(smallest.map_or(amplitude, |other| other.min(amplitude)));
             }
         }
         let reached = branch.points.iter().map(|cycle| cycle.value);
-        let [low, high] = reached
-            .fold([hopf.value; 2], |[low, high], value| [f64::min(low, value), f64::max(high, value)]);
+        let [low, high] =
+            reached.fold([hopf.value; 2], |[low, high], value| [f64::min(low, value), f64::max(high, value)]);
         if values.iter().any(|value| !(low..=high).contains(value)) {
             found.remarks.push(format!("{born} exist in {key} = {}:{}", readable(low), readable(high)));
         }

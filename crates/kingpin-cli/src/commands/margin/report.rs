@@ -3,11 +3,11 @@
 use super::{Cell as Found, UnstableCycles};
 use crate::along::VaryingParameter;
 use crate::columns::Columns;
+use crate::commands::safe_kick::edge::Edge;
 use crate::document::{NamedNumbers, Schema};
 use crate::numbers::readable;
 use crate::options::parameters_of;
 use crate::report::Report;
-use crate::commands::safe_kick::edge::Edge;
 use crate::table::{Cell, Table};
 use crate::{axis_label, description};
 use kingpin::Wheel;
@@ -248,12 +248,8 @@ impl Report for MarginReport {
         )
         .curve(Line::new(positive).color(palette::BLUE).legend("positive"))
         .curve(Line::new(negative).color(palette::VERMILION).dashed().legend("negative"));
-        let undecided: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|point| point.is_undecided())
-            .map(|point| (point.value, 0.0))
-            .collect();
+        let undecided: Vec<(f64, f64)> =
+            self.points.iter().filter(|point| point.is_undecided()).map(|point| (point.value, 0.0)).collect();
         if !undecided.is_empty() {
             let marker = Marker::new(MarkerShape::Circle).open().color(palette::BLACK);
             kicks = kicks.markers(Markers::new(undecided, marker).legend("undecided"));
