@@ -179,7 +179,8 @@ fn histories_with_sliding_have_seven_states_and_phases() {
     let folder = Folder::new();
     let kicked =
         "simulate --contact sliding --duration 1 --points 201 --perturb psi=1.2 -s F_Az=-100 -s v=8.4";
-    let history = folder.json(&format!("{kicked} -q -o a.csv -o a.svg"));
+    folder.succeed(&format!("{kicked} -q -o a.csv -o a.svg"));
+    let history = folder.json(&format!("{kicked} -q"));
     let list = |name: &str| history[name].as_array().unwrap().clone();
     let number = |name: &str, index: usize| list(name)[index].as_f64().unwrap();
     for name in
