@@ -117,7 +117,7 @@ impl<'a> Lasting<'a> {
     ///
     /// # Errors
     /// As [`follow`](Self::follow).
-    pub fn to_the_end(mut self, target: &Target, mut watch: Watch) -> Result<Fate, SimulationError> {
+    pub fn until_the_end(mut self, target: &Target, mut watch: Watch) -> Result<Fate, SimulationError> {
         let until = PATIENCE * watch.duration();
         match self.follow(until, target, &mut watch)? {
             Seen::Ends(fate) => Ok(fate),

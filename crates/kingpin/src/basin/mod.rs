@@ -167,7 +167,7 @@ impl Destinations {
     /// One motion by itself.
     fn of_course(&self, course: Course<'_>) -> Result<Fate, SimulationError> {
         let watch = Watch::new(&self.target, &self.settings, &course.state());
-        Lasting::new(course, 0.0).to_the_end(&self.target, watch)
+        Lasting::new(course, 0.0).until_the_end(&self.target, watch)
     }
 
     /// Many motions at once. Those that swing to and fro at the end of the duration are looked at one by one, in passing;
@@ -191,7 +191,7 @@ impl Destinations {
         let fate = |motion: Followed| match motion.fate {
             Some(fate) => Ok(fate),
             None => Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time)
-                .to_the_end(&self.target, motion.watch),
+                .until_the_end(&self.target, motion.watch),
         };
         motions.into_par_iter().map(fate).collect()
     }
