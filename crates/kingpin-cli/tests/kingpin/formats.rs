@@ -190,10 +190,10 @@ fn histories_with_sliding_have_seven_states_and_phases() {
     }
     let (normal, phases) = (number("normal_force", 0), list("phase"));
     assert!((normal - 104.107_447).abs() < 1e-6);
-    for index in 0..201 {
+    for (index, phase) in phases.iter().enumerate() {
         let slip = (number("V1", index) - number("W", index)).hypot(number("V2", index));
         assert!((slip - number("slip", index)).abs() < 1e-12);
-        if phases[index] == "rolling" {
+        if phase == "rolling" {
             assert!(slip < 1e-12 && number("friction_force", index) <= normal * (1.0 + 1e-9));
         } else if slip > 1e-3 {
             // Coulomb's law: mu_d N whatever the slip.

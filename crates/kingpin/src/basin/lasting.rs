@@ -12,7 +12,7 @@ use crate::simulation::SimulationError;
 use arclength::integration::IntegrationError;
 
 /// Nodes in one natural period of the springs: enough for maxima of motions with sliding phases to be right to a part of `REPEATED`.
-const NODES_PER_PERIOD: f64 = 96.0;
+const NODES_PER_PERIOD: f64 = 384.0;
 /// Natural periods that are followed at a time.
 const PERIODS_AT_A_TIME: f64 = 5.0;
 /// So many maxima in a row must be those of one cycle before, which has up to `MOST_MAXIMA`, ...

@@ -122,6 +122,11 @@ fn shimmy_with_sliding_phases_is_found() {
     let kicked = [0.05, 0.2].map(|angle| wheel.perturbed_uniform_motion(&[("psi", angle)]).unwrap());
     let fates = destinations(&wheel, ContactModel::Sliding, 10.0).of(&kicked).unwrap();
     assert_eq!(fates, [Fate::Shimmy, Fate::Shimmy]);
+    // Large shimmy with three swings in a period, beside a stable uniform motion; its largest multiplier is 0.23.
+    let loaded = Wheel::default().with(Key::V, 8.4).unwrap().with(Key::FAz, -100.0).unwrap();
+    let kicked = loaded.perturbed_uniform_motion(&[("psi", 1.2)]).unwrap();
+    let fates = destinations(&loaded, ContactModel::Sliding, 15.0).of(&[kicked]).unwrap();
+    assert_eq!(fates, [Fate::Shimmy]);
 }
 
 #[test]
