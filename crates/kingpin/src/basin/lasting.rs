@@ -27,11 +27,14 @@ const BACK: f64 = 0.1;
 const GONE: f64 = 30.0;
 /// The size of an irregular motion is taken in windows of so many natural periods, and compared between the two halves of so many
 /// windows.
-const PERIODS_PER_WINDOW: f64 = 20.0;
+const PERIODS_PER_WINDOW: f64 = 10.0;
 const WINDOWS: usize = 20;
-/// Means that differ by so many standard errors show a trend.
-const STANDARD_ERRORS: f64 = 2.0;
-/// A size that scatters less than this, relative to its mean, is not that of an irregular motion.
+/// Means that differ by so many standard errors show a trend, ...
+const STANDARD_ERRORS: f64 = 3.0;
+/// ... and so do variances with such a ratio: a motion that leaves in the end scatters only then. Independent normal numbers
+/// exceed it once in a thousand times (F distribution, 9 and 9 degrees of freedom).
+const VARIANCE_RATIO: f64 = 10.0;
+/// A size that scatters less than this in either half, relative to its mean, is not that of an irregular motion.
 const LEAST_SCATTER: f64 = 1e-3;
 /// Natural periods for which a motion is looked at in passing, and those which it takes to tell whether it is irregular.
 pub(super) const BRIEF: f64 = 60.0;
@@ -239,10 +242,12 @@ impl Maxima {
             let centre = mean(values);
             values.iter().map(|value| (value - centre).powi(2)).sum::<f64>() / (values.len() - 1) as f64
         };
-        let pooled = 0.5 * (variance(early) + variance(late));
-        let error = (2.0 * pooled / (WINDOWS / 2) as f64).sqrt();
+        let [before, after] = [variance(early), variance(late)];
         let size = 0.5 * (mean(early) + mean(late));
-        pooled.sqrt() > LEAST_SCATTER * size && (mean(early) - mean(late)).abs() < STANDARD_ERRORS * error
+        let error = ((before + after) / (WINDOWS / 2) as f64).sqrt();
+        before.min(after).sqrt() > LEAST_SCATTER * size
+            && before.max(after) < VARIANCE_RATIO * before.min(after)
+            && (mean(early) - mean(late)).abs() < STANDARD_ERRORS * error
     }
 }
 
@@ -285,6 +290,13 @@ mod tests {
         assert!(!maxima(1000.0, modulated(|_| 1.0)).is_irregular());
         assert!(!maxima(1000.0, modulated(|time| 1.0 - 1e-4 * time)).is_irregular());
         assert!(!maxima(1000.0, modulated(|time| 1.0 + 1e-4 * (0.01 * time).exp())).is_irregular());
+        // Steady but for rounding, then away: in the last window, over some, or all the time.
+        for rate in [0.005, 0.02, 0.1, 0.5] {
+            let leaves = modulated(move |time: f64| {
+                1.0 + 1e-3 * (0.7 * time).sin() + 0.5 * (rate * (time - 999.0)).exp()
+            });
+            assert!(!maxima(999.0, leaves).is_irregular(), "{rate}");
+        }
         let beating = modulated(|time: f64| 1.0 + 0.1 * (0.0137 * time).sin() * (0.7 * time).cos());
         assert!(maxima(1000.0, beating).is_irregular());
     }
