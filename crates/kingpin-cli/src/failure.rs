@@ -112,12 +112,12 @@ pub enum Failure {
         source: std::io::Error,
     },
     /// Ctrl-C was pressed.
-    #[error("interrupted: {done} of {cells} cells are finished, {kept}")]
+    #[error("interrupted: {done} of {parts} parts are finished, {kept}")]
     Interrupted {
-        /// Number of cells that are finished.
+        /// Number of parts that are finished.
         done: usize,
-        /// Number of all cells.
-        cells: usize,
+        /// Number of all parts.
+        parts: usize,
         /// Where they are kept.
         kept: String,
     },

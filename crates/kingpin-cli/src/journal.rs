@@ -1,8 +1,8 @@
-//! Journals of long runs: every finished cell is kept beside the result file at once, so that a run that is interrupted, or
+//! Journals of long runs: every finished part is kept beside the result file at once, so that a run that is interrupted, or
 //! killed, can be resumed.
 //!
 //! A journal is text: its first line says which computation it belongs to, every other line is a JSON array of the index
-//! of a cell and its result. A last line that was torn is passed over. It goes when the result has been written.
+//! of a part and its result. A last line that was torn is passed over. It goes when the result has been written.
 
 use crate::failure::Failure;
 use serde::Serialize;
@@ -18,16 +18,16 @@ use std::sync::{Mutex, PoisonError};
 /// What is added to the name of the result file.
 const ENDING: &str = ".journal";
 
-/// The finished cells of a run, on disk where there is a result file.
+/// The finished parts of a run, on disk where there is a result file.
 #[derive(Debug)]
 pub struct Journal {
     place: Option<(PathBuf, Mutex<File>)>,
-    /// Why a cell could not be kept.
+    /// Why a part could not be kept.
     lost: Mutex<Option<std::io::Error>>,
 }
 
 impl Journal {
-    /// Starts a journal beside a result file, or goes on with the one that is there, and returns the cells that are finished.
+    /// Starts a journal beside a result file, or goes on with the one that is there, and returns the parts that are finished.
     /// Without a result file nothing is kept.
     ///
     /// # Errors
@@ -46,14 +46,14 @@ impl Journal {
         };
         let path = beside(result);
         let failure = |source| Failure::Journal { path: path.clone(), source };
-        let mut cells = BTreeMap::new();
+        let mut parts = BTreeMap::new();
         if path.exists() {
             if !resume {
                 let problem = "an unfinished run is kept in it";
                 let allowed = "go on with it by --resume, or delete it";
                 return Err(refused("--out", path.display().to_string(), problem, allowed));
             }
-            cells = read(&path, computation)?;
+            parts = read(&path, computation)?;
         }
         // Written anew, so that it ends with a whole line: as a temporary file first, the old one stays if that fails.
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -63,16 +63,16 @@ impl Journal {
             .map_err(failure)?;
         writeln!(fresh, "{computation}").map_err(failure)?;
         if path.exists() {
-            copy_cells(&path, &mut fresh).map_err(failure)?;
+            copy_parts(&path, &mut fresh).map_err(failure)?;
         }
         let file = fresh.persist(&path).map_err(|error| failure(error.error))?;
-        Ok((Self { place: Some((path, Mutex::new(file))), lost: Mutex::default() }, cells))
+        Ok((Self { place: Some((path, Mutex::new(file))), lost: Mutex::default() }, parts))
     }
 
-    /// Keeps a finished cell. Where that fails the run is cancelled, and [`checked`](Self::checked) tells why.
-    pub fn keep<T: Serialize>(&self, index: usize, cell: &T, cancelled: &AtomicBool) {
+    /// Keeps a finished part. Where that fails the run is cancelled, and [`checked`](Self::checked) tells why.
+    pub fn keep<T: Serialize>(&self, index: usize, part: &T, cancelled: &AtomicBool) {
         let Some((_, file)) = &self.place else { return };
-        let line = serde_json::to_string(&(index, cell)).map_err(std::io::Error::from);
+        let line = serde_json::to_string(&(index, part)).map_err(std::io::Error::from);
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
         if let Err(error) = line.and_then(|line| file.write_all(format!("{line}\n").as_bytes())) {
             *self.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
@@ -80,23 +80,23 @@ impl Journal {
         }
     }
 
-    /// That every cell was kept and nobody interrupted the run, of which so many cells in so many are done.
+    /// That every part was kept and nobody interrupted the run, of which so many parts in so many are done.
     ///
     /// # Errors
     /// [`Failure::Journal`] and [`Failure::Interrupted`].
-    pub fn checked(&self, done: usize, cells: usize) -> Result<(), Failure> {
+    pub fn checked(&self, done: usize, parts: usize) -> Result<(), Failure> {
         let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let (Some(source), Some((path, _))) = (lost, &self.place) {
             return Err(Failure::Journal { path: path.clone(), source });
         }
-        if done == cells {
+        if done == parts {
             return Ok(());
         }
         let kept = match &self.place {
             Some((path, _)) => format!("kept in {}; go on with --resume", path.display()),
             None => "nothing was kept; with --out PATH it would be".to_owned(),
         };
-        Err(Failure::Interrupted { done, cells, kept })
+        Err(Failure::Interrupted { done, parts, kept })
     }
 
     /// Removes the journal once the result is written.
@@ -113,7 +113,7 @@ impl Journal {
     }
 }
 
-/// Set once Ctrl-C was pressed, so that a run stops after the cells that it is at; pressed again it ends the program.
+/// Set once Ctrl-C was pressed, so that a run stops after the parts that it is at; pressed again it ends the program.
 ///
 /// # Errors
 /// [`Failure::Signals`].
@@ -153,7 +153,7 @@ fn lines(path: &Path) -> std::io::Result<Vec<String>> {
     }
 }
 
-fn copy_cells(from: &Path, to: &mut impl Write) -> std::io::Result<()> {
+fn copy_parts(from: &Path, to: &mut impl Write) -> std::io::Result<()> {
     lines(from)?.iter().skip(1).try_for_each(|line| writeln!(to, "{line}"))
 }
 
@@ -162,14 +162,20 @@ fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMa
     let other = |problem: String| {
         refused("--resume", path.display().to_string(), &problem, "the same command, or delete the journal")
     };
-    let header: Value = lines.first().and_then(|line| serde_json::from_str(line).ok()).unwrap_or_default();
+    let Some(first) = lines.first() else {
+        return Err(other("it is empty: no computation was kept in it".to_owned()));
+    };
+    let header: Value = match serde_json::from_str(first) {
+        Ok(header @ Value::Object(_)) => header,
+        _ => return Err(other("its first line does not say which computation it belongs to".to_owned())),
+    };
     if let Some(difference) = difference(&header, computation) {
         return Err(other(format!("it is the journal of another computation: {difference}")));
     }
-    let cell = |(number, line): (usize, &String)| {
+    let part = |(number, line): (usize, &String)| {
         serde_json::from_str(line).map_err(|error| other(format!("line {}: {error}", number + 2)))
     };
-    lines.iter().skip(1).enumerate().map(cell).collect()
+    lines.iter().skip(1).enumerate().map(part).collect()
 }
 
 /// The first field in which two computations differ.
@@ -206,7 +212,7 @@ mod tests {
         assert!(cells.is_empty());
         journal.keep(3, &vec![1_u8, 2], &never);
         journal.keep(0, &vec![0_u8], &never);
-        assert!(matches!(journal.checked(2, 5), Err(Failure::Interrupted { done: 2, cells: 5, .. })));
+        assert!(matches!(journal.checked(2, 5), Err(Failure::Interrupted { done: 2, parts: 5, .. })));
         drop(journal);
         let path = beside(&result);
         let mut text = std::fs::read_to_string(&path).unwrap();
@@ -214,8 +220,15 @@ mod tests {
         std::fs::write(&path, &text).unwrap();
         assert!(Journal::open::<Vec<u8>>(Some(&result), &computation, false).is_err());
         let other = json!({"command": "basin", "parameters": {"v": 5.0}});
-        let message = Journal::open::<Vec<u8>>(Some(&result), &other, true).unwrap_err().to_string();
-        assert!(message.contains("v was 4.0, now it is 5.0"), "{message}");
+        let refused = || Journal::open::<Vec<u8>>(Some(&result), &other, true).unwrap_err().to_string();
+        assert!(refused().contains("v was 4.0, now it is 5.0"), "{}", refused());
+        for (content, reason) in
+            [("", "it is empty"), ("null\n", "its first line"), ("{\"comm", "it is empty")]
+        {
+            std::fs::write(&path, content).unwrap();
+            assert!(refused().contains(reason), "{content}: {}", refused());
+        }
+        std::fs::write(&path, &text).unwrap();
         let (journal, cells) = Journal::open::<Vec<u8>>(Some(&result), &computation, true).unwrap();
         assert_eq!(cells, BTreeMap::from([(3, vec![1, 2]), (0, vec![0])]));
         journal.keep(1, &vec![9_u8], &never);

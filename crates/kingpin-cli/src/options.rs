@@ -90,6 +90,7 @@ impl WheelOptions {
                 .set(key, value)
                 .map_err(|source| Failure::Set { given: format!("{key}={value}"), source })?;
         }
+        wheel.check()?;
         Ok(wheel)
     }
 }

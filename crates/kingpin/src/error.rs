@@ -141,6 +141,14 @@ pub enum KingpinError {
         /// The other.
         second: Key,
     },
+    /// Sliding friction above static friction.
+    #[error("mu_d = {sliding} is not allowed: at most mu_s = {sticking}")]
+    SlidingFriction {
+        /// `mu_d`.
+        sliding: f64,
+        /// `mu_s`.
+        sticking: f64,
+    },
     /// `r` cannot vary from infinity.
     #[error("`r` cannot vary from inf: vary `curvature` = 1/r from 0 instead")]
     InfiniteRadius,

@@ -101,6 +101,18 @@ impl Wheel {
         Ok(self)
     }
 
+    /// That the parameters fit together: sliding friction is at most static friction.
+    ///
+    /// # Errors
+    /// [`SlidingFriction`](KingpinError::SlidingFriction).
+    pub fn check(&self) -> Result<(), KingpinError> {
+        let (sticking, sliding) = (self.get(Key::MuS), self.get(Key::MuD));
+        if sliding > sticking {
+            return Err(KingpinError::SlidingFriction { sliding, sticking });
+        }
+        Ok(())
+    }
+
     /// Reads a wheel from TOML: `key = value` lines. Keys that are absent keep the value of the default wheel; `k` and
     /// `curvature` are taken before the keys that they stand for.
     ///

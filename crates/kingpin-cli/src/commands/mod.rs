@@ -8,6 +8,7 @@ pub mod margin;
 pub mod paper;
 pub mod safe_kick;
 pub mod simulate;
+mod sliding_history;
 pub mod stability;
 pub mod steady;
 pub mod study;

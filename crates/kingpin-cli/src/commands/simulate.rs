@@ -1,6 +1,8 @@
 //! `kingpin simulate`: a time history from the uniform motion with some states perturbed.
 
 use crate::columns::Columns;
+use crate::commands::basin::classification::Contact;
+use crate::commands::sliding_history::SlidingReport;
 use crate::description;
 use crate::document::{NamedNumbers, Schema};
 use crate::failure::Failure;
@@ -39,6 +41,10 @@ pub struct Simulate {
           value_parser = clap::value_parser!(u64).range(2..=MOST_POINTS))]
     points: u64,
 
+    /// Whether the wheel may slide; then the states are u, q, psi, V1, V2, Omega, W, and V changes V1 and W
+    #[arg(long, value_enum, default_value_t)]
+    contact: Contact,
+
     #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
@@ -54,6 +60,11 @@ impl Simulate {
         let output = self.output.prepare(true)?;
         let wheel = self.wheel.wheel()?;
         let perturbations: Vec<(&str, f64)> = self.perturb.iter().map(amount).collect::<Result<_, _>>()?;
+        if self.contact == Contact::Sliding {
+            let start = wheel.perturbed_sliding_motion(&perturbations)?;
+            let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points as usize)?;
+            return output.deliver(&SlidingReport::new(wheel, history));
+        }
         let history = wheel.simulate(self.duration, &perturbations, self.points as usize)?;
         if let Some(time) = history.rolling_lost_at {
             output.warn(&format!(

@@ -66,16 +66,17 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
         let ((x, y), psi) = (pin(index), history.states[index][2]);
         (x - scale * length * psi.cos(), y - scale * length * psi.sin())
     };
-    let pins = list(&|index| pair(pin(index)));
-    let angles = list(&|index| format!("{:.2}", history.states[index][2].to_degrees()));
+    // The attributes have the values at the start, so that a viewer that does not animate shows one picture of the motion.
+    let place = |index: usize| pair(pin(index));
+    let turned = |index: usize| format!("{:.2}", history.states[index][2].to_degrees());
     let path: Vec<String> = (0..=FRAMES).map(|index| pair(contact_point(index))).collect();
-    let colors = list(&|index| if slides(history.times[index]) { "#d55e00" } else { "#0072b2" }.to_owned());
-    let shown = |sliding: bool| list(&|index| u8::from(slides(history.times[index]) == sliding).to_string());
-    let arrow = list(&|index| {
+    let color = |index: usize| if slides(history.times[index]) { "#d55e00" } else { "#0072b2" }.to_owned();
+    let shown = |index: usize, sliding: bool| u8::from(slides(history.times[index]) == sliding).to_string();
+    let arrow = |index: usize| {
         let [along, across] = history.friction[index];
         // Across is along e2 = (sin psi, cos psi), upwards in the frame of the wheel.
         format!("M0 0 L{:.1} {:.1}", FORCE * along, -FORCE * across)
-    });
+    };
 
     let mut svg = String::new();
     let mut line = |text: String| {
@@ -108,21 +109,22 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
         )
     };
     let (diameter, tread) = (2.0 * radius * scale, 2.0 * radius * scale * WIDTH);
-    line("<g>".into());
-    line(transform("translate", &pins));
-    line("<g>".into());
-    line(transform("rotate", &angles));
+    line(format!("<g transform=\"translate({})\">", place(0)));
+    line(transform("translate", &list(&place)));
+    line(format!("<g transform=\"rotate({})\">", turned(0)));
+    line(transform("rotate", &list(&turned)));
     line(format!("<line x2=\"{:.1}\" stroke=\"#333\" stroke-width=\"7\"/>", -scale * length));
     line(format!("<g transform=\"translate({:.1} 0)\">", -scale * length));
     line(format!(
-        "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{diameter:.1}\" height=\"{tread:.1}\" rx=\"10\" fill-opacity=\"0.85\">",
+        "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{diameter:.1}\" height=\"{tread:.1}\" rx=\"10\" fill=\"{}\" fill-opacity=\"0.85\">",
         -0.5 * diameter,
-        -0.5 * tread
+        -0.5 * tread,
+        color(0)
     ));
-    line(animate("fill", &colors, true));
+    line(animate("fill", &list(&color), true));
     line("</rect>".into());
-    line("<path fill=\"none\" stroke=\"#000\" stroke-width=\"3\">".into());
-    line(animate("d", &arrow, false));
+    line(format!("<path d=\"{}\" fill=\"none\" stroke=\"#000\" stroke-width=\"3\">", arrow(0)));
+    line(animate("d", &list(&arrow), false));
     line("</path>".into());
     line("<circle r=\"4\"/></g></g>".into());
     line("<circle r=\"7\" fill=\"#fff\" stroke=\"#333\" stroke-width=\"3\"/>".into());
@@ -131,9 +133,10 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
     line("</g>".into());
     for (word, color, sliding) in [("rolling", "#0072b2", false), ("sliding", "#d55e00", true)] {
         line(format!(
-            "<text x=\"16\" y=\"30\" font-size=\"24\" font-weight=\"bold\" fill=\"{color}\">{word}"
+            "<text x=\"16\" y=\"30\" font-size=\"24\" font-weight=\"bold\" fill=\"{color}\" opacity=\"{}\">{word}",
+            shown(0, sliding)
         ));
-        line(animate("opacity", &shown(sliding), true));
+        line(animate("opacity", &list(&|index| shown(index, sliding)), true));
         line("</text>".into());
     }
     line(format!(

@@ -1,13 +1,13 @@
 //! Where kicked wheels end: maps over the release angle and the yaw rate at several speeds, rolling ideally.
 
-use super::{Drawing, Finding, Study, fate_map, occurring, wheel};
+use super::{Drawing, Finding, Study, fate_color, wheel};
 use crate::columns::Columns;
 use crate::failure::Failure;
 use kingpin::Key;
 use kingpin::basin::{
     Axis as Range, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate, Fraction,
 };
-use kingpin_figure::{Axis, Figure, Legend, Panel};
+use kingpin_figure::{Axis, CategoryMap, Figure, Grid, Legend, Panel};
 use std::sync::atomic::AtomicBool;
 
 /// Speeds in m/s of the maps.
@@ -23,7 +23,7 @@ const DURATION: f64 = 30.0;
 /// A map at one speed, the angle running faster.
 struct Map {
     speed: f64,
-    fates: Vec<Option<Fate>>,
+    fates: Vec<Fate>,
 }
 
 pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
@@ -39,7 +39,7 @@ pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
             let what = format!("v = {speed} m/s: part of the map that ends in {}", fraction.fate.name());
             findings.push(Finding::new(what, fraction.share, ""));
         }
-        maps.push(Map { speed, fates: tiles.into_iter().flat_map(|tile| tile.fates).map(Some).collect() });
+        maps.push(Map { speed, fates: tiles.into_iter().flat_map(|tile| tile.fates).collect() });
         progress((index + 1) as f64 / SPEEDS.len() as f64);
     }
     Ok(Study { findings, drawings: vec![drawing(&maps)?], pictures: Vec::new() })
@@ -50,19 +50,27 @@ fn values(largest: f64) -> Vec<f64> {
 }
 
 fn drawing(maps: &[Map]) -> Result<Drawing, Failure> {
-    let seen = occurring(maps.iter().flat_map(|map| &map.fates));
+    let seen: Vec<Fate> =
+        Fate::ALL.into_iter().filter(|fate| maps.iter().any(|map| map.fates.contains(fate))).collect();
     let mut figure = Figure::double_column()
         .columns(2)
         .height_mm(150.0)
         .description("Where motions end, against initial caster angle and yaw rate, at four speeds");
     for (map, tag) in maps.iter().zip(["(a)", "(b)", "(c)", "(d)"]) {
+        let cells: Vec<usize> =
+            map.fates.iter().filter_map(|fate| seen.iter().position(|candidate| candidate == fate)).collect();
+        let colors = CategoryMap::new(
+            Grid::new(values(ANGLE), values(YAW_RATE))?,
+            cells,
+            seen.iter().map(|&fate| (fate.name(), fate_color(fate))),
+        )?;
         let panel = Panel::new(
             Axis::new("$\\psi-\\psi_0$ (rad)").limits(-ANGLE, ANGLE),
             Axis::new("$\\Omega-\\omega$ (rad/s)").limits(-YAW_RATE, YAW_RATE),
         )
         .tag(tag)
         .title(format!("$v={}$ m/s", map.speed))
-        .map(fate_map(values(ANGLE), values(YAW_RATE), &map.fates, &seen)?)
+        .map(colors)
         .legend(if tag < "(c)" { Legend::None } else { Legend::Below });
         figure = figure.panel(panel);
     }
@@ -75,6 +83,6 @@ fn drawing(maps: &[Map]) -> Result<Drawing, Failure> {
         .numbers("v [m/s]", rows().map(|row| row.0))
         .numbers("psi - psi0 [rad]", rows().map(|row| angles[row.1 % POINTS]))
         .numbers("Omega - omega [rad/s]", rows().map(|row| yaw_rates[row.1 / POINTS]))
-        .texts("fate", rows().map(|row| row.2.map(|fate| fate.name().to_owned())));
+        .texts("fate", rows().map(|row| Some(row.2.name().to_owned())));
     Ok(Drawing { number: 10, figure, data })
 }

@@ -17,7 +17,7 @@ use crate::table::Cell;
 use crate::terminal::output_failure;
 use kingpin::basin::Fate;
 use kingpin::{Key, KingpinError, Wheel};
-use kingpin_figure::{CategoryMap, Color, Figure, Grid, palette};
+use kingpin_figure::{Color, Figure, palette};
 use std::path::{Path, PathBuf};
 
 /// Resolution of the PNG files in dots per inch.
@@ -169,28 +169,6 @@ fn fate_color(fate: Fate) -> Color {
         Fate::Escape => palette::GREY,
         Fate::Undecided => palette::LIGHT_GREY,
     }
-}
-
-/// A map of fates over a grid, the second axis being the outer one; only fates that occur are in the legend.
-fn fate_map(
-    x: Vec<f64>,
-    y: Vec<f64>,
-    fates: &[Option<Fate>],
-    occurring: &[Fate],
-) -> Result<CategoryMap, Failure> {
-    // What is not among the entries stays empty.
-    let index = |fate: &Option<Fate>| {
-        occurring.iter().position(|candidate| Some(candidate) == fate.as_ref()).unwrap_or(occurring.len())
-    };
-    let cells: Vec<usize> = fates.iter().map(index).collect();
-    let entries = occurring.iter().map(|&fate| (fate.name(), fate_color(fate)));
-    Ok(CategoryMap::new(Grid::new(x, y)?, cells, entries)?)
-}
-
-/// The fates that occur, in their usual order.
-fn occurring<'a>(fates: impl IntoIterator<Item = &'a Option<Fate>>) -> Vec<Fate> {
-    let seen: Vec<Fate> = fates.into_iter().copied().flatten().collect();
-    Fate::ALL.into_iter().filter(|fate| seen.contains(fate)).collect()
 }
 
 /// The paper's wheel with other values of some keys.

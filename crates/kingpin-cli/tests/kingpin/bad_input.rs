@@ -57,6 +57,14 @@ fn a_typo_in_a_key() {
 }
 
 #[test]
+fn sliding_friction_above_static_friction() {
+    let words = &["mu_d = 2", "at most mu_s = 1"];
+    for command in ["steady", "stability", "basin", "simulate --duration 1", "safe-kick"] {
+        fails(&format!("{command} -s mu_d=2"), 2, words);
+    }
+}
+
+#[test]
 fn a_wheel_file_that_cannot_be_used() {
     let folder = Folder::new();
     fails_in(&folder, "steady --wheel missing.toml", 2, &["missing.toml", "cannot read"]);

@@ -127,13 +127,57 @@ fn an_interrupted_run_says_what_is_finished() {
     let output = child.wait_with_output().unwrap();
     let messages = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{messages}");
-    assert!(messages.contains("of 8 cells are finished, kept in a.csv.journal"), "{messages}");
+    assert!(messages.contains("of 8 parts are finished, kept in a.csv.journal"), "{messages}");
     assert!(!folder.path("a.csv").exists());
     let resumed = folder.succeed(&format!("{long} --resume"));
-    assert!(resumed.messages.contains("of 8 values were finished"), "{}", resumed.messages);
+    assert!(resumed.messages.contains("of 8 parts were finished"), "{}", resumed.messages);
     folder.succeed(&long.replace("a.csv", "whole.csv"));
     assert!(read(&folder.path("a.csv")) == read(&folder.path("whole.csv")));
     assert_eq!(folder.files(), ["a.csv", "whole.csv"]);
+}
+
+#[test]
+fn the_ringing_of_straight_running_is_no_shimmy() {
+    let folder = Folder::new();
+    // Without c_u the longitudinal oscillation never decays; kicks of 0.5 N s return all the same.
+    let kick = folder.json("safe-kick -s r=inf -s v=4 -q");
+    assert!(kick["safe"].as_f64().unwrap() > 0.5, "{}", kick["safe"]);
+    let sample = folder.json("basin -s r=inf -s v=4 --samples 200 -q");
+    assert!(sample["fates"].as_array().unwrap().iter().all(|fate| fate != "shimmy"));
+}
+
+#[test]
+fn an_unstable_uniform_motion_has_no_safe_kick() {
+    let result = Folder::new().json("safe-kick -s v=9 -q");
+    assert_eq!((&result["safe"], &result["positive"]["fails"]), (&Value::from(0.0), &Value::from(0.0)));
+    assert_ne!(result["positive"]["fate"], "shimmy");
+}
+
+#[test]
+fn margins_have_the_cycles_wherever_the_interval_ends() {
+    let folder = Folder::new();
+    // The Hopf point is at 8.43 m/s.
+    let points = |arguments: &str| folder.json(arguments)["points"].as_array().unwrap().clone();
+    let slow = points("margin --along v=2:4:2 --kind release-angle -q");
+    let near = points("margin --along v=4:6:2 --kind release-angle -q");
+    let amplitude = |point: &Value| point["unstable_amplitude"].as_f64().unwrap();
+    assert!((amplitude(&slow[1]) - 0.567_751_45).abs() < 1e-6);
+    assert!((amplitude(&slow[1]) - amplitude(&near[0])).abs() < 1e-9);
+    assert_eq!(slow[1]["safe"], near[0]["safe"]);
+    // Two values have no correlation worth the name.
+    let whole = folder.json("margin --along v=4:6:2 --kind release-angle -q");
+    assert!(whole["indicator"]["correlation"].is_null() && whole["remarks"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn margins_say_why_there_is_no_cycle_and_what_is_undecided() {
+    let folder = Folder::new();
+    // At v = 0.02 m/s small disturbances grow or decay within days.
+    let result = folder.json("margin --along v=0.02:9:2 --duration 2 -q");
+    let slow = &result["points"][0];
+    assert!(slow["safe"].is_null() && slow["positive"]["fate"] == "undecided", "{slow}");
+    let text = result["remarks"][0].as_str().unwrap();
+    assert!(text.starts_with("the limit cycles from the Hopf point at v = 8.43"), "{text}");
 }
 
 #[test]

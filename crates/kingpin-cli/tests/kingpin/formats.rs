@@ -173,3 +173,46 @@ fn a_radius_that_reaches_infinity_varies_as_a_curvature() {
     assert_eq!(numbers(&result["x"]["values"]), [0.0, 0.5, 1.0, 1.5, 2.0]);
     assert!(result["parameters"].get("r").is_none());
 }
+
+#[test]
+fn histories_with_sliding_have_seven_states_and_phases() {
+    let folder = Folder::new();
+    let kicked =
+        "simulate --contact sliding --duration 1 --points 201 --perturb psi=1.2 -s F_Az=-100 -s v=8.4";
+    folder.succeed(&format!("{kicked} -q -o a.csv -o a.svg"));
+    let history = folder.json(&format!("{kicked} -q"));
+    let list = |name: &str| history[name].as_array().unwrap().clone();
+    let number = |name: &str, index: usize| list(name)[index].as_f64().unwrap();
+    for name in
+        ["t", "u", "q", "psi", "V1", "V2", "Omega", "W", "slip", "friction_force", "normal_force", "phase"]
+    {
+        assert_eq!(list(name).len(), 201, "{name}");
+    }
+    let (normal, phases) = (number("normal_force", 0), list("phase"));
+    assert!((normal - 104.107_447).abs() < 1e-6);
+    for (index, phase) in phases.iter().enumerate() {
+        let slip = (number("V1", index) - number("W", index)).hypot(number("V2", index));
+        assert!((slip - number("slip", index)).abs() < 1e-12);
+        if phase == "rolling" {
+            assert!(slip < 1e-12 && number("friction_force", index) <= normal * (1.0 + 1e-9));
+        } else if slip > 1e-3 {
+            // Coulomb's law: mu_d N whatever the slip.
+            assert!((number("friction_force", index) / (0.8 * normal) - 1.0).abs() < 1e-9);
+        }
+    }
+    assert!(phases.contains(&"rolling".into()) && phases.contains(&"sliding".into()));
+    let header = String::from_utf8(read(&folder.path("a.csv"))).unwrap();
+    assert!(header.starts_with("t,u,q,psi,V1,V2,Omega,W,slip,friction_force,normal_force,phase\n"));
+    // Without a kick and with friction enough it rolls as without the option.
+    let gentle = "--duration 1 --points 11 --perturb psi=0.01 -s r=inf -s v=2";
+    let rolls = folder.json(&format!("simulate {gentle} -q"));
+    let holds = folder.json(&format!("simulate --contact sliding {gentle} -q"));
+    for (one, other) in [("psi", "psi"), ("V", "V1"), ("V", "W"), ("Omega", "Omega")] {
+        for index in 0..11 {
+            let difference = rolls[one][index].as_f64().unwrap() - holds[other][index].as_f64().unwrap();
+            assert!(difference.abs() < 1e-7, "{one} {index}: {difference}");
+        }
+    }
+    let unknown = folder.run("simulate --contact sliding --duration 1 --perturb V3=1");
+    assert!(unknown.exit_code == 2 && unknown.messages.contains("V1, V2, Omega, W, V"));
+}

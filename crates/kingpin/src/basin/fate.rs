@@ -12,8 +12,9 @@ const NEAR: f64 = 0.02;
 const PERIODS_NEAR: f64 = 3.0;
 /// A motion has escaped when it is this many reference speeds away from the uniform motion.
 const FAR: f64 = 50.0;
-/// The amplitude of a motion that lasts changes by less than this part between the third and the last quarter.
-const STEADY: f64 = 0.1;
+/// A motion that turns right round is given up for tumbling at the end of the duration; one that swings to and fro then is
+/// followed on, for this many durations in all.
+pub(super) const PATIENCE: f64 = 10.0;
 /// Bounds in s of the duration that is chosen for a wheel, and the number of decay times in it.
 const SHORTEST_DURATION: f64 = 30.0;
 const LONGEST_DURATION: f64 = 300.0;
@@ -26,13 +27,14 @@ const NEUTRAL: f64 = 1e-9;
 pub enum Fate {
     /// It returns to the uniform motion.
     UniformMotion,
-    /// It lasts to the end with a steady amplitude, the caster swinging to and fro.
+    /// The caster swings to and fro for ever: the motion repeats itself to a millionth of its size and, pushed a thousandth
+    /// outwards or inwards, comes back to a tenth of that; or it is irregular and its size has no trend.
     Shimmy,
-    /// It lasts to the end, the caster turning right round.
+    /// It lasts to the end of the duration, the caster turning right round.
     Tumbling,
     /// It grows beyond fifty times the reference speed.
     Escape,
-    /// It did none of these in the time it was followed.
+    /// It did none of these in the time it was followed: ten times the duration, where the caster swings to and fro.
     Undecided,
 }
 
@@ -56,7 +58,8 @@ impl Fate {
 /// How motions are classified.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClassificationSettings {
-    /// Time in s for which a motion is followed at most.
+    /// Time in s for which motions are followed. One that swings to and fro at its end, without having settled, is
+    /// followed for up to ten times as long.
     pub duration: f64,
 }
 
@@ -71,13 +74,12 @@ impl ClassificationSettings {
     /// As long as slow motions of this wheel take to show where they go: twelve times the time in which a small
     /// disturbance of the uniform motion falls to a 1/e, but at least thirty seconds and at most three hundred.
     ///
-    /// Nearly neutral motions would otherwise pass for lasting ones: an unstable cycle near its Hopf point repels twice as
-    /// fast as the uniform motion attracts.
+    /// In rectilinear towing the disturbances are those of the lateral motion, which [`Fate::UniformMotion`] is about.
     ///
     /// # Errors
     /// No uniform motion.
     pub fn for_wheel(wheel: &Wheel) -> Result<Self, SimulationError> {
-        let decay = -wheel.uniform_motion()?.growth_rate();
+        let decay = -decisive_growth_rate(wheel)?;
         let duration = if decay > 0.0 { DECAY_TIMES / decay } else { SHORTEST_DURATION };
         Ok(Self { duration: duration.clamp(SHORTEST_DURATION, LONGEST_DURATION).round() })
     }
@@ -94,7 +96,8 @@ impl ClassificationSettings {
 #[derive(Clone, Debug)]
 pub(super) struct Target {
     state: [f64; 5],
-    /// Turns differences of the states into speeds in m/s.
+    /// Turns differences of the states into speeds in m/s. In rectilinear towing `u` and `V` do not count: near straight
+    /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy.
     weights: [f64; 5],
     /// The larger of the towing speed and the caster length times the natural frequency of the springs, in m/s.
     reference_speed: f64,
@@ -104,20 +107,36 @@ pub(super) struct Target {
     attracts: bool,
 }
 
+/// Growth rate of the disturbances on which the fate depends: in rectilinear towing those of the lateral motion.
+fn decisive_growth_rate(wheel: &Wheel) -> Result<f64, SimulationError> {
+    let mut wheel = *wheel;
+    if wheel.get(Key::Curvature) == 0.0 {
+        // The longitudinal motion is decoupled; without its damper the growth rate is that of the rest.
+        wheel.set_value(Key::CU, 0.0)?;
+    }
+    Ok(wheel.uniform_motion()?.growth_rate())
+}
+
 impl Target {
     pub fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
         let body = wheel.body();
         let frequency = (wheel.get(Key::KQ) * body.inverse_rolling_mass).sqrt();
         let length = body.caster_length;
         let reference_speed = wheel.get(Key::V).max(frequency * length);
-        let motion = wheel.uniform_motion()?;
+        let straight = wheel.get(Key::Curvature) == 0.0;
+        let longitudinal = if straight { 0.0 } else { 1.0 };
         Ok(Self {
-            state: motion.state(),
-            attracts: motion.growth_rate() <= NEUTRAL * frequency,
-            weights: [frequency, frequency, reference_speed, 1.0, length],
+            state: wheel.uniform_motion()?.state(),
+            attracts: decisive_growth_rate(wheel)? <= NEUTRAL * frequency,
+            weights: [longitudinal * frequency, frequency, reference_speed, longitudinal, length],
             reference_speed,
             natural_period: TAU / frequency,
         })
+    }
+
+    /// The uniform motion.
+    pub fn state(&self) -> &[f64; 5] {
+        &self.state
     }
 
     /// Distance from the uniform motion in units of the reference speed; the caster angle counts modulo a turn.
@@ -132,7 +151,7 @@ impl Target {
     }
 }
 
-/// Watches one motion and decides.
+/// Watches one motion and tells when it has returned, escaped, or turns right round at the end.
 #[derive(Clone, Debug)]
 pub(super) struct Watch {
     target: Target,
@@ -140,11 +159,11 @@ pub(super) struct Watch {
     /// Since when the motion has been near the uniform motion.
     near_since: Option<f64>,
     decided: Option<Fate>,
-    /// Largest distance in the third and the last quarter of the duration.
-    amplitudes: [f64; 2],
-    /// Smallest and largest caster angle in the last quarter.
+    /// Which quarter of the duration it is, and the smallest and largest caster angle in it.
+    quarter: f64,
     angles: [f64; 2],
-    ended: bool,
+    /// Whether the caster turned right round in the quarter before.
+    turned: bool,
 }
 
 impl Watch {
@@ -157,9 +176,9 @@ impl Watch {
             duration: settings.duration,
             near_since: is_near.then_some(0.0),
             decided: None,
-            amplitudes: [0.0; 2],
-            angles: [f64::INFINITY, f64::NEG_INFINITY],
-            ended: false,
+            quarter: 0.0,
+            angles: [initial[2]; 2],
+            turned: false,
         }
     }
 
@@ -168,44 +187,54 @@ impl Watch {
     pub fn observe(&mut self, time: f64, state: &[f64; 5]) -> ControlFlow<()> {
         let distance = self.target.distance(state);
         if distance >= FAR || distance.is_nan() {
-            self.decided = Some(Fate::Escape);
-            return ControlFlow::Break(());
+            return self.decide(Fate::Escape);
         }
         if distance < NEAR && self.target.attracts {
             let since = *self.near_since.get_or_insert(time);
             if time - since >= PERIODS_NEAR * self.target.natural_period {
-                self.decided = Some(Fate::UniformMotion);
-                return ControlFlow::Break(());
+                return self.decide(Fate::UniformMotion);
             }
         } else {
             self.near_since = None;
         }
-        if time > 0.5 * self.duration {
-            let is_last_quarter = time > 0.75 * self.duration;
-            let amplitude = &mut self.amplitudes[usize::from(is_last_quarter)];
-            *amplitude = amplitude.max(distance);
-            if is_last_quarter {
-                self.angles = [self.angles[0].min(state[2]), self.angles[1].max(state[2])];
+        self.angles = [self.angles[0].min(state[2]), self.angles[1].max(state[2])];
+        let quarter = (4.0 * time / self.duration * (1.0 + f64::EPSILON)).floor();
+        if quarter > self.quarter {
+            self.quarter = quarter;
+            self.turned = self.is_turning();
+            self.angles = [state[2]; 2];
+            if quarter >= 4.0 && self.turned {
+                return self.decide(Fate::Tumbling);
             }
         }
-        self.ended = time >= self.duration * (1.0 - 1e-9);
         ControlFlow::Continue(())
     }
 
-    /// The fate of the motion.
-    pub fn fate(&self) -> Fate {
-        if let Some(fate) = self.decided {
-            return fate;
-        }
-        let [third, last] = self.amplitudes;
-        if !self.ended {
-            Fate::Undecided
-        } else if self.angles[1] - self.angles[0] > TAU {
-            Fate::Tumbling
-        } else if (last - third).abs() < STEADY * third {
-            Fate::Shimmy
-        } else {
-            Fate::Undecided
+    fn decide(&mut self, fate: Fate) -> ControlFlow<()> {
+        self.decided = Some(fate);
+        ControlFlow::Break(())
+    }
+
+    fn is_turning(&self) -> bool {
+        self.angles[1] - self.angles[0] > TAU
+    }
+
+    /// The duration in s of the settings.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The fate, where it is known.
+    pub fn fate(&self) -> Option<Fate> {
+        self.decided
+    }
+
+    /// The fate of a motion that cannot be followed any further, since that takes too many steps: what it was doing.
+    pub fn fate_when_cut_short(&self) -> Fate {
+        match self.decided {
+            Some(fate) => fate,
+            None if self.turned || self.is_turning() => Fate::Tumbling,
+            None => Fate::Undecided,
         }
     }
 }

@@ -11,8 +11,6 @@ use rayon::prelude::*;
 const SCAN: usize = 64;
 /// The magnitude is narrowed down to this, relative to the largest one.
 const RESOLUTION: f64 = 1e-6;
-/// The motion at the edge lingers: it is followed for so many times the duration before its fate is told.
-const PATIENCE: f64 = 4.0;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
 const SHORTENINGS: usize = 20;
 
@@ -151,11 +149,12 @@ pub struct DisturbedMotion {
 pub struct SafeKick {
     /// Largest magnitude, below the first failure, from which it was seen to return.
     pub returns: f64,
-    /// Smallest magnitude, next to that, from which it does not.
+    /// Smallest magnitude, next to that, from which it does not; both are 0 where the uniform motion is unstable, and the fate is
+    /// that of a small disturbance.
     pub fails: f64,
-    /// What becomes of it from there. [`Fate::Undecided`] where it did none of the other things even in four times the
-    /// duration, or returned late: then the edge is only where the patience ends. `None` where there is no uniform motion
-    /// (that rolls) to return to after a step of the curvature.
+    /// What becomes of it from there. [`Fate::Undecided`] where it did none of the other things in the time that it was
+    /// followed: then this is only where the patience ends and no edge. `None` where there is no uniform motion (that rolls)
+    /// to return to after a step of the curvature.
     pub fate: Option<Fate>,
     /// The wheel after the disturbance that fails: at the edge its motion lingers where the basin ends.
     pub wheel: Wheel,
@@ -167,8 +166,8 @@ impl SafeKick {
     /// Finds the smallest disturbance up to `largest` from which the uniform motion does not return: the first
     /// failure among equidistant magnitudes, narrowed down by bisection. `None` if there is no failure.
     ///
-    /// Not to have returned within the duration counts as failure, and near the edge of a basin motions linger: the duration
-    /// must be long beside the time in which they leave the edge (the unstable cycle).
+    /// Not to have returned in the time that motions are followed counts as failure; near the edge of a basin they linger, and
+    /// the fate at the edge tells whether that time was too short.
     ///
     /// # Errors
     /// A largest magnitude that is zero or not finite, or a magnitude on the way at which there is no uniform motion.
@@ -182,41 +181,35 @@ impl SafeKick {
         if !largest.is_finite() || largest == 0.0 {
             return Err(SimulationError::out_of_range("largest disturbance", largest, "finite and not 0"));
         }
-        let fate =
-            |magnitude: f64, settings: ClassificationSettings| -> Result<Option<Fate>, SimulationError> {
-                let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
-                match Destinations::new(&wheel, model, settings) {
-                    Ok(destinations) => destinations.of_sliding_state(&state).map(Some),
-                    Err(error) if disturbance == Disturbance::StepSteer && magnitude != 0.0 => match error {
-                        SimulationError::UniformMotionSlides { .. }
-                        | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => Ok(None),
-                        error => Err(error),
-                    },
-                    Err(error) => Err(error),
-                }
-            };
+        let fate = |magnitude: f64| -> Result<Option<Fate>, SimulationError> {
+            let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
+            match Destinations::new(&wheel, model, settings) {
+                Ok(destinations) => destinations.of_sliding_state(&state).map(Some),
+                Err(error) if disturbance == Disturbance::StepSteer && magnitude != 0.0 => match error {
+                    SimulationError::UniformMotionSlides { .. }
+                    | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => Ok(None),
+                    error => Err(error),
+                },
+                Err(error) => Err(error),
+            }
+        };
         let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
-        let scanned: Vec<Option<Fate>> = (0..=SCAN)
-            .into_par_iter()
-            .map(|index| fate(magnitude(index), settings))
-            .collect::<Result<_, _>>()?;
+        let scanned: Vec<Option<Fate>> =
+            (0..=SCAN).into_par_iter().map(|index| fate(magnitude(index))).collect::<Result<_, _>>()?;
         let Some(first) = scanned.iter().position(|&fate| fate != Some(Fate::UniformMotion)) else {
             return Ok(None);
         };
         let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
+        // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
+        let mut beyond = scanned[first.max(1)];
         while (fails - returns).abs() > RESOLUTION * largest.abs() {
             let middle = 0.5 * (returns + fails);
-            match fate(middle, settings)? {
+            match fate(middle)? {
                 Some(Fate::UniformMotion) => returns = middle,
-                _ => fails = middle,
+                other => (fails, beyond) = (middle, other),
             }
         }
-        let patient = ClassificationSettings { duration: PATIENCE * settings.duration };
-        let fate = match fate(fails, patient)? {
-            Some(Fate::UniformMotion) => Some(Fate::Undecided),
-            fate => fate,
-        };
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
-        Ok(Some(Self { returns, fails, fate, wheel, state }))
+        Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))
     }
 }

@@ -1,11 +1,15 @@
 //! Basins of attraction: where a motion ends, depending on where it starts.
 //!
-//! [`Destinations`] follows motions of one wheel, rolling ideally or with sliding, and tells their [`Fate`].
+//! [`Destinations`] follows motions of one wheel, rolling ideally or with sliding, and tells their [`Fate`]. No fate is guessed:
+//! a motion that keeps its amplitude, as near an unstable cycle, is followed on until it leaves, and is shimmy only if it
+//! comes back after a push; what cannot be told in the end is undecided.
 //! [`BasinMap`] does so for grids and random samples of initial states in tiles that can be computed apart, stopped and
 //! resumed; [`SafeKick`] finds the smallest disturbance from which the wheel does not return.
 
+mod course;
 mod fate;
 mod kick;
+mod lasting;
 mod map;
 #[cfg(test)]
 mod tests;
@@ -14,21 +18,20 @@ pub use fate::{ClassificationSettings, Fate};
 pub use kick::{Disturbance, DisturbedMotion, SafeKick};
 pub use map::{Axis, BasinMap, Fraction, Tile, wilson_interval};
 
-use crate::ensemble::{Ending, Ensemble, Progress};
+use crate::ensemble::{Ending, Ensemble, Outcome, Progress};
 use crate::parameters::Key;
-use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
+use crate::simulation::SimulationError;
 use crate::sliding::SlidingWheel;
 use crate::wheel::Wheel;
-use arclength::integration::{IntegrationError, Integrator, Stepper, autonomous};
-use fate::{Target, Watch};
+use course::Course;
+use fate::{PATIENCE, Target, Watch};
+use lasting::{BRIEF, Lasting, Seen, THOROUGH};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
 
 /// Tolerance of the integration of motions that are only classified.
 const CLASSIFICATION_TOLERANCE: f64 = 1e-10;
-/// Motions with sliding are followed and looked at in windows of this many samples.
-const SAMPLES_PER_WINDOW: usize = 50;
-/// Samples of a motion with sliding in one natural period of the springs.
-const SAMPLES_PER_PERIOD: f64 = 20.0;
 
 /// Whether the wheel is allowed to slide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,37 +134,18 @@ impl Destinations {
     /// # Errors
     /// A motion that cannot be followed for another reason than that it grows without bound.
     pub fn of(&self, initial: &[[f64; 5]]) -> Result<Vec<Fate>, SimulationError> {
-        let watch = |state: &[f64; 5]| Watch::new(&self.target, &self.settings, state);
         match &self.follower {
-            Follower::Ensemble(ensemble) => {
-                let slots: Vec<std::sync::Mutex<Watch>> =
-                    initial.iter().map(|state| std::sync::Mutex::new(watch(state))).collect();
-                let monitor = |trajectory: usize| {
-                    let slot = &slots[trajectory];
-                    move |progress: Progress<'_>| match slot.lock() {
-                        Ok(mut watch) => watch.observe(progress.time, &progress.state()),
-                        Err(_) => ControlFlow::Break(()),
-                    }
-                };
-                let outcomes = ensemble.integrate_watched(initial, self.settings.duration, monitor)?;
-                Ok(outcomes
-                    .iter()
-                    .zip(slots)
-                    .map(|(outcome, slot)| match (outcome.ending, slot.into_inner()) {
-                        (Ending::NotFinite, _) => Fate::Escape,
-                        (_, Ok(watch)) => watch.fate(),
-                        (_, Err(_)) => Fate::Undecided,
-                    })
-                    .collect())
+            Follower::Ensemble(ensemble) => self.of_ensemble(ensemble, initial),
+            Follower::Rolling => {
+                let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?);
+                initial.par_iter().map(fate).collect()
             }
-            Follower::Rolling => initial.iter().map(|state| self.of_rolling(state, watch(state))).collect(),
-            Follower::Sliding(sliding) => initial
-                .iter()
-                .map(|state| {
-                    let [u, q, psi, speed, yaw] = *state;
-                    self.of_sliding(sliding, [u, q, psi, speed, 0.0, yaw, speed], watch(state))
-                })
-                .collect(),
+            Follower::Sliding(sliding) => {
+                let fate = |state: &[f64; 5]| {
+                    self.of_course(Course::sliding(sliding, sliding.rolling_state(state))?)
+                };
+                initial.par_iter().map(fate).collect()
+            }
         }
     }
 
@@ -170,68 +154,104 @@ impl Destinations {
     /// # Errors
     /// As [`of`](Self::of).
     pub fn of_sliding_state(&self, initial: &[f64; 7]) -> Result<Fate, SimulationError> {
-        let [u, q, psi, speed, _, yaw, _] = *initial;
         match &self.follower {
             Follower::Sliding(sliding) => {
-                let watch = Watch::new(&self.target, &self.settings, &[u, q, psi, speed, yaw]);
-                self.of_sliding(sliding, *initial, watch)
+                self.of_course(Course::sliding(sliding, sliding.slipping_state(initial))?)
             }
-            _ => Ok(self.of(&[[u, q, psi, speed, yaw]])?.first().copied().unwrap_or(Fate::Undecided)),
+            _ => {
+                let [u, q, psi, speed, _, yaw, _] = *initial;
+                Ok(self.of(&[[u, q, psi, speed, yaw]])?.first().copied().unwrap_or(Fate::Undecided))
+            }
         }
     }
 
-    fn of_rolling(&self, initial: &[f64; 5], mut watch: Watch) -> Result<Fate, SimulationError> {
-        let field = self.wheel.rolling(&[])?;
-        let integrator = Integrator::with_tolerance(SIMULATION_TOLERANCE);
-        let mut stepper =
-            Stepper::new(autonomous(&field, &[]), &integrator, 0.0, initial, self.settings.duration)?;
-        while !stepper.is_finished() {
-            match stepper.advance() {
-                Ok(()) => {}
-                Err(error) => return unbounded_is_escape(error),
-            }
-            let state = std::array::from_fn(|i| stepper.state()[i]);
-            if watch.observe(stepper.time(), &state).is_break() {
-                break;
-            }
-        }
-        Ok(watch.fate())
+    /// One motion by itself.
+    fn of_course(&self, course: Course<'_>) -> Result<Fate, SimulationError> {
+        let watch = Watch::new(&self.target, &self.settings, &course.state());
+        Lasting::new(course, 0.0).until_the_end(&self.target, watch)
     }
 
-    fn of_sliding(
+    /// Many motions at once. Those that swing to and fro at the end of the duration are looked at one by one, in passing;
+    /// those that do not repeat themselves then go on together to the end of the patience.
+    fn of_ensemble(&self, ensemble: &Ensemble, initial: &[[f64; 5]]) -> Result<Vec<Fate>, SimulationError> {
+        let mut motions: Vec<Followed> = initial
+            .iter()
+            .map(|state| Followed {
+                time: 0.0,
+                state: *state,
+                watch: Watch::new(&self.target, &self.settings, state),
+                fate: None,
+            })
+            .collect();
+        let duration = self.settings.duration;
+        self.go_on(ensemble, &mut motions, duration)?;
+        let brief = BRIEF * self.target.natural_period;
+        self.look_at(&mut motions, (duration + brief).min(PATIENCE * duration))?;
+        let thorough = (THOROUGH * self.target.natural_period).min(0.5 * PATIENCE * duration);
+        self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough)?;
+        let fate = |motion: Followed| match motion.fate {
+            Some(fate) => Ok(fate),
+            None => Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time)
+                .until_the_end(&self.target, motion.watch),
+        };
+        motions.into_par_iter().map(fate).collect()
+    }
+
+    /// Follows all motions whose fates are not known to a time.
+    fn go_on(
         &self,
-        sliding: &SlidingWheel,
-        initial: [f64; 7],
-        mut watch: Watch,
-    ) -> Result<Fate, SimulationError> {
-        let spacing = self.target.natural_period / SAMPLES_PER_PERIOD;
-        let window = spacing * SAMPLES_PER_WINDOW as f64;
-        let mut state = initial;
-        let mut time = 0.0;
-        while time < self.settings.duration {
-            let history = match sliding.simulate_from(&state, window, SAMPLES_PER_WINDOW + 1) {
-                Ok(history) => history,
-                Err(SimulationError::Integration(error)) => return unbounded_is_escape(error),
-                Err(error) => return Err(error),
-            };
-            for (&after, sample) in history.times.iter().zip(&history.states).skip(1) {
-                let [u, q, psi, forward, lateral, yaw, _] = *sample;
-                let speed = forward.hypot(lateral).copysign(forward);
-                if watch.observe(time + after, &[u, q, psi, speed, yaw]).is_break() {
-                    return Ok(watch.fate());
-                }
-                state = *sample;
-            }
-            time += window;
+        ensemble: &Ensemble,
+        motions: &mut [Followed],
+        until: f64,
+    ) -> Result<(), SimulationError> {
+        let mut open: Vec<&mut Followed> =
+            motions.iter_mut().filter(|motion| motion.fate.is_none()).collect();
+        // All have come to the same time.
+        let Some(start) = open.first().map(|motion| motion.time) else { return Ok(()) };
+        if start >= until {
+            return Ok(());
         }
-        Ok(watch.fate())
+        let states: Vec<[f64; 5]> = open.iter().map(|motion| motion.state).collect();
+        let watches: Vec<Mutex<&mut Watch>> =
+            open.iter_mut().map(|motion| Mutex::new(&mut motion.watch)).collect();
+        let monitor = |trajectory: usize| {
+            let watch = &watches[trajectory];
+            move |progress: Progress<'_>| -> ControlFlow<()> {
+                let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+                watch.observe(start + progress.time, &progress.state())
+            }
+        };
+        let outcomes = ensemble.integrate_watched(&states, until - start, monitor)?;
+        drop(watches);
+        for (motion, Outcome { state, ending, .. }) in open.into_iter().zip(outcomes) {
+            motion.state = state;
+            motion.time = until;
+            motion.fate = match ending {
+                Ending::NotFinite => Some(Fate::Escape),
+                Ending::TooManySteps => Some(motion.watch.fate_when_cut_short()),
+                Ending::Completed | Ending::Stopped => motion.watch.fate(),
+            };
+        }
+        Ok(())
+    }
+
+    /// Looks at all motions whose fates are not known, to a time.
+    fn look_at(&self, motions: &mut [Followed], until: f64) -> Result<(), SimulationError> {
+        motions.par_iter_mut().filter(|motion| motion.fate.is_none()).try_for_each(|motion| {
+            let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time);
+            if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch)? {
+                motion.fate = Some(fate);
+            }
+            (motion.state, motion.time) = (lasting.state(), lasting.time());
+            Ok(())
+        })
     }
 }
 
-/// A motion that leaves the range of numbers has escaped.
-fn unbounded_is_escape(error: IntegrationError) -> Result<Fate, SimulationError> {
-    match error {
-        IntegrationError::NotFinite { .. } | IntegrationError::StepTooSmall { .. } => Ok(Fate::Escape),
-        other => Err(other.into()),
-    }
+/// A motion that is followed with others.
+struct Followed {
+    time: f64,
+    state: [f64; 5],
+    watch: Watch,
+    fate: Option<Fate>,
 }

@@ -8,8 +8,8 @@ use crate::sliding::model::{Equations, SlipState};
 /// Halvings of a bracket: enough for every bit of a double.
 const BISECTIONS: usize = 60;
 
-/// Caster angle with its first two derivatives.
-type Node = (f64, [f64; 3]);
+/// Time, and the caster angle with its first two derivatives.
+pub(crate) type Node = (f64, [f64; 3]);
 
 /// Smallest and largest caster angle: between neighbouring samples, which lie in one passage, the angle is the quintic
 /// polynomial with the right values and derivatives at both ends.
@@ -17,29 +17,25 @@ pub(super) fn caster_angles(equations: &Equations<f64>, passages: &[Passage]) ->
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let mut include = |angle: f64| range = [range[0].min(angle), range[1].max(angle)];
     for passage in passages {
-        let node = |time: f64, state: &SlipState| {
+        let node = |(time, state): (f64, &SlipState)| {
             let mut rate = [0.0; STATES];
             passage.regime.field(equations, state, &mut rate);
             (time, [state[PSI], rate[PSI], -rate[5]])
         };
-        let (end, last) = passage.vanishing.unwrap_or((passage.end, passage.last));
-        let mut before = node(passage.start, &passage.initial);
-        include(before.1[0]);
-        let inside = passage.samples.iter().filter(|(time, _)| passage.start < *time && *time < end);
-        for (time, state) in inside.chain([&(end, last)]) {
-            let after = node(*time, state);
+        let mut before: Option<Node> = None;
+        for after in passage.nodes().map(node) {
             include(after.1[0]);
-            if before.1[1] * after.1[1] < 0.0 {
+            if let Some(before) = before.filter(|before| before.1[1] * after.1[1] < 0.0) {
                 include(extremum(before, after));
             }
-            before = after;
+            before = Some(after);
         }
     }
     range
 }
 
 /// The extremum between two nodes whose slopes have opposite signs.
-fn extremum((start, [a0, a1, a2]): Node, (end, [b0, b1, b2]): Node) -> f64 {
+pub(crate) fn extremum((start, [a0, a1, a2]): Node, (end, [b0, b1, b2]): Node) -> f64 {
     let h = end - start;
     let (a1, a2, b1, b2) = (a1 * h, a2 * h * h, b1 * h, b2 * h * h);
     let rise = b0 - a0;

@@ -11,8 +11,8 @@
 mod branch;
 mod curve;
 mod error;
-mod extrema;
-mod passage;
+pub(crate) mod extrema;
+pub(crate) mod passage;
 mod return_map;
 mod search;
 #[cfg(test)]

@@ -8,7 +8,7 @@ use arclength::Scalar;
 
 /// Which equations hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Regime {
+pub(crate) enum Regime {
     /// No slip.
     Rolling,
     /// Slip grows from zero along its limit direction.
@@ -37,7 +37,7 @@ impl Regime {
 
 /// A stretch of the motion.
 #[derive(Clone, Debug)]
-pub(super) struct Passage {
+pub(crate) struct Passage {
     pub regime: Regime,
     pub start: f64,
     pub end: f64,
@@ -54,13 +54,24 @@ impl Passage {
     pub fn duration(&self) -> f64 {
         self.end - self.start
     }
+
+    /// Times with states along which the motion is smooth: the start, the samples inside, and the end, or where the straight
+    /// way of vanishing slip begins.
+    pub fn nodes(&self) -> impl Iterator<Item = (f64, &SlipState)> {
+        let (end, last) =
+            self.vanishing.as_ref().map_or((self.end, &self.last), |(time, state)| (*time, state));
+        let inside = self.samples.iter().filter(move |(time, _)| self.start < *time && *time < end);
+        std::iter::once((self.start, &self.initial))
+            .chain(inside.map(|(time, state)| (*time, state)))
+            .chain([(end, last)])
+    }
 }
 
 /// Follows a motion and cuts it into passages, with samples at `times`.
 ///
 /// # Errors
 /// A motion that cannot be followed.
-pub(super) fn passages(
+pub(crate) fn passages(
     wheel: &SlidingWheel,
     initial: HybridState,
     duration: f64,

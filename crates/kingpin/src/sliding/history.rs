@@ -1,8 +1,9 @@
 //! Sampled motions of the wheel that may slide.
 
 use super::model::{S1, S2, SlipState};
-use super::{Contact, HybridState, Phase, SlidingWheel, as_slip_state};
+use super::{Contact, HybridState, Phase, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state};
 use crate::simulation::SimulationError;
+use crate::wheel::Wheel;
 
 /// A motion sampled at equal intervals. Everything is SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +45,43 @@ impl SlidingHistory {
     }
 }
 
+impl Wheel {
+    /// The rolling uniform motion as one of a wheel that may slide, with some of the states
+    /// [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES), given by name, changed by some amount; `V` changes `V1` and `W`.
+    ///
+    /// # Errors
+    /// An unknown name, an amount that is not finite, or no uniform motion.
+    pub fn perturbed_sliding_motion(
+        &self,
+        perturbations: &[(&str, f64)],
+    ) -> Result<[f64; 7], SimulationError> {
+        let [u, q, psi, speed, yaw] = self.uniform_motion()?.state();
+        let mut state = [u, q, psi, speed, 0.0, yaw, speed];
+        for &(name, amount) in perturbations {
+            if !amount.is_finite() {
+                return Err(SimulationError::out_of_range(name, amount, "a finite change"));
+            }
+            let changed: &[&str] = if name == "V" { &["V1", "W"] } else { &[name] };
+            for wanted in changed {
+                let index = SLIDING_STATE_NAMES.iter().position(|candidate| candidate == wanted);
+                let index = index.ok_or_else(|| SimulationError::UnknownState {
+                    given: name.to_owned(),
+                    allowed: format!("{}, V", SLIDING_STATE_NAMES.join(", ")),
+                })?;
+                state[index] += amount;
+            }
+        }
+        Ok(state)
+    }
+}
+
+impl SlidingHistory {
+    /// What the wheel does at a time: where two phases meet, the later one.
+    pub fn contact_at(&self, time: f64) -> Option<Contact> {
+        self.phases.iter().rev().find(|phase| phase.start <= time).map(|phase| phase.contact)
+    }
+}
+
 impl SlidingWheel {
     /// Simulates from a state `(u, q, psi, V, Omega)` without slip, sampled at `samples` equidistant times from 0
     /// to `duration`, both included.
@@ -70,11 +108,7 @@ impl SlidingWheel {
         duration: f64,
         samples: usize,
     ) -> Result<SlidingHistory, SimulationError> {
-        let [u, q, psi, forward, lateral, yaw, rim] = *initial;
-        let state = [u, q, psi, forward, lateral, yaw, forward - rim];
-        let slips = state[S1] != 0.0 || state[S2] != 0.0;
-        let contact = if slips { Contact::Sliding } else { Contact::Rolling };
-        self.simulate_hybrid(HybridState { contact, state }, duration, samples)
+        self.simulate_hybrid(self.slipping_state(initial), duration, samples)
     }
 
     pub(crate) fn simulate_hybrid(

@@ -221,6 +221,19 @@ impl SlidingWheel {
         HybridState { contact: Contact::Rolling, state: [u, q, psi, speed, 0.0, yaw, 0.0] }
     }
 
+    /// The states [`SLIDING_STATE_NAMES`]: the wheel slides where they have slip.
+    pub(crate) fn slipping_state(&self, &[u, q, psi, forward, lateral, yaw, rim]: &[f64; 7]) -> HybridState {
+        let state = [u, q, psi, forward, lateral, yaw, forward - rim];
+        let slips = state[S1] != 0.0 || state[S2] != 0.0;
+        let contact = if slips { Contact::Sliding } else { Contact::Rolling };
+        HybridState { contact, state }
+    }
+
+    /// The wheel.
+    pub(crate) fn wheel(&self) -> &Wheel {
+        self.rolling.wheel()
+    }
+
     /// Whether the static friction holds the wheel at a state without slip.
     fn holds(&self, state: &[f64]) -> bool {
         // The two are the same expression, so that equal limits give equal answers to the last bit.

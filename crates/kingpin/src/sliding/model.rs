@@ -58,10 +58,7 @@ impl Equations<f64> {
             let allowed = "at most (m_w + m_c) g: a larger force lifts the wheel off the ground";
             return Err(SimulationError::out_of_range("F_Az", wheel.get(Key::FAz), allowed));
         }
-        let (mu_s, mu_d) = (wheel.get(Key::MuS), wheel.get(Key::MuD));
-        if mu_d > mu_s {
-            return Err(SimulationError::out_of_range("mu_d", mu_d, "at most mu_s"));
-        }
+        wheel.check()?;
         Ok(Self::with(|key| wheel.get(key)))
     }
 }

@@ -28,7 +28,8 @@ pub struct Classification {
     #[arg(long, value_enum, default_value_t)]
     contact: Contact,
 
-    /// Longest time in s for which a motion is followed [default: 12 times the decay time of small disturbances, 30 to 300]
+    /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled [default: 12 times the
+    /// decay time of small disturbances, 30 to 300]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: Option<f64>,
 }

@@ -24,9 +24,11 @@ const MOST_POINTS: usize = 10_000_000;
 /// Where motions end, depending on where they start: the basin of attraction of the uniform motion
 ///
 /// Two states of the initial condition vary, the others are those of the uniform motion. A motion ends in the uniform motion,
-/// in shimmy (the caster swings to and fro with a steady amplitude), tumbling (it turns right round), escape (the motion grows
-/// beyond fifty times the reference speed), or is undecided. With --out every finished part is kept in PATH.journal until
-/// the result is written, so that an interrupted run can be resumed.
+/// in shimmy (the caster swings to and fro: the motion repeats itself and comes back after a push, or is irregular with a size that
+/// has no trend), tumbling (it turns right round), escape (the motion grows beyond fifty times the reference speed), or is
+/// undecided. In rectilinear towing only the lateral motion counts: without c_u the longitudinal oscillation rings for ever
+/// and is no shimmy. With --out every finished part is kept in PATH.journal until the result is written, so that an interrupted
+/// run can be resumed.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub struct Basin {
@@ -92,7 +94,7 @@ impl Basin {
         let (journal, finished) =
             Journal::open::<Vec<NamedFate>>(output.first_file(), &computation, self.resume)?;
         if self.resume {
-            output.note(&format!("{} of {} tiles were finished", finished.len(), map.tiles()));
+            output.note(&format!("{} of {} parts were finished", finished.len(), map.tiles()));
         }
         let fates = self.follow(&map, &journal, finished, output.is_quiet())?;
         let starts = match self.samples {
@@ -138,9 +140,9 @@ impl Basin {
             if fates.len() != map.states_of(index).len() || fates.is_empty() {
                 return Err(Failure::Option {
                     option: "--resume",
-                    given: format!("tile {index} of the journal"),
+                    given: format!("part {index} of the journal"),
                     problem: format!("{} fates", fates.len()),
-                    allowed: "as many as the tile has; delete the journal".to_owned(),
+                    allowed: "as many as the part has; delete the journal".to_owned(),
                 });
             }
         }

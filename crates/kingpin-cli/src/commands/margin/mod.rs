@@ -6,6 +6,7 @@ use crate::commands::basin::classification::Classification;
 use crate::commands::safe_kick::edge::{DisturbanceOptions, Edge};
 use crate::failure::Failure;
 use crate::journal::{Journal, interruption};
+use crate::numbers::readable;
 use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
 use crate::output::Output;
 use crate::progress::Progress;
@@ -23,16 +24,19 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 const EXAMPLE: &str = "kingpin margin --along v=1:8:15 --kind release-angle -o margin.svg";
+/// Cycles are followed to this part of the smallest value, so that it lies inside.
+const BELOW: f64 = 0.99;
 /// Most values of the parameter.
 const MOST_POINTS: usize = 10_000;
-/// The Hopf point whose cycles are wanted is sought in an interval that is so many times longer at either end.
-const SEARCHED: f64 = 2.0;
+/// The Hopf point whose cycles are wanted is sought in intervals that reach so many times as far at either end, one after the
+/// other: with the shortest in which there is one its branch is followed.
+const SEARCHED: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// Safe disturbances along a parameter, beside the amplitude of the unstable limit cycle
 ///
 /// At each value the smallest disturbance that does not return is found as by `safe-kick`, in both directions. The paper takes
 /// the amplitude of the unstable cycle for the size of the basin; the ratio of the two tells how good an indicator it is.
-/// With --out every finished value is kept in PATH.journal until the result is written, so that an interrupted run can be
+/// With --out every finished part, the value of the parameter, is kept in PATH.journal until the result is written, so that an interrupted run can be
 /// resumed.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
@@ -106,10 +110,10 @@ impl Margin {
         });
         let (journal, finished) = Journal::open::<Cell>(output.first_file(), &computation, self.resume)?;
         if self.resume {
-            output.note(&format!("{} of {count} values were finished", finished.len()));
+            output.note(&format!("{} of {count} parts were finished", finished.len()));
         }
         let cells = self.cells(&wheel, key, &values, &journal, finished, output.is_quiet())?;
-        let amplitudes = unstable_amplitudes(&wheel, along, &values, &output)?;
+        let cycles = unstable_cycles(&wheel, along, &values, &output)?;
         output.deliver(&MarginReport::new(
             wheel,
             along,
@@ -117,7 +121,7 @@ impl Margin {
             self.classification.model(),
             values,
             cells,
-            amplitudes,
+            cycles,
         ))?;
         journal.finish()
     }
@@ -169,44 +173,85 @@ impl Margin {
     }
 }
 
-/// Half the range of the caster angle of the smallest unstable cycle at each value, where there is one.
-fn unstable_amplitudes(
+/// The unstable limit cycles beside the safe disturbances.
+#[derive(Clone, Debug, Default)]
+struct UnstableCycles {
+    /// Half the range of the caster angle of the smallest one at each value, where there is one.
+    amplitudes: Vec<Option<f64>>,
+    /// Why there is none at some values.
+    remarks: Vec<String>,
+}
+
+/// Finds them from the Hopf points in the interval, or, where it has none, in the nearest part beside it.
+fn unstable_cycles(
     wheel: &Wheel,
     along: Along,
     values: &[f64],
     output: &Output,
-) -> Result<Vec<Option<f64>>, Failure> {
+) -> Result<UnstableCycles, Failure> {
     let progress = Progress::spinner("unstable limit cycles", output.is_quiet());
-    let mut amplitudes: Vec<Option<f64>> = vec![None; values.len()];
+    let mut found = UnstableCycles { amplitudes: vec![None; values.len()], remarks: Vec::new() };
+    let key = along.key();
     let (start, end) = along.ends();
-    let allowed = along.key().allowed();
-    let ends = [start / SEARCHED, end * SEARCHED].map(|end| end.clamp(allowed.lowest, allowed.highest));
-    let searched = Along::new(along.key(), ends[0].min(start), ends[1].max(end)).unwrap_or(along);
-    let found = wheel.with(along.key(), start)?.hopf_points(searched).map(|search| search.points);
-    let hopf_points = match found {
-        Ok(points) => points,
-        Err(error) => {
-            output.warn(&format!("limit cycles were not sought: {error}"));
-            Vec::new()
+    // A search begins at the wheel's own value where that is inside.
+    let wheel = wheel.with(key, 0.5 * (start + end))?;
+    let mut searched = along;
+    let mut hopf_points = Vec::new();
+    for reach in SEARCHED {
+        let allowed = key.allowed();
+        let ends = [start / reach, end * reach].map(|end| end.clamp(allowed.lowest, allowed.highest));
+        let wider = Along::new(key, ends[0].min(start), ends[1].max(end))?;
+        match wheel.hopf_points(wider) {
+            Ok(search) => (searched, hopf_points) = (wider, search.points),
+            Err(error) => {
+                found.remarks.push(format!("no Hopf points were sought: {error}"));
+                break;
+            }
         }
-    };
+        if !hopf_points.is_empty() {
+            break;
+        }
+    }
+    if hopf_points.is_empty() {
+        let (low, high) = searched.ends();
+        found.remarks.push(format!(
+            "no limit cycles: the uniform motion has no Hopf point in {key} = {}:{}",
+            readable(low),
+            readable(high)
+        ));
+    }
     let options = CycleOptions { at: values.to_vec(), ..CycleOptions::default() };
     for hopf in &hopf_points {
-        let branch = match hopf.cycles(searched, &options, |_, _| ControlFlow::Continue(())) {
+        let born = format!("the limit cycles from the Hopf point at {key} = {}", readable(hopf.value));
+        // Only as far down as it is needed: slow cycles take long.
+        let (lowest, highest) = searched.ends();
+        let lowest = if hopf.value > start { lowest.max(BELOW * start) } else { lowest };
+        let branch = match hopf
+            .cycles(Along::new(key, lowest, highest)?, &options, |_, _| ControlFlow::Continue(()))
+        {
             Ok(branch) => branch,
             Err(error) => {
-                output.warn(&format!("limit cycles from {} = {}: {error}", along.key(), hopf.value));
+                found.remarks.push(format!("{born}: {error}"));
                 continue;
             }
         };
         for cycle in branch.points.iter().filter(|cycle| cycle.unstable_multipliers > 0) {
             let amplitude = 0.5 * (cycle.max[2] - cycle.min[2]);
-            let places = values.iter().zip(&mut amplitudes).filter(|(value, _)| **value == cycle.value);
+            let places = values.iter().zip(&mut found.amplitudes).filter(|(value, _)| **value == cycle.value);
             for (_, smallest) in places {
                 *smallest = Some(smallest.map_or(amplitude, |other| other.min(amplitude)));
             }
         }
+        let reached = branch.points.iter().map(|cycle| cycle.value);
+        let [low, high] =
+            reached.fold([hopf.value; 2], |[low, high], value| [f64::min(low, value), f64::max(high, value)]);
+        if values.iter().any(|value| !(low..=high).contains(value)) {
+            found.remarks.push(format!("{born} exist in {key} = {}:{}", readable(low), readable(high)));
+        }
+    }
+    if found.amplitudes.iter().all(Option::is_some) {
+        found.remarks.clear();
     }
     drop(progress);
-    Ok(amplitudes)
+    Ok(found)
 }

@@ -1,16 +1,17 @@
 //! Safe disturbances along a parameter as a result.
 
-use super::Cell as Found;
+use super::{Cell as Found, UnstableCycles};
 use crate::along::VaryingParameter;
 use crate::columns::Columns;
+use crate::commands::safe_kick::edge::Edge;
 use crate::document::{NamedNumbers, Schema};
 use crate::numbers::readable;
 use crate::options::parameters_of;
 use crate::report::Report;
-use crate::table::Table;
+use crate::table::{Cell, Table};
 use crate::{axis_label, description};
 use kingpin::Wheel;
-use kingpin::basin::{ContactModel, Disturbance, Fate};
+use kingpin::basin::{ContactModel, Disturbance};
 use kingpin::branches::Along;
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
 use serde::Serialize;
@@ -22,7 +23,7 @@ struct PointReport {
     value: f64,
     #[serde(flatten)]
     found: Found,
-    /// The largest disturbance that returned in the direction in which fewer do.
+    /// The largest disturbance that returned in the direction in which fewer do; nothing where it is undecided what lies beyond.
     safe: Option<f64>,
     /// Half the range of the caster angle of the unstable limit cycle, in rad.
     unstable_amplitude: Option<f64>,
@@ -34,7 +35,7 @@ impl PointReport {
     fn new(value: f64, found: Found, unstable_amplitude: Option<f64>) -> Self {
         let edges = [found.positive, found.negative].into_iter().flatten();
         let nearest = edges.min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
-        let safe = nearest.map(|edge| edge.returns.abs());
+        let safe = nearest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns.abs());
         let ratio = safe.zip(unstable_amplitude).map(|(safe, amplitude)| safe / amplitude);
         Self { value, found, safe, unstable_amplitude, ratio }
     }
@@ -59,7 +60,7 @@ impl PointReport {
 
     fn is_undecided(&self) -> bool {
         let edges = [self.found.positive, self.found.negative].into_iter().flatten();
-        edges.filter_map(|edge| edge.fate).any(|fate| fate.0 == Fate::Undecided)
+        edges.min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs())).is_some_and(|edge| edge.is_undecided())
     }
 }
 
@@ -85,8 +86,17 @@ impl Indicator {
             values: pairs.len(),
             smallest_ratio,
             largest_ratio,
-            correlation: correlation(&pairs),
+            // Two pairs lie on a straight line whatever they are.
+            correlation: (pairs.len() >= 3).then(|| correlation(&pairs)).flatten(),
         })
+    }
+}
+
+/// The largest disturbance that returned, unless it is undecided what lies beyond.
+fn safe(edge: Option<Edge>) -> Cell {
+    match edge {
+        Some(edge) if edge.is_undecided() => "undecided".into(),
+        edge => edge.map(|edge| edge.returns).into(),
     }
 }
 
@@ -117,6 +127,8 @@ pub struct MarginReport {
     contact: &'static str,
     points: Vec<PointReport>,
     indicator: Option<Indicator>,
+    /// Why there is no unstable limit cycle at some values.
+    remarks: Vec<String>,
 }
 
 impl MarginReport {
@@ -128,12 +140,12 @@ impl MarginReport {
         model: ContactModel,
         values: Vec<f64>,
         cells: Vec<Found>,
-        amplitudes: Vec<Option<f64>>,
+        cycles: UnstableCycles,
     ) -> Self {
         let points: Vec<PointReport> = values
             .into_iter()
             .zip(cells)
-            .zip(amplitudes)
+            .zip(cycles.amplitudes)
             .map(|((value, cell), amplitude)| PointReport::new(value, cell, amplitude))
             .collect();
         Self {
@@ -144,6 +156,7 @@ impl MarginReport {
             unit: kind.unit(),
             contact: model.name(),
             indicator: Indicator::of(&points),
+            remarks: cycles.remarks,
             points,
         }
     }
@@ -182,8 +195,8 @@ impl Report for MarginReport {
         for point in &self.points {
             table.row([
                 point.value.into(),
-                point.found.positive.map(|edge| edge.returns).into(),
-                point.found.negative.map(|edge| edge.returns).into(),
+                safe(point.found.positive),
+                safe(point.found.negative),
                 point.unstable_amplitude.into(),
                 point.ratio.into(),
                 point.remark().into(),
@@ -201,7 +214,7 @@ impl Report for MarginReport {
                 indicator.correlation.map_or(String::new(), |value| format!(", correlation {value:.3}")),
             )?;
         }
-        Ok(())
+        self.remarks.iter().try_for_each(|remark| writeln!(out, "\n{remark}"))
     }
 
     fn columns(&self) -> Columns {
@@ -223,8 +236,9 @@ impl Report for MarginReport {
         let label = axis_label::of(self.interval.key());
         let x = || Axis::new(label.clone()).limits(start, end);
         let largest = |values: &[(f64, f64)]| values.iter().fold(0.0_f64, |top, point| top.max(point.1));
-        let positive = self.curve(|point| point.found.positive.map(|edge| edge.returns));
-        let negative = self.curve(|point| point.found.negative.map(|edge| edge.returns.abs()));
+        let decided = |edge: Option<Edge>| edge.filter(|edge| !edge.is_undecided());
+        let positive = self.curve(|point| decided(point.found.positive).map(|edge| edge.returns));
+        let negative = self.curve(|point| decided(point.found.negative).map(|edge| edge.returns.abs()));
         let amplitude = self.curve(|point| point.unstable_amplitude);
         let top = 1.1 * largest(&positive).max(largest(&negative));
         let name = self.kind.replace('-', " ");
@@ -234,12 +248,8 @@ impl Report for MarginReport {
         )
         .curve(Line::new(positive).color(palette::BLUE).legend("positive"))
         .curve(Line::new(negative).color(palette::VERMILION).dashed().legend("negative"));
-        let undecided: Vec<(f64, f64)> = self
-            .points
-            .iter()
-            .filter(|point| point.is_undecided())
-            .filter_map(|point| Some((point.value, point.safe?)))
-            .collect();
+        let undecided: Vec<(f64, f64)> =
+            self.points.iter().filter(|point| point.is_undecided()).map(|point| (point.value, 0.0)).collect();
         if !undecided.is_empty() {
             let marker = Marker::new(MarkerShape::Circle).open().color(palette::BLACK);
             kicks = kicks.markers(Markers::new(undecided, marker).legend("undecided"));

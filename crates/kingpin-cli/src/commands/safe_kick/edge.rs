@@ -3,7 +3,7 @@
 use crate::commands::basin::classification::NamedFate;
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
-use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, SafeKick};
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, Fate, SafeKick};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,16 @@ pub struct Edge {
 }
 
 impl Edge {
+    /// Whether it is unknown what becomes of the motions beyond: then this is no edge, but where the patience ends.
+    pub fn is_undecided(&self) -> bool {
+        !self.is_unstable() && self.fate.is_some_and(|fate| fate.0 == Fate::Undecided)
+    }
+
+    /// Whether nothing returns, since the uniform motion is unstable.
+    pub fn is_unstable(&self) -> bool {
+        self.fails == 0.0
+    }
+
     /// Where the motion beyond the edge ends, in words.
     pub fn ending(&self) -> &'static str {
         self.fate.map_or("no rolling uniform motion", |fate| fate.0.name())

@@ -28,13 +28,19 @@ struct Motion {
     forward_speed: Vec<f64>,
     #[serde(rename = "Omega")]
     yaw_rate: Vec<f64>,
+    /// Lateral speed of the wheel centre and speed of the rim, where the wheel may slide.
+    #[serde(rename = "V2", skip_serializing_if = "Option::is_none")]
+    lateral_speed: Option<Vec<f64>>,
+    #[serde(rename = "W", skip_serializing_if = "Option::is_none")]
+    rim_speed: Option<Vec<f64>>,
     /// Speed of the contact point over the ground.
     slip: Vec<f64>,
 }
 
 impl Motion {
-    fn new(magnitude: f64, motion: DisturbedMotion) -> Self {
+    fn new(magnitude: f64, motion: DisturbedMotion, model: ContactModel) -> Self {
         let state = |index: usize| motion.states.iter().map(|state| state[index]).collect();
+        let slides = model == ContactModel::Sliding;
         Self {
             magnitude,
             u: state(0),
@@ -42,6 +48,8 @@ impl Motion {
             psi: state(2),
             forward_speed: state(3),
             yaw_rate: state(5),
+            lateral_speed: slides.then(|| state(4)),
+            rim_speed: slides.then(|| state(6)),
             slip: motion.states.iter().map(|state| (state[3] - state[6]).hypot(state[4])).collect(),
             t: motion.times,
         }
@@ -60,7 +68,8 @@ pub struct SafeKickReport {
     largest: f64,
     positive: Option<Edge>,
     negative: Option<Edge>,
-    /// The largest disturbance that returned, in the direction in which fewer do.
+    /// The largest disturbance that returned, in the direction in which fewer do; nothing where it is undecided what lies
+    /// beyond.
     safe: Option<f64>,
     returns: Option<Motion>,
     fails: Option<Motion>,
@@ -81,7 +90,7 @@ impl SafeKickReport {
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let (returns, fails) = match (smallest, motions) {
             (Some(edge), Some([returns, fails])) => {
-                (Some(Motion::new(edge.returns, returns)), Some(Motion::new(edge.fails, fails)))
+                (Some(Motion::new(edge.returns, returns, model)), Some(Motion::new(edge.fails, fails, model)))
             }
             _ => (None, None),
         };
@@ -94,7 +103,7 @@ impl SafeKickReport {
             largest,
             positive,
             negative,
-            safe: smallest.map(|edge| edge.returns),
+            safe: smallest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns),
             returns,
             fails,
         }
@@ -144,7 +153,7 @@ impl Report for SafeKickReport {
                 Some(edge) => table.row([
                     direction.into(),
                     edge.returns.into(),
-                    edge.fails.into(),
+                    if edge.is_undecided() { "undecided".into() } else { edge.fails.into() },
                     edge.ending().into(),
                 ]),
                 None => table.row([
@@ -156,6 +165,14 @@ impl Report for SafeKickReport {
             }
         }
         table.write(out)?;
+        if [self.positive, self.negative].into_iter().flatten().any(|edge| edge.is_undecided()) {
+            writeln!(
+                out,
+                "\nundecided: beyond what returned the motion neither returns nor settles in ten times {} s; a longer \
+                 --duration may tell",
+                readable(self.duration)
+            )?;
+        }
         if self.kind == Disturbance::StepSteer.name()
             && let Some(safe) = self.safe.filter(|safe| *safe > 0.0)
         {
@@ -175,7 +192,12 @@ impl Report for SafeKickReport {
         let sides =
             motions.iter().flat_map(|(side, motion)| motion.t.iter().map(|_| Some((*side).to_owned())));
         let magnitudes = motions.iter().flat_map(|(_, motion)| motion.t.iter().map(|_| motion.magnitude));
-        Columns::new()
+        let optional = |columns: Columns, name: &str, values: fn(&Motion) -> &Option<Vec<f64>>| {
+            let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
+            let values: Vec<f64> = present.flatten().copied().collect();
+            if values.is_empty() { columns } else { columns.numbers(name, values) }
+        };
+        let columns = Columns::new()
             .texts("side", sides)
             .numbers("magnitude", magnitudes)
             .numbers("t", numbers(|motion| &motion.t))
@@ -183,8 +205,10 @@ impl Report for SafeKickReport {
             .numbers("q", numbers(|motion| &motion.q))
             .numbers("psi", numbers(|motion| &motion.psi))
             .numbers("V", numbers(|motion| &motion.forward_speed))
-            .numbers("Omega", numbers(|motion| &motion.yaw_rate))
-            .numbers("slip", numbers(|motion| &motion.slip))
+            .numbers("Omega", numbers(|motion| &motion.yaw_rate));
+        let columns = optional(columns, "V2", |motion| &motion.lateral_speed);
+        let columns = optional(columns, "W", |motion| &motion.rim_speed);
+        columns.numbers("slip", numbers(|motion| &motion.slip))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

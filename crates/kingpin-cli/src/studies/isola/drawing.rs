@@ -37,18 +37,23 @@ impl Isola {
             let label = format!("$c_q={WITH_HOPF_POINTS}$ N s/m");
             panel = panel.curve(if index == 0 { curve.legend(label) } else { curve });
         }
-        for ((damping, branch), color) in self.shown.iter().zip([palette::GREEN, palette::PURPLE]) {
+        let shown = self.shown.iter().map(|(damping, branch)| (*damping, branch));
+        let mut others: Vec<(f64, &CycleBranch, Color)> = shown
+            .zip([palette::GREEN, palette::PURPLE])
+            .map(|((damping, branch), color)| (damping, branch, color))
+            .chain([(DETACHED, &self.closed, palette::VERMILION)])
+            .collect();
+        others.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (damping, branch, color) in others {
             panel = panel.curve(diagram(branch, color).legend(format!("$c_q={damping}$ N s/m")));
         }
-        panel = panel
-            .curve(diagram(&self.closed, palette::VERMILION).legend(format!("$c_q={DETACHED}$ N s/m")))
-            .markers(
-                Markers::new(
-                    self.hopf_points.iter().map(|hopf| (hopf.parameter, 0.0)),
-                    Marker::new(MarkerShape::Circle).color(palette::BLUE),
-                )
-                .legend("Hopf point"),
-            );
+        panel = panel.markers(
+            Markers::new(
+                self.hopf_points.iter().map(|hopf| (hopf.parameter, 0.0)),
+                Marker::new(MarkerShape::Circle).color(palette::BLUE),
+            )
+            .legend("Hopf point"),
+        );
         let folds = self.closed_folds();
         panel.markers(
             Markers::new(

@@ -1,0 +1,115 @@
+//! A motion followed piece by piece, with the slope and the curvature of the caster angle at many times.
+
+use super::fate::Target;
+use crate::rolling::RollingWheel;
+use crate::shimmy::passage::passages;
+use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
+use crate::sliding::model::Equations;
+use crate::sliding::{HybridState, SlidingWheel};
+use crate::wheel::Wheel;
+use arclength::VectorField;
+use arclength::integration::{Integrator, autonomous};
+use std::f64::consts::TAU;
+
+/// The motion at one time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// Time in s since the piece began.
+    pub time: f64,
+    /// Caster angle and its first two derivatives.
+    pub angle: [f64; 3],
+    /// `(u, q, psi, V, Omega)`; with slip, `V` is the speed of the wheel centre.
+    pub state: [f64; 5],
+}
+
+/// Where a motion is, and how it goes on.
+#[derive(Clone, Debug)]
+pub(super) enum Course<'a> {
+    Rolling { field: RollingWheel, state: [f64; 5] },
+    Sliding { wheel: &'a SlidingWheel, equations: Equations<f64>, state: HybridState },
+}
+
+impl<'a> Course<'a> {
+    pub fn rolling(wheel: &Wheel, state: [f64; 5]) -> Result<Self, SimulationError> {
+        Ok(Self::Rolling { field: wheel.rolling(&[])?, state })
+    }
+
+    pub fn sliding(wheel: &'a SlidingWheel, state: HybridState) -> Result<Self, SimulationError> {
+        Ok(Self::Sliding { wheel, equations: Equations::new(wheel.wheel())?, state })
+    }
+
+    /// The state `(u, q, psi, V, Omega)`.
+    pub fn state(&self) -> [f64; 5] {
+        match self {
+            Self::Rolling { state, .. } => *state,
+            Self::Sliding { state, .. } => reduced(&state.public()),
+        }
+    }
+
+    /// Goes on for `duration`, with nodes at multiples of `spacing` and wherever the equations change.
+    pub fn follow(
+        &mut self,
+        duration: f64,
+        spacing: f64,
+        nodes: &mut Vec<Node>,
+    ) -> Result<(), SimulationError> {
+        let count = (duration / spacing).round().max(1.0) as usize;
+        let times: Vec<f64> = (0..=count).map(|index| duration * (index as f64 / count as f64)).collect();
+        nodes.clear();
+        match self {
+            Self::Rolling { field, state } => {
+                let field = &*field;
+                let integrator = Integrator::with_tolerance(SIMULATION_TOLERANCE);
+                let solution = integrator.sample(autonomous(field, &[]), &*state, &times)?;
+                nodes.extend(solution.samples().map(|(time, state)| {
+                    let mut rate = [0.0; 5];
+                    field.evaluate(state, &[], &mut rate);
+                    let state = std::array::from_fn(|i| state[i]);
+                    Node { time, angle: [state[2], rate[2], -rate[4]], state }
+                }));
+                *state = std::array::from_fn(|i| solution.state[i]);
+            }
+            Self::Sliding { wheel, equations, state } => {
+                let (passages, end) = passages(wheel, *state, duration, &times[1..count])?;
+                for passage in &passages {
+                    nodes.extend(passage.nodes().map(|(time, inside)| {
+                        let mut rate = [0.0; 7];
+                        passage.regime.field(equations, inside, &mut rate);
+                        let present = HybridState { contact: passage.regime.contact(), state: *inside };
+                        Node {
+                            time,
+                            angle: [inside[2], rate[2], -rate[5]],
+                            state: reduced(&present.public()),
+                        }
+                    }));
+                }
+                *state = end;
+            }
+        }
+        Ok(())
+    }
+
+    /// The same with the deviation from the uniform motion multiplied by a factor.
+    pub fn pushed(&self, target: &Target, factor: f64) -> Self {
+        let mut pushed = self.clone();
+        let [u, q, psi, speed, yaw] = *target.state();
+        let stretch = |value: &mut f64, centre: f64| *value = centre + factor * (*value - centre);
+        let turned = |angle: f64| psi + TAU * ((angle - psi) / TAU).round();
+        match &mut pushed {
+            Self::Rolling { state, .. } => {
+                let centre = [u, q, turned(state[2]), speed, yaw];
+                state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
+            }
+            Self::Sliding { state, .. } => {
+                let centre = [u, q, turned(state.state[2]), speed, 0.0, yaw, 0.0];
+                state.state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
+            }
+        }
+        pushed
+    }
+}
+
+/// What is told of the seven states of a wheel that slides.
+fn reduced(&[u, q, psi, forward, lateral, yaw, _]: &[f64; 7]) -> [f64; 5] {
+    [u, q, psi, forward.hypot(lateral).copysign(forward), yaw]
+}
