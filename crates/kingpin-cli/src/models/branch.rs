@@ -91,7 +91,8 @@ impl End {
             Stop::StepTooSmall { cause } => (
                 format!("the step became too small: {cause}"),
                 Some(
-                    "shorter steps from the start (--finer 10); if they end here too, the field is not smooth here",
+                    "shorter steps from the start (--finer 10); if they end here too, the field may not be smooth here, or \
+                     the curve turns more sharply than double precision tells",
                 ),
             ),
             Stop::MostSteps => (
