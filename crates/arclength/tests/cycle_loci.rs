@@ -417,3 +417,22 @@ fn a_branch_of_cycles_starts_at_its_fold() {
         (point.value + square - square * square).abs() < 1e-7
     }));
 }
+
+#[test]
+fn an_observer_ends_a_branch_and_what_there_is_stays() {
+    let period = 2.0 * std::f64::consts::PI / 2.5;
+    let orbit = Orbit::from_time_history(&Bautin, &[-0.25, 1.0], &[0.5_f64.sqrt(), 0.0], 1.1 * period)
+        .expect("a cycle");
+    let mut told = 0;
+    let branch = Cycles::of(&Bautin, CycleStart::Orbit(orbit))
+        .parameters(&[-0.25, 1.0])
+        .along(0, -1.0..=1.0)
+        .observer(|_, _| {
+            told += 1;
+            if told < 5 { std::ops::ControlFlow::Continue(()) } else { std::ops::ControlFlow::Break(()) }
+        })
+        .run()
+        .expect("exists");
+    assert!(matches!(branch.stops, (Some(Stop::Interrupted), Stop::Interrupted)), "{:?}", branch.stops);
+    assert_eq!(branch.points.len(), 5);
+}

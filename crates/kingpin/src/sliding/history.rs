@@ -10,7 +10,7 @@ use crate::wheel::Wheel;
 pub struct SlidingHistory {
     /// Times in s.
     pub times: Vec<f64>,
-    /// States [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES), one for each time.
+    /// States [`SLIDING_STATE_NAMES`], one for each time.
     pub states: Vec<[f64; 7]>,
     /// Friction force along and across the caster in N, one for each time.
     pub friction: Vec<[f64; 2]>,
@@ -47,7 +47,7 @@ impl SlidingHistory {
 
 impl Wheel {
     /// The rolling uniform motion as one of a wheel that may slide, with some of the states
-    /// [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES), given by name, changed by some amount; `V` changes `V1` and `W`.
+    /// [`SLIDING_STATE_NAMES`], given by name, changed by some amount; `V` changes `V1` and `W`.
     ///
     /// # Errors
     /// An unknown name, an amount that is not finite, or no uniform motion.
@@ -97,7 +97,7 @@ impl SlidingWheel {
         self.simulate_hybrid(self.rolling_state(initial), duration, samples)
     }
 
-    /// Simulates from the states [`SLIDING_STATE_NAMES`](super::SLIDING_STATE_NAMES); otherwise like
+    /// Simulates from the states [`SLIDING_STATE_NAMES`]; otherwise like
     /// [`simulate`](Self::simulate). Without slip (`V1 = W`, `V2 = 0`) the wheel rolls if friction can hold it.
     ///
     /// # Errors
