@@ -29,6 +29,27 @@ init x=.1,y=.1,z=.1
 done
 ";
 
+/// The nerve of Hodgkin and Huxley.
+const NERVE: &str = "par iapp=0,gna=120,gk=36,gl=.3,vna=50,vk=-77,vl=-54.4,phi=1
+exprel(x,y)=if(abs(x/y)<1e-6)then(y*(1+x/y/2))else(x/(1-exp(-x/y)))
+am(v)=.1*exprel(v+40,10)
+bm(v)=4*exp(-(v+65)/18)
+ah(v)=.07*exp(-(v+65)/20)
+bh(v)=1/(1+exp(-(v+35)/10))
+an(v)=.01*exprel(v+55,10)
+bn(v)=.125*exp(-(v+65)/80)
+ina(v,m,h)=gna*m^3*h*(v-vna)
+ik(v,n)=gk*n^4*(v-vk)
+v'=iapp-ina(v,m,h)-ik(v,n)-gl*(v-vl)
+m'=phi*(am(v)*(1-m)-bm(v)*m)
+h'=phi*(ah(v)*(1-h)-bh(v)*h)
+n'=phi*(an(v)*(1-n)-bn(v)*n)
+aux i_na=ina(v,m,h)
+init v=-65,m=.052,h=.596,n=.317
+@ total=100,dt=.05,xhi=100,ylo=-90,yhi=50,bound=1000
+done
+";
+
 fn folder(text: &str) -> Folder {
     let folder = Folder::with("lure.ode");
     std::fs::write(folder.0.path().join("model.ode"), text).unwrap();
@@ -91,4 +112,14 @@ fn a_result_is_no_model() {
     let folder = folder(FOOD_CHAIN);
     folder.succeed("equilibria model.ode --along p1=0:2 -q -o eq.json");
     folder.fails("equilibria eq.json --along p1=0:2", 2, &["eq.json", "--from eq.json:LABEL"]);
+}
+
+#[test]
+fn cycles_are_born_where_the_normal_form_holds_only_nearby() {
+    let folder = folder(NERVE);
+    folder.succeed("equilibria model.ode --along iapp=0:200 -q -o eq.json");
+    // Over a wide interval the first cycle of the normal form is far too large.
+    let cycles = folder.json("cycles --from eq.json:HB2 --along gk=20:50");
+    let first = &points(&cycles)[0];
+    assert!((number(&first["value"]) - 36.0).abs() < 0.1 && points(&cycles).len() > 3);
 }
