@@ -324,12 +324,17 @@ impl VectorField for Bautin {
     }
 }
 
-#[test]
-fn folds_of_cycles_end_at_a_generalised_hopf_point() {
+/// The fold at `b = 1`, with its parameters: a circle with the angular velocity 2.5.
+fn fold_of_bautin() -> (Orbit, [f64; 2]) {
     let parameters = [-0.25, 1.0];
     let period = 2.0 * std::f64::consts::PI / 2.5;
-    let orbit = Orbit::from_time_history(&Bautin, &parameters, &[0.5_f64.sqrt(), 0.0], 1.1 * period)
-        .expect("a cycle");
+    let orbit = Orbit::from_time_history(&Bautin, &parameters, &[0.5_f64.sqrt(), 0.0], 1.1 * period);
+    (orbit.expect("a cycle"), parameters)
+}
+
+#[test]
+fn folds_of_cycles_end_at_a_generalised_hopf_point() {
+    let (orbit, parameters) = fold_of_bautin();
     let folds = CycleLocus::of(&Bautin)
         .from_cycle(SpecialKind::FoldOfCycles, &orbit, &parameters)
         .along("a", -1.0..=1.0)
@@ -392,17 +397,15 @@ fn a_coefficient_that_is_zero_all_along_has_no_chenciner_points() {
 
 #[test]
 fn a_branch_of_cycles_starts_at_its_fold() {
-    let period = 2.0 * std::f64::consts::PI / 2.5;
-    let orbit = Orbit::from_time_history(&Bautin, &[-0.25, 1.0], &[0.5_f64.sqrt(), 0.0], 1.1 * period)
-        .expect("a cycle");
+    let (orbit, parameters) = fold_of_bautin();
     let branch = |orbit: &Orbit, value: f64| {
         Cycles::of(&Bautin, CycleStart::Orbit(orbit.clone()))
-            .parameters(&[value, 1.0])
+            .parameters(&[value, parameters[1]])
             .along(0, -1.0..=1.0)
             .run()
             .expect("exists")
     };
-    let first = branch(&orbit, -0.25);
+    let first = branch(&orbit, parameters[0]);
     let (_, fold) = first.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
     assert!((fold.value + 0.25).abs() < 1e-10);
     let second = branch(&fold.orbit, fold.value);
@@ -420,12 +423,10 @@ fn a_branch_of_cycles_starts_at_its_fold() {
 
 #[test]
 fn an_observer_ends_a_branch_and_what_there_is_stays() {
-    let period = 2.0 * std::f64::consts::PI / 2.5;
-    let orbit = Orbit::from_time_history(&Bautin, &[-0.25, 1.0], &[0.5_f64.sqrt(), 0.0], 1.1 * period)
-        .expect("a cycle");
+    let (orbit, parameters) = fold_of_bautin();
     let mut told = 0;
     let branch = Cycles::of(&Bautin, CycleStart::Orbit(orbit))
-        .parameters(&[-0.25, 1.0])
+        .parameters(&parameters)
         .along(0, -1.0..=1.0)
         .observer(|_, _| {
             told += 1;

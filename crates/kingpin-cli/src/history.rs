@@ -1,4 +1,6 @@
-//! Time histories as they are drawn.
+//! Time histories as they are summed up and drawn.
+
+use crate::table::Table;
 
 /// A curve of more samples than this is drawn through the smallest and largest of each of half as many groups.
 const DRAWN_POINTS: usize = 4000;
@@ -8,6 +10,17 @@ pub fn extremes(values: &[f64]) -> [f64; 2] {
     values
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &value| [low.min(value), high.max(value)])
+}
+
+/// A table of what becomes of quantities, each with its name, values and unit.
+pub fn summary<'a>(quantities: impl IntoIterator<Item = (&'a str, &'a Vec<f64>, &'a str)>) -> Table {
+    let mut table = Table::new(["", "start", "end", "smallest", "largest", ""]);
+    for (name, values, unit) in quantities {
+        let [smallest, largest] = extremes(values);
+        let [start, end] = [values.first(), values.last()].map(|end| end.copied().into());
+        table.row([name.into(), start, end, smallest.into(), largest.into(), unit.into()]);
+    }
+    table
 }
 
 /// The points through which a curve is drawn: all, or the extremes of groups of neighbours.

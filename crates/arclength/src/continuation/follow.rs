@@ -170,12 +170,12 @@ pub fn follow<C: Curve>(
         let Some((next, _)) = between.last() else { continue };
         let next = next.clone();
         lengths.extend(between.iter().map(|(solution, _)| place(curve, solution)));
-        let reached = place(curve, &next);
         solutions.extend(between);
         if let Some(stop) = ending {
             return Ok(Followed { solutions, stop });
         }
-        (current, length) = (next, reached);
+        current = next;
+        length = lengths.last().copied().unwrap_or(length);
         if let Some(closure) = &mut closure {
             closure.consider(curve, &current, solutions.len() - 1, length);
         }

@@ -6,12 +6,11 @@ use crate::commands::sliding_history::SlidingReport;
 use crate::description;
 use crate::document::{NamedNumbers, Schema};
 use crate::failure::Failure;
-use crate::history::{drawn, extremes};
+use crate::history::{drawn, extremes, summary};
 use crate::numbers::readable;
 use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
 use crate::range::Assignment;
 use crate::report::Report;
-use crate::table::Table;
 use clap::Args;
 use kingpin::rolling::STATE_NAMES;
 use kingpin::simulation::TimeHistory;
@@ -154,15 +153,9 @@ impl Report for HistoryReport {
         let duration = self.t.last().copied().unwrap_or(0.0);
         writeln!(out, "motion at {}", description::of(&self.wheel, &[]))?;
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
-        let mut table = Table::new(["", "start", "end", "smallest", "largest", ""]);
-        let force = ("friction_force", &self.friction_force, "N", "");
-        for (name, values, unit, _) in self.states().into_iter().chain([force]) {
-            let [smallest, largest] = extremes(values);
-            let ends = [values.first(), values.last()].map(|end| end.copied().into());
-            let [start, end] = ends;
-            table.row([name.into(), start, end, smallest.into(), largest.into(), unit.into()]);
-        }
-        table.write(out)?;
+        let states = self.states().map(|(name, values, unit, _)| (name, values, unit));
+        let force = ("friction_force", &self.friction_force, "N");
+        summary(states.into_iter().chain([force])).write(out)?;
         writeln!(out)?;
         match self.rolling_lost_at {
             Some(time) => {

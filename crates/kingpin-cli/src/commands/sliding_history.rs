@@ -3,11 +3,10 @@
 use crate::columns::Columns;
 use crate::description;
 use crate::document::{NamedNumbers, Schema};
-use crate::history::{drawn, extremes};
+use crate::history::{drawn, summary};
 use crate::numbers::readable;
 use crate::options::parameters_of;
 use crate::report::Report;
-use crate::table::Table;
 use kingpin::sliding::{Contact, SLIDING_STATE_NAMES, SlidingHistory};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
@@ -116,15 +115,8 @@ impl Report for SlidingReport {
         let duration = self.t.last().copied().unwrap_or(0.0);
         writeln!(out, "motion with rolling and sliding at {}", description::of(&self.wheel, &[]))?;
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
-        let mut table = Table::new(["", "start", "end", "smallest", "largest", ""]);
         let more = [("slip", &self.slip, "m/s"), ("friction_force", &self.friction_force, "N")];
-        for (name, values, unit) in self.states().into_iter().chain(more) {
-            let [smallest, largest] = extremes(values);
-            let ends = [values.first(), values.last()].map(|end| end.copied().into());
-            let [start, end] = ends;
-            table.row([name.into(), start, end, smallest.into(), largest.into(), unit.into()]);
-        }
-        table.write(out)?;
+        summary(self.states().into_iter().chain(more)).write(out)?;
         let slides: Vec<&PhaseReport> =
             self.phases.iter().filter(|phase| phase.contact == word(Contact::Sliding)).collect();
         writeln!(out)?;

@@ -5,23 +5,20 @@ use proptest::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+/// A point of the unstable cycle at v = 6 m/s.
+const UNSTABLE_CYCLE: [f64; 5] =
+    [0.006_788_672_435_187_8, -0.063_185_309_027_484_7, 0.513_078_505_728_634_6, 6.416_290_737_262_749, 6.0];
+
 fn destinations(wheel: &Wheel, model: ContactModel, duration: f64) -> Destinations {
     Destinations::new(wheel, model, ClassificationSettings { duration }).unwrap()
 }
 
 #[test]
 fn the_two_sides_of_the_unstable_cycle() {
-    // A point of the unstable cycle at v = 6 m/s and the uniform motion: the segment between them leads inwards.
+    // The segment from the unstable cycle to the uniform motion leads inwards.
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
-    let cycle = [
-        0.006_788_672_435_187_8,
-        -0.063_185_309_027_484_7,
-        0.513_078_505_728_634_6,
-        6.416_290_737_262_749,
-        6.0,
-    ];
     let centre = wheel.uniform_motion().unwrap().state();
-    let at = |part: f64| std::array::from_fn(|i| centre[i] + part * (cycle[i] - centre[i]));
+    let at = |part: f64| std::array::from_fn(|i| centre[i] + part * (UNSTABLE_CYCLE[i] - centre[i]));
     let fates =
         destinations(&wheel, ContactModel::Rolling, 60.0).of(&[at(0.5), at(0.9), at(1.1), at(1.5)]).unwrap();
     assert_eq!(fates, [Fate::UniformMotion, Fate::UniformMotion, Fate::Tumbling, Fate::Tumbling]);
@@ -64,15 +61,8 @@ fn slow_motions_near_an_unstable_cycle_are_no_shimmy() {
 fn the_unstable_cycle_itself_is_no_shimmy() {
     // It repeats itself to nine digits for many periods, but a push sends it away.
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
-    let cycle = [
-        0.006_788_672_435_187_8,
-        -0.063_185_309_027_484_7,
-        0.513_078_505_728_634_6,
-        6.416_290_737_262_749,
-        6.0,
-    ];
     let of = destinations(&wheel, ContactModel::Rolling, 2.0);
-    assert_ne!(of.of(&[cycle]).unwrap(), [Fate::Shimmy]);
+    assert_ne!(of.of(&[UNSTABLE_CYCLE]).unwrap(), [Fate::Shimmy]);
 }
 
 #[test]
