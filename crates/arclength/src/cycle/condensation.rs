@@ -2,12 +2,13 @@
 //! dense factorisation, and a [`Cyclic`] system in the left ends and the scalars is left.
 //!
 //! Apart from the evaluation of the vector field this is where the time of a continuation of cycles goes, so
-//! it is compiled once, not for every field, and also for processors with wide vectors and fused operations.
+//! it is compiled once, not for every field, and also for processors with wide vectors and fused operations;
+//! [`LANES`] neighbouring intervals are condensed together, one in each lane of the vectors.
 //! Source: Ascher, Mattheij and Russell, *Numerical Solution of Boundary Value Problems* (1995), section 7.2.
 
 use super::cyclic::{Blocks, Cyclic};
 use super::gauss::Gauss;
-use crate::linear::lu;
+use crate::linear::lanes::{self, Exchange, LANES, Lanes};
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
@@ -27,15 +28,16 @@ pub(super) struct Condensation {
     pub(super) gradients: Vec<f64>,
     /// Derivatives of the dense rows with respect to the scalars, row by row; to be filled in.
     pub(super) corner: Vec<f64>,
-    /// Rows of the interior systems, `m n` rounded up so that vector instructions leave no rest.
-    padded: usize,
-    /// LU factors of the interior systems, padded by unit vectors, for each interval, and their pivots.
-    factors: Vec<f64>,
-    pivots: Vec<usize>,
-    /// Interior response to `u_j` and the scalars: `m n` (padded) by `n + E` for each interval.
-    response: Vec<f64>,
-    /// One padded right-hand side.
-    column: Vec<f64>,
+    /// For each group of intervals: LU factors of the interior systems, `m n` rows, and behind them the interior responses
+    /// to `u_j` and the scalars, `n + E` columns. Lanes behind the last interval repeat it.
+    systems: Vec<Lanes>,
+    /// Rows exchanged in the factorisations, and for each group whether there are any.
+    exchanges: Vec<Exchange>,
+    exchanged: Vec<bool>,
+    /// Derivatives of one group times the widths; gradients.
+    scaled: Vec<Lanes>,
+    /// Interior values that belong to a right-hand side.
+    particular: Vec<Lanes>,
     transfer: Vec<f64>,
     scalar_columns: Vec<f64>,
     rows: Vec<f64>,
@@ -57,11 +59,11 @@ impl Condensation {
             derivatives: Vec::new(),
             gradients: Vec::new(),
             corner: Vec::new(),
-            padded: (degree * n).next_multiple_of(lu::BLOCK),
-            column: vec![0.0; (degree * n).next_multiple_of(lu::BLOCK)],
-            factors: Vec::new(),
-            pivots: Vec::new(),
-            response: Vec::new(),
+            systems: Vec::new(),
+            exchanges: Vec::new(),
+            exchanged: Vec::new(),
+            scaled: vec![Lanes::ZERO; degree * n * (n + scalars)],
+            particular: Vec::new(),
             transfer: Vec::new(),
             scalar_columns: Vec::new(),
             rows: Vec::new(),
@@ -81,9 +83,11 @@ impl Condensation {
         self.gradients.resize(e * intervals * (inner + n), 0.0);
         self.corner.clear();
         self.corner.resize(e * e, 0.0);
-        self.factors.resize(intervals * self.padded * self.padded, 0.0);
-        self.pivots.resize(intervals * self.padded, 0);
-        self.response.resize(intervals * self.padded * (n + e), 0.0);
+        let groups = intervals.div_ceil(LANES);
+        self.systems.resize(groups * inner * (inner + n + e), Lanes::ZERO);
+        self.exchanges.resize(groups * inner, [0; LANES]);
+        self.exchanged.resize(groups, false);
+        self.particular.resize(groups * inner, Lanes::ZERO);
         self.transfer.resize(intervals * n * n, 0.0);
         self.scalar_columns.resize(intervals * n * e, 0.0);
         self.rows.resize(e * intervals * n, 0.0);
@@ -95,13 +99,22 @@ impl Condensation {
         &self.transfer
     }
 
+    /// Number of interior unknowns of an interval, and of numbers of the system of a group.
+    #[inline(always)]
+    fn sizes(&self) -> (usize, usize) {
+        let inner = self.gauss.degree() * self.n;
+        (inner, inner * (inner + self.n + self.scalars))
+    }
+
     /// Interior values of the linearised flow that starts with `start` at the left end of an interval.
     pub(super) fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {
-        let response = &self.response[interval * self.padded * (self.n + self.scalars)..];
+        let (inner, system) = self.sizes();
+        let (group, lane) = (interval / LANES, interval % LANES);
+        let response = &self.systems[group * system + inner * inner..];
         interior.fill(0.0);
-        for (column, factor) in response.chunks_exact(self.padded).zip(start) {
+        for (column, factor) in response.chunks_exact(inner).zip(start) {
             for (entry, value) in interior.iter_mut().zip(column) {
-                *entry += factor * value;
+                *entry += factor * value.0[lane];
             }
         }
     }
@@ -124,12 +137,13 @@ impl Condensation {
 
     #[inline(always)]
     fn factorize_kernel<const FUSED: bool>(&mut self, mesh: &[f64]) -> f64 {
-        for (interval, pair) in mesh.windows(2).enumerate() {
-            if !self.condense::<FUSED>(interval, pair[1] - pair[0]) {
+        for group in 0..self.exchanged.len() {
+            if !self.condense::<FUSED>(group, mesh) {
                 return 0.0;
             }
+            self.write_transfer::<FUSED>(group);
+            self.reduce_rows::<FUSED>(group);
         }
-        self.reduce_rows();
         let blocks = Blocks {
             transfer: &self.transfer,
             scalar_columns: &self.scalar_columns,
@@ -140,99 +154,112 @@ impl Condensation {
         self.cyclic.factorize(blocks, self.n, self.scalars, self.intervals)
     }
 
-    /// Factorises the interior system of an interval and forms its response and transfer blocks.
+    /// Factorises the interior systems of a group of intervals and forms their responses.
     #[inline(always)]
-    fn condense<const FUSED: bool>(&mut self, interval: usize, width: f64) -> bool {
-        let n = self.n;
-        let e = self.scalars;
-        let degree = self.gauss.degree();
-        let inner = degree * n;
+    fn condense<const FUSED: bool>(&mut self, group: usize, mesh: &[f64]) -> bool {
+        let (inner, system) = self.sizes();
+        let (n, e, degree) = (self.n, self.scalars, self.gauss.degree());
         let columns = n + e;
-        let derivatives = &self.derivatives[interval * inner * columns..(interval + 1) * inner * columns];
-        let padded = self.padded;
-        let matrix = &mut self.factors[interval * padded * padded..(interval + 1) * padded * padded];
+        for lane in 0..LANES {
+            let interval = (group * LANES + lane).min(self.intervals - 1);
+            let width = mesh[interval + 1] - mesh[interval];
+            let derivatives = &self.derivatives[interval * inner * columns..(interval + 1) * inner * columns];
+            for (target, derivative) in self.scaled.iter_mut().zip(derivatives) {
+                target.0[lane] = width * derivative;
+            }
+        }
+        let matrix = &mut self.systems[group * system..(group + 1) * system];
+        let (square, response) = matrix.split_at_mut(inner * inner);
         // Column (k, c) of the interior system: unit vector minus width a_ik df/dy_c at Gauss point k.
-        for k in 0..degree {
-            for component in 0..n {
-                let slope = &derivatives[(k * columns + component) * n..][..n];
-                let target = &mut matrix[(k * n + component) * padded..][..padded];
-                target[inner..].fill(0.0);
-                for (i, block) in target[..inner].chunks_exact_mut(n).enumerate() {
-                    let factor = -width * self.gauss.integration[i * degree + k];
-                    for (entry, value) in block.iter_mut().zip(slope) {
-                        *entry = factor * value;
+        for (k, block) in square.chunks_exact_mut(n * inner).enumerate() {
+            for (component, target) in block.chunks_exact_mut(inner).enumerate() {
+                let slope = &self.scaled[(k * columns + component) * n..][..n];
+                for (i, entries) in target.chunks_exact_mut(n).enumerate() {
+                    let factor = -self.gauss.integration[i * degree + k];
+                    for (entry, value) in entries.iter_mut().zip(slope) {
+                        *entry = value.map(|value| factor * value);
                     }
                 }
-                target[k * n + component] += 1.0;
+                let diagonal = &mut target[k * n + component];
+                *diagonal = diagonal.map(|entry| 1.0 + entry);
             }
         }
-        for column in inner..padded {
-            let target = &mut matrix[column * padded..(column + 1) * padded];
-            target.fill(0.0);
-            target[column] = 1.0;
+        response.fill(Lanes::ZERO);
+        let (to_states, to_scalars) = response.split_at_mut(n * inner);
+        for (component, target) in to_states.chunks_exact_mut(inner).enumerate() {
+            target.iter_mut().skip(component).step_by(n).for_each(|entry| *entry = Lanes::ONE);
         }
-        let response = &mut self.response[interval * padded * columns..(interval + 1) * padded * columns];
-        response.fill(0.0);
-        for component in 0..n {
-            for point in 0..degree {
-                response[component * padded + point * n + component] = 1.0;
-            }
-        }
-        for scalar in 0..e {
-            let target = &mut response[(n + scalar) * padded..][..inner];
-            for k in 0..degree {
-                let slope = &derivatives[(k * columns + n + scalar) * n..][..n];
-                for (i, block) in target.chunks_exact_mut(n).enumerate() {
-                    let factor = width * self.gauss.integration[i * degree + k];
-                    for (entry, value) in block.iter_mut().zip(slope) {
-                        *entry += factor * value;
+        for (scalar, target) in to_scalars.chunks_exact_mut(inner).enumerate() {
+            for (i, entries) in target.chunks_exact_mut(n).enumerate() {
+                for k in 0..degree {
+                    let slope = &self.scaled[(k * columns + n + scalar) * n..][..n];
+                    let factor = Lanes([self.gauss.integration[i * degree + k]; LANES]);
+                    for (entry, value) in entries.iter_mut().zip(slope) {
+                        *entry = entry.plus::<FUSED>(factor, *value);
                     }
                 }
             }
         }
-        let pivots = &mut self.pivots[interval * padded..(interval + 1) * padded];
-        if lu::factorize_with::<FUSED>(matrix, padded, pivots) == 0.0 {
-            return false;
-        }
-        lu::solve_with::<FUSED>(matrix, padded, pivots, response);
-        for (column, interior) in response.chunks_exact(padded).enumerate() {
-            let interior = &interior[..inner];
-            let target = if column < n {
-                &mut self.transfer[(interval * n + column) * n..][..n]
-            } else {
-                &mut self.scalar_columns[(interval * e + column - n) * n..][..n]
-            };
-            target.fill(0.0);
-            if column < n {
-                target[column] = self.gauss.end[0];
+        let exchanges = &mut self.exchanges[group * inner..(group + 1) * inner];
+        match lanes::factorize_and_solve::<FUSED>(matrix, inner, exchanges) {
+            Some(exchanged) => {
+                self.exchanged[group] = exchanged;
+                true
             }
-            for (block, weight) in interior.chunks_exact(n).zip(&self.gauss.end[1..]) {
-                for (entry, value) in target.iter_mut().zip(block) {
-                    *entry += weight * value;
-                }
-            }
+            None => false,
         }
-        true
     }
 
-    /// Expresses the dense rows by the left ends and the scalars.
+    /// Forms the transfer blocks of a group of intervals from their responses.
     #[inline(always)]
-    fn reduce_rows(&mut self) {
-        let n = self.n;
-        let e = self.scalars;
-        let size = (self.gauss.degree() + 1) * n;
-        let intervals = self.intervals;
-        for row in 0..e {
-            for interval in 0..intervals {
-                let gradient = &self.gradients[(row * intervals + interval) * size..][..size];
-                let response =
-                    &self.response[interval * self.padded * (n + e)..(interval + 1) * self.padded * (n + e)];
-                for (column, interior) in response.chunks_exact(self.padded).enumerate() {
-                    let sum: f64 = gradient[n..].iter().zip(interior).map(|(a, b)| a * b).sum();
+    fn write_transfer<const FUSED: bool>(&mut self, group: usize) {
+        let (inner, system) = self.sizes();
+        let (n, e) = (self.n, self.scalars);
+        let response = &self.systems[group * system + inner * inner..(group + 1) * system];
+        for (column, interior) in response.chunks_exact(inner).enumerate() {
+            for row in 0..n {
+                let start = if row == column { self.gauss.end[0] } else { 0.0 };
+                let mut sum = Lanes([start; LANES]);
+                for (value, weight) in interior[row..].iter().step_by(n).zip(&self.gauss.end[1..]) {
+                    sum = sum.plus::<FUSED>(*value, Lanes([*weight; LANES]));
+                }
+                for (interval, lane) in lanes_of(group, self.intervals) {
                     if column < n {
-                        self.rows[(row * intervals + interval) * n + column] = gradient[column] + sum;
+                        self.transfer[(interval * n + column) * n + row] = sum.0[lane];
                     } else {
-                        self.corner[row * e + column - n] += sum;
+                        self.scalar_columns[(interval * e + column - n) * n + row] = sum.0[lane];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Expresses the dense rows in a group of intervals by the left ends and the scalars.
+    #[inline(always)]
+    fn reduce_rows<const FUSED: bool>(&mut self, group: usize) {
+        let (inner, system) = self.sizes();
+        let (n, e, intervals) = (self.n, self.scalars, self.intervals);
+        let size = inner + n;
+        let response = &self.systems[group * system + inner * inner..(group + 1) * system];
+        for row in 0..e {
+            let gradient = &mut self.scaled[..inner];
+            for (interval, lane) in lanes_of(group, intervals) {
+                let source = &self.gradients[(row * intervals + interval) * size + n..][..inner];
+                for (target, entry) in gradient.iter_mut().zip(source) {
+                    target.0[lane] = *entry;
+                }
+            }
+            for (column, interior) in response.chunks_exact(inner).enumerate() {
+                let mut sum = Lanes::ZERO;
+                for (entry, value) in gradient.iter().zip(interior) {
+                    sum = sum.plus::<FUSED>(*entry, *value);
+                }
+                for (interval, lane) in lanes_of(group, intervals) {
+                    if column < n {
+                        let start = self.gradients[(row * intervals + interval) * size + column];
+                        self.rows[(row * intervals + interval) * n + column] = start + sum.0[lane];
+                    } else {
+                        self.corner[row * e + column - n] += sum.0[lane];
                     }
                 }
             }
@@ -257,44 +284,70 @@ impl Condensation {
 
     #[inline(always)]
     fn solve_kernel<const FUSED: bool>(&mut self, right_hand_side: &mut [f64]) {
-        let n = self.n;
-        let e = self.scalars;
-        let inner = self.gauss.degree() * n;
-        let size = (self.gauss.degree() + 1) * n;
-        let (intervals, padded) = (self.intervals, self.padded);
+        let (inner, system) = self.sizes();
+        let (n, intervals) = (self.n, self.intervals);
+        let size = inner + n;
         let (blocks, scalars) = right_hand_side.split_at_mut(intervals * size);
-        for (interval, block) in blocks.chunks_exact_mut(size).enumerate() {
-            let (end, interior) = block.split_at_mut(n);
-            let factors = &self.factors[interval * padded * padded..(interval + 1) * padded * padded];
-            let pivots = &self.pivots[interval * padded..(interval + 1) * padded];
-            self.column[..inner].copy_from_slice(interior);
-            self.column[inner..].fill(0.0);
-            lu::solve_with::<FUSED>(factors, padded, pivots, &mut self.column);
-            interior.copy_from_slice(&self.column[..inner]);
-            let target = &mut self.states[interval * n..(interval + 1) * n];
-            target.copy_from_slice(end);
-            for (values, weight) in interior.chunks_exact(n).zip(&self.gauss.end[1..]) {
-                for (entry, value) in target.iter_mut().zip(values) {
-                    *entry += weight * value;
+        for (group, values) in self.particular.chunks_exact_mut(inner).enumerate() {
+            let count = LANES.min(intervals - group * LANES);
+            let here = &mut blocks[group * LANES * size..][..count * size];
+            for (lane, block) in here.chunks_exact(size).enumerate() {
+                for (target, value) in values.iter_mut().zip(&block[n..]) {
+                    target.0[lane] = *value;
+                }
+            }
+            let factors = &self.systems[group * system..][..inner * inner];
+            let exchanges =
+                self.exchanged[group].then(|| &self.exchanges[group * inner..(group + 1) * inner]);
+            lanes::solve::<FUSED>(factors, inner, exchanges, values);
+            for component in 0..n {
+                let mut sum = Lanes::ZERO;
+                for (value, weight) in values[component..].iter().step_by(n).zip(&self.gauss.end[1..]) {
+                    sum = sum.plus::<FUSED>(*value, Lanes([*weight; LANES]));
+                }
+                for (lane, block) in here.chunks_exact(size).enumerate() {
+                    self.states[(group * LANES + lane) * n + component] = block[component] + sum.0[lane];
                 }
             }
             for (row, scalar) in scalars.iter_mut().enumerate() {
-                let gradient = &self.gradients[(row * intervals + interval) * size..][..size];
-                *scalar -= gradient[n..].iter().zip(interior.iter()).map(|(a, b)| a * b).sum::<f64>();
+                let start = (row * intervals + group * LANES) * size;
+                for (lane, gradient) in
+                    self.gradients[start..start + count * size].chunks_exact(size).enumerate()
+                {
+                    let products = gradient[n..].iter().zip(values.iter());
+                    *scalar -= products.map(|(entry, value)| entry * value.0[lane]).sum::<f64>();
+                }
             }
         }
         self.cyclic.solve(&mut self.states, scalars);
-        for (interval, block) in blocks.chunks_exact_mut(size).enumerate() {
-            let start = &self.states[interval * n..(interval + 1) * n];
-            let (end, interior) = block.split_at_mut(n);
-            end.copy_from_slice(start);
-            let response = &self.response[interval * padded * (n + e)..(interval + 1) * padded * (n + e)];
-            let coefficients = start.iter().chain(scalars.iter());
-            for (column, coefficient) in response.chunks_exact(padded).zip(coefficients) {
-                for (entry, value) in interior.iter_mut().zip(column) {
-                    *entry += coefficient * value;
+        for (group, values) in self.particular.chunks_exact_mut(inner).enumerate() {
+            let count = LANES.min(intervals - group * LANES);
+            let starts = &self.states[group * LANES * n..][..count * n];
+            let response = &self.systems[group * system + inner * inner..(group + 1) * system];
+            for (column, interior) in response.chunks_exact(inner).enumerate() {
+                let coefficient = if column < n {
+                    Lanes(std::array::from_fn(|lane| starts[lane.min(count - 1) * n + column]))
+                } else {
+                    Lanes([scalars[column - n]; LANES])
+                };
+                for (entry, value) in values.iter_mut().zip(interior) {
+                    *entry = entry.plus::<FUSED>(coefficient, *value);
+                }
+            }
+            let here = &mut blocks[group * LANES * size..][..count * size];
+            for (lane, block) in here.chunks_exact_mut(size).enumerate() {
+                let (end, interior) = block.split_at_mut(n);
+                end.copy_from_slice(&starts[lane * n..(lane + 1) * n]);
+                for (target, value) in interior.iter_mut().zip(values.iter()) {
+                    *target = value.0[lane];
                 }
             }
         }
     }
+}
+
+/// The intervals of a group with their lanes.
+#[inline(always)]
+fn lanes_of(group: usize, intervals: usize) -> impl Iterator<Item = (usize, usize)> {
+    (group * LANES..((group + 1) * LANES).min(intervals)).zip(0..)
 }

@@ -4,6 +4,7 @@ mod balancing;
 mod complex_lu;
 pub mod eigenvalues;
 pub mod eigenvectors;
+pub(crate) mod lanes;
 pub mod lu;
 pub mod multiplier;
 mod periodic_block;
