@@ -48,6 +48,7 @@ pub fn correct<C: Curve>(
     let mut update = vec![0.0; unknown.len()];
     let mut image = vec![0.0; unknown.len()];
     let mut previous = f64::INFINITY;
+    let mut previous_fresh = f64::INFINITY;
     let mut fresh_jacobian = true;
     for iteration in 1..=settings.corrector_iterations {
         if fresh_jacobian {
@@ -81,8 +82,13 @@ pub fn correct<C: Curve>(
             let distance = norm(curve, &update, &mut image);
             return Ok(Correction { iterations: iteration, distance });
         }
-        if iteration > 1 && contraction > GROWTH_LIMIT {
+        // An old Jacobian may not see an error that the new one sees, so updates of different ones are not compared.
+        let growth = if fresh_jacobian { length / previous_fresh } else { contraction };
+        if iteration > 1 && growth > GROWTH_LIMIT {
             return Err(CorrectionFailure::Diverged);
+        }
+        if fresh_jacobian {
+            previous_fresh = length;
         }
         fresh_jacobian = if iteration == 1 { length > FAR } else { contraction > CHORD_CONTRACTION };
         previous = length;

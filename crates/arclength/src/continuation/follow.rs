@@ -414,7 +414,7 @@ pub(super) fn fix<C: Curve>(
 }
 
 /// Cubic interpolation between two neighbours.
-fn interpolate<C: Curve>(
+pub(super) fn interpolate<C: Curve>(
     curve: &C,
     before: &Solution<C::Point>,
     after: &Solution<C::Point>,
@@ -446,63 +446,8 @@ pub(crate) fn along<C: Curve>(curve: &C, origin: &Solution<C::Point>, unknown: &
 }
 
 /// `W vector`.
-fn metric_image<C: Curve>(curve: &C, vector: &[f64]) -> Vec<f64> {
+pub(super) fn metric_image<C: Curve>(curve: &C, vector: &[f64]) -> Vec<f64> {
     let mut image = vec![0.0; vector.len()];
     curve.apply_metric(vector, &mut image);
     image
-}
-
-/// Locates a zero of `test` between two neighbouring solutions, by the Illinois variant of regula falsi
-/// with a correction at every trial point.
-///
-/// `test` is given the curve and a finished solution. Returns the solution where its modulus is smallest
-/// once the bracket is shorter than `tolerance` (a fraction of the bracket), a start for Newton's method
-/// on a defining system.
-///
-/// # Errors
-/// When a trial point cannot be corrected.
-pub fn locate<C: Curve>(
-    curve: &mut C,
-    before: &Solution<C::Point>,
-    after: &Solution<C::Point>,
-    settings: &Settings,
-    tolerance: f64,
-    mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
-) -> Result<Option<Solution<C::Point>>, Error> {
-    const MOST_TRIALS: usize = 60;
-    let (Some(mut left_value), Some(mut right_value)) = (test(curve, before), test(curve, after)) else {
-        return Ok(None);
-    };
-    if left_value * right_value > 0.0 {
-        return Ok(None);
-    }
-    let border = metric_image(curve, &before.tangent);
-    let (mut left, mut right) = (0.0, 1.0);
-    let mut best = if left_value.abs() < right_value.abs() { before.clone() } else { after.clone() };
-    let mut smallest = left_value.abs().min(right_value.abs());
-    for _ in 0..MOST_TRIALS {
-        if right - left < tolerance || smallest == 0.0 {
-            break;
-        }
-        let width = right - left;
-        let secant = (left * right_value - right * left_value) / (right_value - left_value);
-        let fraction = secant.clamp(left + 0.01 * width, right - 0.01 * width);
-        let mut unknown = interpolate(curve, before, after, fraction);
-        correct(curve, &mut unknown, &border, settings)
-            .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
-        let trial = finish(curve, unknown, &before.tangent)?;
-        let Some(value) = test(curve, &trial) else { return Ok(None) };
-        if value.abs() < smallest {
-            smallest = value.abs();
-            best = trial;
-        }
-        if value * left_value <= 0.0 {
-            (right, right_value) = (fraction, value);
-            left_value *= 0.5;
-        } else {
-            (left, left_value) = (fraction, value);
-            right_value *= 0.5;
-        }
-    }
-    Ok(Some(best))
 }

@@ -7,6 +7,7 @@
 //! (1977); Allgower and Georg, *Numerical Continuation Methods* (1990); Govaerts, *Numerical Methods
 //! for Bifurcations of Dynamical Equilibria* (2000).
 
+mod bracket;
 mod closure;
 mod corrector;
 mod curve;
@@ -14,9 +15,11 @@ mod follow;
 mod settings;
 mod stop;
 
+pub(crate) use bracket::Bracket;
+pub use bracket::locate;
 pub use corrector::{Correction, CorrectionFailure, correct};
 pub use curve::{Adaptation, Curve, Ending, Solution};
-pub use follow::{Bound, Followed, Origin, Request, follow, locate};
+pub use follow::{Bound, Followed, Origin, Request, follow};
 pub(crate) use follow::{along, finish};
 pub use settings::Settings;
 pub use stop::Stop;

@@ -44,6 +44,12 @@ impl Default for Resolution {
     }
 }
 
+/// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
+/// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
+const MULTIPLIER_PART: f64 = 0.1;
+/// Smallest factor of the tolerance for that reason, and the most by which it falls and grows from one point to the next.
+const FINEST: f64 = 1e-4;
+const REFINEMENT: (f64, f64) = (0.3, 1.2);
 /// Samples for the difference of the halves of a doubled cycle.
 const HALF_SAMPLES: usize = 64;
 
@@ -100,6 +106,8 @@ pub struct CycleCurve<'a> {
     /// Whether the branch is one of doubled cycles, which ends where they become single again.
     pub doubled: bool,
     error_estimate: f64,
+    /// Factor of the tolerance that the multipliers ask for.
+    refinement: f64,
     schur: Option<(usize, PeriodicSchur)>,
 }
 
@@ -125,6 +133,7 @@ impl<'a> CycleCurve<'a> {
             sizes,
             doubled: false,
             error_estimate: f64::INFINITY,
+            refinement: 1.0,
             schur: None,
         };
         curve.rescale(start);
@@ -140,6 +149,14 @@ impl<'a> CycleCurve<'a> {
             self.collocation.problem.scales[component] = size.scale;
         }
         self.period_scale = unknown[end].abs();
+    }
+
+    /// Sets how much finer than the tolerance asks for the next meshes are, so that they resolve multipliers like these.
+    pub(super) fn refine_for(&mut self, floquet: &Floquet) {
+        let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
+        let error = if floquet.is_contradictory() { f64::INFINITY } else { floquet.trivial_error };
+        let (fall, growth) = REFINEMENT;
+        self.refinement = (self.refinement * (allowed / error).clamp(fall, growth)).clamp(FINEST, 1.0);
     }
 
     /// Gives states that rest the sizes that the nonlinearity of the field gives them, where a branch is left on which they do.
@@ -204,8 +221,13 @@ impl Curve for CycleCurve<'_> {
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
-        let (adaptation, worst) =
-            fit_mesh(&mut self.collocation, &errors, &self.resolution, unknown, vectors)?;
+        let finer = Resolution { tolerance: self.refinement * self.resolution.tolerance, ..self.resolution };
+        let (adaptation, worst) = match fit_mesh(&mut self.collocation, &errors, &finer, unknown, vectors) {
+            Err(Error::MeshLimit { .. }) if self.refinement < 1.0 => {
+                fit_mesh(&mut self.collocation, &errors, &self.resolution, unknown, vectors)?
+            }
+            result => result?,
+        };
         self.error_estimate = worst;
         Ok(adaptation)
     }
@@ -254,7 +276,7 @@ impl Curve for CycleCurve<'_> {
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let rate = after.tangent[end] / self.period_scale;
         let sensitivity = (rate / after.point.fold_test).abs();
-        if self.sizes.period_is_unbounded(period, sensitivity) {
+        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
             return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
         }
         if self.doubled

@@ -36,12 +36,26 @@ impl Floquet {
     }
 
     /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
-    /// closer to the circle than the error of the trivial one.
+    /// closer to the circle than the error of the trivial one, and they do not contradict each other.
     pub fn unstable(&self) -> (usize, bool) {
-        let margin = self.trivial_error.max(f64::EPSILON);
+        let margin = self.margin();
         let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
         let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
-        (outside, certain)
+        (outside, certain && !self.is_contradictory())
+    }
+
+    fn margin(&self) -> f64 {
+        self.trivial_error.max(f64::EPSILON)
+    }
+
+    /// Whether an odd number of the multipliers that are larger than the error is negative. The product of all multipliers is
+    /// the determinant of a flow and positive (Liouville), so the mesh does not resolve them.
+    pub fn is_contradictory(&self) -> bool {
+        let floor = self.margin().ln();
+        let negative = self.nontrivial.iter().filter(|multiplier| {
+            multiplier.is_real() && multiplier.argument != 0.0 && multiplier.log_modulus > floor
+        });
+        negative.count() % 2 == 1
     }
 }
 

@@ -19,6 +19,10 @@ const ROUNDING_PART: f64 = 1e-6;
 /// ranges, to count as unbounded.
 const HOMOCLINIC_GROWTH: f64 = 5.0;
 const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
+/// Coarse cycles do not come that far: the parameter is wrong by about the tolerance, and this many times that suffices, though
+/// never less than `LEAST_SENSITIVITY`, which the explosion of a canard hardly has together with that growth.
+const RESOLVED_SENSITIVITY: f64 = 10.0;
+const LEAST_SENSITIVITY: f64 = 1e5;
 
 /// Sizes of the states met on a curve.
 #[derive(Debug)]
@@ -119,10 +123,11 @@ impl StateSizes {
     }
 
     /// Whether the period grows without bound; `sensitivity` is the rate of its logarithm over that of the parameters in parts of
-    /// their ranges.
-    pub fn period_is_unbounded(&mut self, period: f64, sensitivity: f64) -> bool {
+    /// their ranges, `tolerance` that of the cycles.
+    pub fn period_is_unbounded(&mut self, period: f64, sensitivity: f64, tolerance: f64) -> bool {
         let first = *self.first_period.get_or_insert(period);
-        period > HOMOCLINIC_GROWTH * first && sensitivity > HOMOCLINIC_SENSITIVITY
+        let limit = (RESOLVED_SENSITIVITY / tolerance).clamp(LEAST_SENSITIVITY, HOMOCLINIC_SENSITIVITY);
+        period > HOMOCLINIC_GROWTH * first && sensitivity > limit
     }
 }
 

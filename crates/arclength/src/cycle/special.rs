@@ -8,7 +8,7 @@ use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
-use crate::continuation::{Solution, along, locate};
+use crate::continuation::{Bracket, Solution, along};
 use crate::error::Error;
 
 /// What is special about a cycle.
@@ -28,7 +28,7 @@ pub enum Special {
 }
 
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
-const START_TOLERANCES: [f64; 3] = [1e-2, 1e-4, 1e-7];
+const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
 /// A special cycle may lie this part of the step outside it.
 const MARGIN: f64 = 0.1;
 
@@ -38,6 +38,7 @@ pub(super) fn between(
     before: &Solution<CycleInspection>,
     after: &Solution<CycleInspection>,
 ) -> Result<Vec<Solution<CycleInspection>>, Error> {
+    curve.refine_for(&after.point.floquet);
     let changes = |a: f64, b: f64| a * b < 0.0;
     let fold = changes(before.point.fold_test, after.point.fold_test);
     let branch_point = changes(before.orientation, after.orientation);
@@ -56,21 +57,26 @@ pub(super) fn between(
         (torus, Kind::Torus),
     ];
     let length = along(curve, before, &after.unknown);
+    let resolved = ![before, after].iter().any(|solution| solution.point.floquet.is_contradictory());
     for (_, kind) in wanted.into_iter().filter(|(detected, _)| *detected) {
         let settings = curve.settings;
         let mut located = None;
+        let test = |_: &mut CycleCurve<'_>, solution: &Solution<CycleInspection>| {
+            let point = &solution.point;
+            match kind {
+                Kind::Fold => Some(point.fold_test),
+                Kind::Doubling => Some(point.doubling_test()),
+                Kind::Torus => torus_test(point, outside_before.min(outside_after)),
+                Kind::BranchPoint => branch_point_test(solution, sign),
+            }
+        };
+        // The tests of all but folds are multipliers.
+        let mut bracket =
+            if resolved || kind == Kind::Fold { Bracket::new(curve, before, after, test) } else { None };
         for tolerance in START_TOLERANCES {
-            let start = locate(curve, before, after, &settings, tolerance, |_, solution| {
-                let point = &solution.point;
-                match kind {
-                    Kind::Fold => Some(point.fold_test),
-                    Kind::Doubling => Some(point.doubling_test()),
-                    Kind::Torus => torus_test(point, outside_before.min(outside_after)),
-                    Kind::BranchPoint => branch_point_test(solution, sign),
-                }
-            });
-            let converged = match start {
-                Ok(Some(start)) => converge(curve, &direction, &start, kind)?,
+            let Some(bracket) = &mut bracket else { break };
+            let converged = match bracket.narrow(curve, &settings, tolerance, test) {
+                Ok(Some(start)) => converge(curve, &direction, start, kind)?,
                 // Next to a branch point the equations of the branch are singular, but its ends are good starts.
                 Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
                     let ends = [before, after].into_iter();

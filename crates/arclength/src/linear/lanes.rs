@@ -38,7 +38,11 @@ impl Lanes {
     #[inline(always)]
     pub fn plus<const FUSED: bool>(self, a: Self, b: Self) -> Self {
         Self(from_fn(|lane| {
-            if FUSED { a.0[lane].mul_add(b.0[lane], self.0[lane]) } else { self.0[lane] + a.0[lane] * b.0[lane] }
+            if FUSED {
+                a.0[lane].mul_add(b.0[lane], self.0[lane])
+            } else {
+                self.0[lane] + a.0[lane] * b.0[lane]
+            }
         }))
     }
 
@@ -337,7 +341,8 @@ mod tests {
     fn singular_matrices_and_those_that_are_not_finite_are_told() {
         let mut exchanges = [[0; LANES]; 2];
         let mut factorize = |lane: [f64; 4]| {
-            let mut matrix: Vec<Lanes> = [1.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(|entry| Lanes([entry; LANES])).to_vec();
+            let mut matrix: Vec<Lanes> =
+                [1.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(|entry| Lanes([entry; LANES])).to_vec();
             matrix.iter_mut().zip(lane).for_each(|(entry, number)| entry.0[2] = number);
             factorize_and_solve::<false>(&mut matrix, 2, &mut exchanges)
         };

@@ -290,7 +290,7 @@ impl Curve for CycleLocusCurve<'_> {
         let [one, other] =
             [0, 1].map(|index| after.tangent[last + index] / self.system.parameter_scales[index]);
         let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
-        if self.sizes.period_is_unbounded(period, sensitivity) {
+        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
             let parameter = after.unknown[last];
             return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
         }
