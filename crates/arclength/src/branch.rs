@@ -98,8 +98,6 @@ special_kinds! {
     Torus = "NS", "torus bifurcation";
     /// Branch point of cycles.
     BranchPointOfCycles = "BPC", "branch point of cycles";
-    /// Two real multipliers of a cycle with product one; no bifurcation.
-    NeutralSaddleCycle = "NSC", "neutral saddle cycle";
     /// A parameter value that was asked for.
     Requested = "AT", "requested value";
     /// Cusp.

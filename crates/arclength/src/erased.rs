@@ -13,6 +13,7 @@ type Narrow = Dual<f64, 4>;
 type Wide = Dual<f64, 8>;
 type NarrowAlong = Dual<Narrow, 1>;
 type WideAlong = Dual<Wide, 1>;
+type NarrowAlongPair = Dual<Narrow, 2>;
 type WideAlongPair = Dual<Wide, 2>;
 type Pair = Dual<f64, 2>;
 type NarrowAlongTwice = Dual<NarrowAlong, 1>;
@@ -96,6 +97,7 @@ scalars! {
     evaluate_narrow_along: NarrowAlong;
     evaluate_narrow_along_twice: NarrowAlongTwice;
     evaluate_wide_along: WideAlong;
+    evaluate_narrow_along_pair: NarrowAlongPair;
     evaluate_wide_along_pair: WideAlongPair;
     evaluate_pair: Pair;
     evaluate_first: First;

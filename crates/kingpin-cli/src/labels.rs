@@ -24,7 +24,7 @@ impl Labels {
 
 /// Whether something bifurcates at a labelled point: it was not merely asked for, nor is it an end or a neutral saddle.
 pub fn is_bifurcation(label: Option<&str>) -> bool {
-    label.is_some_and(|label| !matches!(kind(label), "AT" | "EP" | "NSE" | "NSC"))
+    label.is_some_and(|label| !matches!(kind(label), "AT" | "EP" | "NSE"))
 }
 
 /// A label without its number. The labels of resonances end in a digit of their own.

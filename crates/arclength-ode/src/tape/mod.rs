@@ -102,6 +102,23 @@ impl Tape {
 
     /// Evaluates the results at a time, state and parameters.
     pub fn evaluate<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
+        // The same operations, so the same results, but on longer vectors: worth it for dual numbers.
+        #[cfg(target_arch = "x86_64")]
+        if size_of::<T>() > size_of::<f64>() && is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has these instructions.
+            return unsafe { self.evaluate_vectorized(time, state, parameters, results) };
+        }
+        self.evaluate_kernel(time, state, parameters, results);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn evaluate_vectorized<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
+        self.evaluate_kernel(time, state, parameters, results);
+    }
+
+    #[inline(always)]
+    fn evaluate_kernel<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         let state = &state[..self.states];
         let parameters = &parameters[..self.parameters];
         match &self.program {

@@ -370,22 +370,18 @@ fn requested_values<C: Curve>(
     let Some(bound) = request.bounds.first() else { return Ok(()) };
     let value_of = |unknown: &[f64]| unknown[unknown.len() - bound.from_end];
     for &value in &request.values {
-        let mut nodes = vec![current.clone()];
-        nodes.extend(between.iter().map(|(solution, _)| solution.clone()));
-        nodes.push(advanced.clone());
-        let mut inserted = 0;
-        for index in 0..nodes.len() - 1 {
-            let (left, right) =
-                (value_of(&nodes[index].unknown) - value, value_of(&nodes[index + 1].unknown) - value);
-            if (left < 0.0) != (right < 0.0) || right == 0.0 {
-                if left == 0.0 {
-                    continue;
-                }
-                let found =
-                    fix(curve, &nodes[index], &nodes[index + 1], bound.from_end, value, &request.settings)?;
-                between.insert(index + inserted, (found, Origin::Requested));
-                inserted += 1;
+        let mut index = 0;
+        while index <= between.len() {
+            let left = if index == 0 { current } else { &between[index - 1].0 };
+            let right = between.get(index).map_or(advanced, |(solution, _)| solution);
+            let (before, after) = (value_of(&left.unknown) - value, value_of(&right.unknown) - value);
+            let passes = (before < 0.0) != (after < 0.0) || after == 0.0;
+            if passes && before != 0.0 {
+                let found = fix(curve, left, right, bound.from_end, value, &request.settings)?;
+                between.insert(index, (found, Origin::Requested));
+                index += 1;
             }
+            index += 1;
         }
     }
     Ok(())

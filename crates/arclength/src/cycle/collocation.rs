@@ -24,16 +24,28 @@ pub struct Collocation<P> {
     condensation: Condensation,
 }
 
-/// Directions that one evaluation of the field is differentiated in.
-const DIRECTIONS: usize = 8;
-
-/// Memory for the evaluation of field and integrands with derivatives.
-struct DualWorkspace {
-    state: Vec<Dual<f64, DIRECTIONS>>,
-    scalars: Vec<Dual<f64, DIRECTIONS>>,
-    values: Vec<Dual<f64, DIRECTIONS>>,
-    integrands: Vec<Dual<f64, DIRECTIONS>>,
+/// Memory for the evaluation of field and integrands with derivatives in up to `D` directions at a time.
+struct DualWorkspace<const D: usize> {
+    state: Vec<Dual<f64, D>>,
+    scalars: Vec<Dual<f64, D>>,
+    values: Vec<Dual<f64, D>>,
+    integrands: Vec<Dual<f64, D>>,
 }
+
+impl<const D: usize> DualWorkspace<D> {
+    fn new(n: usize, scalars: usize) -> Self {
+        Self {
+            state: vec![Dual::zero(); n],
+            scalars: vec![Dual::zero(); scalars],
+            values: vec![Dual::zero(); n],
+            integrands: vec![Dual::zero(); scalars - 1],
+        }
+    }
+}
+
+/// Directions of the narrow and of the wide workspace.
+const NARROW: usize = 4;
+const WIDE: usize = 8;
 
 impl<P: PeriodicProblem> Collocation<P> {
     /// Discretises on a mesh `0 = t_0 < ... < t_N = 1` with polynomials of the given degree.
@@ -203,19 +215,38 @@ impl<P: PeriodicProblem> Collocation<P> {
         self.condensation.corner[conditions * e..].copy_from_slice(&border[intervals * size..]);
         let (interval_residuals, condition_residuals) = residual.split_at_mut(intervals * size);
         condition_residuals[..conditions].fill(0.0);
-        let mut duals = DualWorkspace {
-            state: vec![Dual::zero(); n],
-            scalars: vec![Dual::zero(); e],
-            values: vec![Dual::zero(); n],
-            integrands: vec![Dual::zero(); conditions],
-        };
+        let directions =
+            (0..n + e).filter(|&column| Some(column) != self.problem.factor().map(|index| n + index));
+        let directions: Vec<usize> = directions.collect();
+        let mut narrow = DualWorkspace::<NARROW>::new(n, e);
+        let mut wide = DualWorkspace::<WIDE>::new(n, e);
         let mut values = vec![0.0; degree * n];
         for interval in 0..intervals {
             let here = &states[interval * size..(interval + 1) * size];
             for point in 0..degree {
                 let state = &here[n * (point + 1)..n * (point + 2)];
                 let value = &mut values[point * n..(point + 1) * n];
-                self.linearize_at(interval, point, state, scalars, &mut duals, value, condition_residuals);
+                let place = Place { interval, point };
+                for now in directions.chunks(WIDE) {
+                    // The values are the same in all chunks, so that only the first one counts them.
+                    let residuals = if now[0] == directions[0] {
+                        &mut condition_residuals[..conditions]
+                    } else {
+                        &mut []
+                    };
+                    if now.len() <= NARROW {
+                        self.differentiate(place, now, state, scalars, &mut narrow, value, residuals);
+                    } else {
+                        self.differentiate(place, now, state, scalars, &mut wide, value, residuals);
+                    }
+                }
+                if let Some(factor) = self.problem.factor() {
+                    let column = (interval * degree + point) * (n + e) + n + factor;
+                    let target = &mut self.condensation.derivatives[column * n..][..n];
+                    for (entry, value) in target.iter_mut().zip(value.iter()) {
+                        *entry = value / scalars[factor];
+                    }
+                }
             }
             let target = &mut interval_residuals[interval * size..(interval + 1) * size];
             self.interval_residual(interval, states, &values, target);
@@ -223,61 +254,58 @@ impl<P: PeriodicProblem> Collocation<P> {
         self.condensation.factorize(&self.mesh)
     }
 
-    /// Values and derivatives of field and integrands at one Gauss point.
+    /// Derivatives of field and integrands at one Gauss point in some directions, with the values of the field; those of the
+    /// integrands are added up.
     #[allow(clippy::too_many_arguments)] // The inner loop of `factorize`, apart to be readable.
-    fn linearize_at(
+    fn differentiate<const D: usize>(
         &mut self,
-        interval: usize,
-        point: usize,
+        place: Place,
+        directions: &[usize],
         state: &[f64],
         scalars: &[f64],
-        duals: &mut DualWorkspace,
+        duals: &mut DualWorkspace<D>,
         values: &mut [f64],
         condition_residuals: &mut [f64],
     ) {
         let (n, e, intervals, size) = (state.len(), scalars.len(), self.intervals(), self.interval_size());
         let columns = n + e;
-        let node = interval * self.gauss().degree() + point;
-        let weight = (self.mesh[interval + 1] - self.mesh[interval]) * self.gauss().weights[point];
+        let node = place.interval * self.gauss().degree() + place.point;
+        let weight =
+            (self.mesh[place.interval + 1] - self.mesh[place.interval]) * self.gauss().weights[place.point];
+        for (dual, value) in duals.state.iter_mut().zip(state).chain(duals.scalars.iter_mut().zip(scalars)) {
+            *dual = Dual::constant(*value);
+        }
+        for (index, &direction) in directions.iter().enumerate() {
+            let dual =
+                if direction < n { &mut duals.state[direction] } else { &mut duals.scalars[direction - n] };
+            dual.derivatives[index] = 1.0;
+        }
         let reference = Reference {
             state: &self.reference[node * n..(node + 1) * n],
             slope: &self.reference_slope[node * n..(node + 1) * n],
         };
-        let mut first = 0;
-        while first < columns {
-            for (index, (dual, value)) in duals.state.iter_mut().zip(state).enumerate() {
-                *dual = Dual::variable(*value, index.wrapping_sub(first));
+        self.problem.field(&duals.state, &duals.scalars, &mut duals.values);
+        self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
+        for (entry, dual) in values.iter_mut().zip(&duals.values) {
+            *entry = dual.value;
+        }
+        for (sum, dual) in condition_residuals.iter_mut().zip(&duals.integrands) {
+            *sum += weight * dual.value;
+        }
+        for (index, &column) in directions.iter().enumerate() {
+            let target = &mut self.condensation.derivatives[(node * columns + column) * n..][..n];
+            for (entry, dual) in target.iter_mut().zip(&duals.values) {
+                *entry = dual.derivatives[index];
             }
-            for (index, (dual, value)) in duals.scalars.iter_mut().zip(scalars).enumerate() {
-                *dual = Dual::variable(*value, (n + index).wrapping_sub(first));
-            }
-            self.problem.field(&duals.state, &duals.scalars, &mut duals.values);
-            self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
-            for direction in 0..DIRECTIONS.min(columns - first) {
-                let column = first + direction;
-                let target = &mut self.condensation.derivatives[(node * columns + column) * n..][..n];
-                for (entry, dual) in target.iter_mut().zip(&duals.values) {
-                    *entry = dual.derivatives[direction];
-                }
-                for (row, dual) in duals.integrands.iter().enumerate() {
-                    let slope = weight * dual.derivatives[direction];
-                    if column < n {
-                        let position = (row * intervals + interval) * size + (point + 1) * n + column;
-                        self.condensation.gradients[position] = slope;
-                    } else {
-                        self.condensation.corner[row * e + column - n] += slope;
-                    }
+            for (row, dual) in duals.integrands.iter().enumerate() {
+                let slope = weight * dual.derivatives[index];
+                if column < n {
+                    let position = (row * intervals + place.interval) * size + (place.point + 1) * n + column;
+                    self.condensation.gradients[position] = slope;
+                } else {
+                    self.condensation.corner[row * e + column - n] += slope;
                 }
             }
-            if first == 0 {
-                for (entry, dual) in values.iter_mut().zip(&duals.values) {
-                    *entry = dual.value;
-                }
-                for (sum, dual) in condition_residuals.iter_mut().zip(&duals.integrands) {
-                    *sum += weight * dual.value;
-                }
-            }
-            first += DIRECTIONS;
         }
     }
 
@@ -322,6 +350,13 @@ impl<P: PeriodicProblem> Collocation<P> {
         self.mesh = mesh;
         self.set_reference(unknown);
     }
+}
+
+/// A Gauss point of an interval.
+#[derive(Clone, Copy)]
+struct Place {
+    interval: usize,
+    point: usize,
 }
 
 /// Most nodes of one interval.

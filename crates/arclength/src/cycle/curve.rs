@@ -9,7 +9,7 @@ use super::problem::PeriodicProblem;
 use super::sizes::{StateSizes, vanishing_point};
 use super::special;
 use super::switching::Branching;
-use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
+use crate::continuation::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop};
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
 
@@ -219,6 +219,11 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        // Time reversed, a cycle solves the equations too, and Newton's method may jump there from very far.
+        if unknown[unknown.len() - 2] <= 0.0 {
+            let cause = CorrectionFailure::Diverged;
+            return Err(Error::NotFound { sought: "cycle with a positive period", cause });
+        }
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
         let finer = Resolution { tolerance: self.refinement * self.resolution.tolerance, ..self.resolution };
@@ -306,15 +311,20 @@ pub(super) fn state_metric<P: PeriodicProblem>(
 ) {
     let n = collocation.problem.dimension();
     let size = collocation.interval_size();
-    for (interval, pair) in collocation.mesh().windows(2).enumerate() {
-        let start = interval * size;
-        image[start..start + n].fill(0.0);
-        for (point, weight) in collocation.gauss().weights.iter().enumerate() {
-            let start = start + (point + 1) * n;
+    let weights = &collocation.gauss().weights;
+    let square = |component: usize| scales.get(component).map_or(0.0, |scale| 1.0 / (scale * scale));
+    let squares: Vec<f64> = (0..n).map(square).collect();
+    for ((pair, vector), image) in
+        collocation.mesh().windows(2).zip(vector.chunks_exact(size)).zip(image.chunks_exact_mut(size))
+    {
+        let (start, rest) = image.split_at_mut(n);
+        start.fill(0.0);
+        for ((values, images), weight) in
+            vector[n..].chunks_exact(n).zip(rest.chunks_exact_mut(n)).zip(weights)
+        {
             let weight = weight * (pair[1] - pair[0]);
-            for component in 0..n {
-                let scale = scales.get(component).copied().unwrap_or(f64::INFINITY);
-                image[start + component] = weight * vector[start + component] / (scale * scale);
+            for ((image, value), square) in images.iter_mut().zip(values).zip(&squares) {
+                *image = weight * square * value;
             }
         }
     }

@@ -58,6 +58,20 @@ impl Cyclic {
     /// Factorises. Returns the sign of the determinant of the system reduced to `(u_0, s)`, which does not
     /// depend on the number of intervals; zero if the system is singular.
     pub fn factorize(&mut self, blocks: Blocks<'_>, n: usize, scalars: usize, intervals: usize) -> f64 {
+        // Loops over few states are worth unrolling.
+        match n {
+            1 => self.factorize_kernel(blocks, 1, scalars, intervals),
+            2 => self.factorize_kernel(blocks, 2, scalars, intervals),
+            3 => self.factorize_kernel(blocks, 3, scalars, intervals),
+            4 => self.factorize_kernel(blocks, 4, scalars, intervals),
+            5 => self.factorize_kernel(blocks, 5, scalars, intervals),
+            6 => self.factorize_kernel(blocks, 6, scalars, intervals),
+            n => self.factorize_kernel(blocks, n, scalars, intervals),
+        }
+    }
+
+    #[inline(always)]
+    fn factorize_kernel(&mut self, blocks: Blocks<'_>, n: usize, scalars: usize, intervals: usize) -> f64 {
         self.n = n;
         self.scalars = scalars;
         self.intervals = intervals;
@@ -177,7 +191,19 @@ impl Cyclic {
 
     /// Solves in place: `states` holds the `rho_j` and receives the `u_j`; `scalars` holds `d` and receives `s`.
     pub fn solve(&mut self, states: &mut [f64], scalars: &mut [f64]) {
-        let n = self.n;
+        match self.n {
+            1 => self.solve_kernel(1, states, scalars),
+            2 => self.solve_kernel(2, states, scalars),
+            3 => self.solve_kernel(3, states, scalars),
+            4 => self.solve_kernel(4, states, scalars),
+            5 => self.solve_kernel(5, states, scalars),
+            6 => self.solve_kernel(6, states, scalars),
+            n => self.solve_kernel(n, states, scalars),
+        }
+    }
+
+    #[inline(always)]
+    fn solve_kernel(&mut self, n: usize, states: &mut [f64], scalars: &mut [f64]) {
         let eliminated = self.intervals - 1;
         let width = 2 * n + self.scalars;
         self.right[n..].copy_from_slice(&states[..n]);
@@ -227,12 +253,14 @@ impl Cyclic {
     }
 }
 
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// QR factorisation of a 2n-by-n matrix in place: triangle above, reflectors below with the leading entry
 /// of each kept in `factors` as `beta = 2 / v'v` after scaling `v` to leading entry one.
+#[inline(always)]
 fn triangularize(matrix: &mut [f64], factors: &mut [f64], n: usize) -> bool {
     let rows = 2 * n;
     for step in 0..n {
@@ -263,6 +291,7 @@ fn triangularize(matrix: &mut [f64], factors: &mut [f64], n: usize) -> bool {
 }
 
 /// Applies the reflections to columns of length 2n.
+#[inline(always)]
 fn reflect(reflectors: &[f64], factors: &[f64], n: usize, columns: &mut [f64]) {
     let rows = 2 * n;
     for other in columns.chunks_exact_mut(rows) {
@@ -278,6 +307,7 @@ fn reflect(reflectors: &[f64], factors: &[f64], n: usize, columns: &mut [f64]) {
 }
 
 /// Replaces the row `y` by `y U^-1`, `U` the triangle in the first n rows.
+#[inline(always)]
 fn solve_triangle_from_left(reflectors: &[f64], n: usize, y: &mut [f64]) {
     for column in 0..n {
         let upper = &reflectors[column * 2 * n..column * 2 * n + column + 1];

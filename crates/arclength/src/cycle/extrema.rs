@@ -193,26 +193,42 @@ fn refine(at: &dyn Fn(f64) -> (f64, f64), [left, middle, right]: [Sample; 3], si
         // A corner of the piecewise polynomial at a mesh point: its ends are all there is.
         return if middle.slope > 0.0 { right.value } else { left.value };
     };
-    let (mut a, mut slope_a, mut b, mut slope_b) = (left.time, left.slope, right.time, right.slope);
+    let (mut left, mut right) = (left, right);
     let mut best = left.value;
     for _ in 0..MOST_ITERATIONS {
-        if slope_a == slope_b {
+        if left.slope == right.slope {
             break;
         }
-        let trial = (a * slope_b - b * slope_a) / (slope_b - slope_a);
-        let (value, slope) = at(trial);
+        let time = turning_point(left, right);
+        let (value, slope) = at(time);
         best = value;
-        // An error of dt in the place changes the value by slope dt / 2 only.
-        if slope.abs() * (b - a).abs() <= ROUNDING * size || !(a < trial && trial < b) {
+        let curvature = (right.slope - left.slope) / (right.time - left.time);
+        // An error of `slope / curvature` in the place changes the value by half of that times the slope only.
+        if 0.5 * slope * slope <= ROUNDING * size * curvature.abs()
+            || !(left.time < time && time < right.time)
+        {
             break;
         }
-        if slope * slope_a <= 0.0 {
-            (b, slope_b) = (trial, slope);
-            slope_a *= 0.5;
+        let here = Sample { time, value, slope };
+        if slope * left.slope <= 0.0 {
+            right = here;
         } else {
-            (a, slope_a) = (trial, slope);
-            slope_b *= 0.5;
+            left = here;
         }
     }
     best
+}
+
+/// Place in an interval, at the ends of which the slopes differ in sign, where the slope of the cubic polynomial through both
+/// values with both slopes is zero.
+fn turning_point(left: Sample, right: Sample) -> f64 {
+    let width = right.time - left.time;
+    let (a, b) = (left.slope * width, right.slope * width);
+    let rise = right.value - left.value;
+    // The slope in units of the interval: a + 2 linear x + quadratic x^2.
+    let (linear, quadratic) = (3.0 * rise - 2.0 * a - b, 3.0 * (a + b - 2.0 * rise));
+    let root = (linear * linear - a * quadratic).max(0.0).sqrt();
+    let fraction = -a / (linear + root.copysign(b - a));
+    let secant = a / (a - b);
+    left.time + width * if (0.0..=1.0).contains(&fraction) { fraction } else { secant }
 }

@@ -24,6 +24,8 @@ pub struct Gauss {
     barycentric: Vec<f64>,
     /// Slopes at each node of the Lagrange polynomials of the nodes.
     node_slopes: Vec<f64>,
+    /// `max |integral from 0 to t of (s - c_1) ... (s - c_m) ds|` over `t` in `[0, 1]`.
+    pub largest_integral: f64,
 }
 
 impl Gauss {
@@ -47,13 +49,27 @@ impl Gauss {
         let barycentric = barycentric_weights(&nodes);
         let mut end = vec![0.0; degree + 1];
         lagrange(&nodes, &barycentric, 1.0, &mut end);
-        let mut gauss =
-            Self { points, weights, integration, end, nodes, barycentric, node_slopes: Vec::new() };
+        let mut gauss = Self {
+            points,
+            weights,
+            integration,
+            end,
+            nodes,
+            barycentric,
+            node_slopes: Vec::new(),
+            largest_integral: 0.0,
+        };
         let mut slopes = vec![0.0; (degree + 1) * (degree + 1)];
         for (row, node) in slopes.chunks_exact_mut(degree + 1).zip(&gauss.nodes) {
             gauss.basis_slopes(*node, row);
         }
         gauss.node_slopes = slopes;
+        // It is largest at a Gauss point, up to which the Gauss points integrate the polynomial of degree m exactly.
+        let integral_to = |end: f64| -> f64 {
+            let terms = gauss.points.iter().zip(&gauss.weights);
+            terms.map(|(point, weight)| end * weight * gauss.node_polynomial(end * point)).sum()
+        };
+        gauss.largest_integral = gauss.points.iter().map(|&end| integral_to(end).abs()).fold(0.0, f64::max);
         gauss
     }
 

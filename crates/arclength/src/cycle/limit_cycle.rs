@@ -31,6 +31,11 @@ impl PeriodicProblem for LimitCycle<'_> {
     }
 
     #[inline(always)]
+    fn factor(&self) -> Option<usize> {
+        Some(0)
+    }
+
+    #[inline(always)]
     fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         with_parameters(&self.parameters, &[(self.active, scalars[1])], |parameters| {
             self.field.evaluate(state, parameters, derivative);
@@ -63,27 +68,31 @@ pub(crate) fn with_parameters<T: Scalar, R>(
     replaced: &[(usize, T)],
     action: impl FnOnce(&[T]) -> R,
 ) -> R {
-    const FEW: usize = 2;
-    const MANY: usize = 24;
-    let fill = |memory: &mut [T]| {
-        for (entry, value) in memory.iter_mut().zip(parameters) {
-            *entry = T::from(*value);
-        }
-        for (index, value) in replaced {
-            memory[*index] = *value;
-        }
-    };
-    if parameters.len() <= FEW {
-        let mut memory = [T::zero(); FEW];
-        fill(&mut memory[..parameters.len()]);
-        action(&memory[..parameters.len()])
-    } else if parameters.len() <= MANY {
-        let mut memory = [T::zero(); MANY];
-        fill(&mut memory[..parameters.len()]);
-        action(&memory[..parameters.len()])
-    } else {
-        let mut memory = vec![T::zero(); parameters.len()];
-        fill(&mut memory);
-        action(&memory)
+    // Dual numbers are large, so memory is not much more than is needed.
+    match parameters.len() {
+        0..=4 => with_memory::<T, R, 4>(parameters, replaced, action),
+        5..=10 => with_memory::<T, R, 10>(parameters, replaced, action),
+        11..=24 => with_memory::<T, R, 24>(parameters, replaced, action),
+        count => action(fill(&mut vec![T::zero(); count], parameters, replaced)),
     }
+}
+
+#[inline(always)]
+fn with_memory<T: Scalar, R, const MOST: usize>(
+    parameters: &[f64],
+    replaced: &[(usize, T)],
+    action: impl FnOnce(&[T]) -> R,
+) -> R {
+    action(fill(&mut [T::zero(); MOST][..parameters.len()], parameters, replaced))
+}
+
+#[inline(always)]
+fn fill<'a, T: Scalar>(memory: &'a mut [T], parameters: &[f64], replaced: &[(usize, T)]) -> &'a [T] {
+    for (entry, value) in memory.iter_mut().zip(parameters) {
+        *entry = T::from(*value);
+    }
+    for (index, value) in replaced {
+        memory[*index] = *value;
+    }
+    memory
 }

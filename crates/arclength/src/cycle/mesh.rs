@@ -19,8 +19,6 @@ const DENSITY_FLOOR: f64 = 0.2;
 const TARGET: f64 = 0.2;
 /// The mesh is made coarser when it has this many times the intervals needed.
 const EXCESS: f64 = 1.6;
-/// Samples for the largest modulus of the integrated node polynomial.
-const SAMPLES: usize = 200;
 
 /// Largest error of the polynomial on each interval, relative to `scales`.
 pub(crate) fn error_profile<P: PeriodicProblem>(
@@ -32,7 +30,7 @@ pub(crate) fn error_profile<P: PeriodicProblem>(
     let n = collocation.problem.dimension();
     let intervals = collocation.intervals();
     let scalars = &unknown[intervals * collocation.interval_size()..];
-    let shape = largest_integral(collocation);
+    let shape = gauss.largest_integral;
     let ends = [0.0, 1.0];
     let mut bases = [[0.0; MOST_NODES]; 2];
     let mut slopes = [[0.0; MOST_NODES]; 2];
@@ -60,22 +58,6 @@ pub(crate) fn error_profile<P: PeriodicProblem>(
             largest
         })
         .collect()
-}
-
-/// `max |integral from 0 to t of (s - c_1) ... (s - c_m) ds|` over `t` in `[0, 1]`.
-fn largest_integral<P: PeriodicProblem>(collocation: &Collocation<P>) -> f64 {
-    let gauss = collocation.gauss();
-    let step = 1.0 / SAMPLES as f64;
-    let (mut integral, mut largest) = (0.0, 0.0_f64);
-    for sample in 0..SAMPLES {
-        let left = sample as f64 * step;
-        let simpson = gauss.node_polynomial(left)
-            + 4.0 * gauss.node_polynomial(left + 0.5 * step)
-            + gauss.node_polynomial(left + step);
-        integral += simpson * step / 6.0;
-        largest = largest.max(integral.abs());
-    }
-    largest
 }
 
 /// Fits the mesh of `collocation` to the errors of the intervals at `unknown` and carries `unknown` and `vectors` over to it;

@@ -18,6 +18,11 @@ pub trait PeriodicProblem {
         false
     }
 
+    /// Index of a scalar, not zero, that does nothing but multiply `g`, so that its derivative is known without differentiation.
+    fn factor(&self) -> Option<usize> {
+        None
+    }
+
     /// Writes `g(state, scalars)`.
     fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]);
 

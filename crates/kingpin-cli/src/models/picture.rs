@@ -36,7 +36,7 @@ impl Curve {
                 false => Stability::from(stable == Some(true)),
             };
             curve.points.push((at, stability));
-            if let Some(label) = label.filter(|label| !matches!(kind(label), "EP" | "NSE" | "NSC")) {
+            if let Some(label) = label.filter(|label| !matches!(kind(label), "EP" | "NSE")) {
                 curve.labels.push((at, label.to_owned()));
             }
         }

@@ -2,7 +2,7 @@
 
 use super::monitor;
 use crate::branch::SpecialKind;
-use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use crate::continuation::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, locate};
 use crate::cycle::Resolution;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
@@ -208,7 +208,12 @@ impl Curve for CycleLocusCurve<'_> {
 
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
         let (cycle, eigenfunctions) = split(unknown, self.states, self.kind());
-        self.system.collocation.problem.period_scale = cycle[cycle.len() - 3].abs();
+        let period = cycle[cycle.len() - 3];
+        if period <= 0.0 {
+            let cause = CorrectionFailure::Diverged;
+            return Err(Error::NotFound { sought: "cycle with a positive period", cause });
+        }
+        self.system.collocation.problem.period_scale = period;
         let rescaled = self.rescale(&cycle);
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
