@@ -3,7 +3,7 @@
 //! Both programs start at the same Hopf point and follow the same branch over the same range; compared are two quantities of
 //! the bifurcation diagram at the parameter values named. In the first table the period has to be right to 1e-6; in the
 //! second it and the largest value of every state to 1e-5 of its amplitude (AUTO reports the largest value at a mesh point).
-//! This program runs with the coarsest of its tolerances that reaches it, AUTO with the fewest mesh intervals (of 4
+//! This program runs with the fastest of its tolerances that reach it, AUTO with the fewest mesh intervals from 10 on (of 4
 //! collocation points) and with the largest step that gives about as many points. The time is that of the continuation of
 //! cycles, with multipliers and bifurcations: the best of several runs. AUTO's right-hand sides are compiled Fortran, ours
 //! the .ode files as they are.
@@ -20,6 +20,8 @@ use std::time::{Duration, Instant};
 
 const AUTO: &str = "/usr/lib/auto-07p/lib";
 const RUNS: usize = 15;
+/// To choose the tolerance.
+const SHORT_RUNS: usize = 3;
 /// A state with an amplitude below this part of its value rests; its value is then what the error is measured by.
 const RESTING: f64 = 1e-3;
 
@@ -218,16 +220,21 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         }
         worst
     };
-    let mut ours = None;
+    let mut ours: Option<(f64, usize, f64, Duration)> = None;
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
-        let branch = run(tolerance)?;
+        let mut time = Duration::MAX;
+        let mut branch = run(tolerance)?;
+        for _ in 0..SHORT_RUNS {
+            let start = Instant::now();
+            branch = run(tolerance)?;
+            time = time.min(start.elapsed());
+        }
         let error = worst(&cycles_at(case, &branch)?);
-        if error <= measure.accuracy() {
-            ours = Some((tolerance, branch.points.len() - case.values.len(), error));
-            break;
+        if error <= measure.accuracy() && ours.is_none_or(|(_, _, _, fastest)| time < fastest) {
+            ours = Some((tolerance, branch.points.len() - case.values.len(), error, time));
         }
     }
-    let (tolerance, points, error) = ours.ok_or("no tolerance reaches the accuracy")?;
+    let (tolerance, points, error, _) = ours.ok_or("no tolerance reaches the accuracy")?;
 
     // A little beside the Hopf point, so that AUTO's run along the equilibria passes it.
     let mut beside = parameters.clone();

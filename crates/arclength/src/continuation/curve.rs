@@ -42,6 +42,12 @@ pub trait Curve {
     /// When a quantity cannot be computed; the run ends there and says why.
     fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Self::Point, Error>;
 
+    /// Whether the discretisation resolves what was found out about a solution. If not, [`adapt`](Self::adapt) makes it finer
+    /// and the solution is found once more.
+    fn resolves(&mut self, _point: &Self::Point) -> bool {
+        true
+    }
+
     /// Special points between two consecutive solutions, in any order.
     ///
     /// # Errors

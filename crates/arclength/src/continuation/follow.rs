@@ -56,8 +56,12 @@ const STEP_GROWTH: f64 = 2.0;
 const STEP_REDUCTION: f64 = 0.4;
 /// Smallest cosine allowed between consecutive tangents.
 const TANGENT_COSINE: f64 = 0.9;
+/// The next step aims at this part of the angle allowed.
+const ANGLE_PART: f64 = 0.8;
 /// Corrections after a change of mesh that may follow each other at one point.
 const MOST_ADAPTATIONS: usize = 12;
+/// Times that a discretisation is made finer at one point because it does not resolve what was found out there.
+const MOST_REFINEMENTS: usize = 6;
 /// Part of its range by which a parameter of the start may move by rounding.
 const START_ROUNDING: f64 = 1e-13;
 
@@ -303,7 +307,9 @@ fn advance<C: Curve>(
             continue;
         }
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
-        *step = (length * slower).min(settings.largest_step);
+        let angle = cosine.min(1.0).acos();
+        let growth = slower.min(ANGLE_PART * TANGENT_COSINE.acos() / angle.max(f64::MIN_POSITIVE));
+        *step = (length * growth.max(STEP_REDUCTION)).min(settings.largest_step);
         return Ok(solution);
     }
 }
@@ -317,16 +323,23 @@ fn settle<C: Curve>(
     carried: &mut [&mut Vec<f64>],
     settings: &Settings,
 ) -> Result<Solution<C::Point>, Error> {
-    for _ in 0..MOST_ADAPTATIONS {
-        if curve.adapt(&mut unknown, carried)? == Adaptation::Unchanged {
-            break;
+    for refinement in 0.. {
+        for _ in 0..MOST_ADAPTATIONS {
+            if curve.adapt(&mut unknown, carried)? == Adaptation::Unchanged {
+                break;
+            }
+            let border = metric_image(curve, carried[1]);
+            correct(curve, &mut unknown, &border, settings)
+                .map_err(|cause| Error::NotFound { sought: "solution on the adapted mesh", cause })?;
         }
-        let border = metric_image(curve, carried[1]);
-        correct(curve, &mut unknown, &border, settings)
-            .map_err(|cause| Error::NotFound { sought: "solution on the adapted mesh", cause })?;
+        let tangent = carried[1].clone();
+        let solution = finish(curve, unknown, &tangent)?;
+        if curve.resolves(&solution.point) || refinement == MOST_REFINEMENTS {
+            return Ok(solution);
+        }
+        unknown = solution.unknown;
     }
-    let tangent = carried[1].clone();
-    finish(curve, unknown, &tangent)
+    unreachable!()
 }
 
 /// Point predicted at the distance `length`: along the tangent, bent by the change of the tangent over

@@ -47,9 +47,13 @@ impl Default for Resolution {
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
 const MULTIPLIER_PART: f64 = 0.1;
-/// Smallest factor of the tolerance for that reason, and the most by which it falls and grows from one point to the next.
+/// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time.
 const FINEST: f64 = 1e-4;
-const REFINEMENT: (f64, f64) = (0.3, 1.2);
+const REFINEMENT: (f64, f64) = (0.1, 0.5);
+/// Where the error is less than this part of what is allowed, the factor of the tolerance grows by `RELAXATION` from point to
+/// point.
+const MUCH_LESS: f64 = 0.01;
+const RELAXATION: f64 = 1.5;
 /// Samples for the difference of the halves of a doubled cycle.
 const HALF_SAMPLES: usize = 64;
 
@@ -151,14 +155,6 @@ impl<'a> CycleCurve<'a> {
         self.period_scale = unknown[end].abs();
     }
 
-    /// Sets how much finer than the tolerance asks for the next meshes are, so that they resolve multipliers like these.
-    pub(super) fn refine_for(&mut self, floquet: &Floquet) {
-        let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
-        let error = if floquet.is_contradictory() { f64::INFINITY } else { floquet.trivial_error };
-        let (fall, growth) = REFINEMENT;
-        self.refinement = (self.refinement * (allowed / error).clamp(fall, growth)).clamp(FINEST, 1.0);
-    }
-
     /// Gives states that rest the sizes that the nonlinearity of the field gives them, where a branch is left on which they do.
     pub(super) fn count_resting_states_fully(&mut self) {
         for (scale, natural) in self.collocation.problem.scales.iter_mut().zip(self.sizes.natural()) {
@@ -255,6 +251,24 @@ impl Curve for CycleCurve<'_> {
             normal_form: Vec::new(),
             branching: None,
         })
+    }
+
+    fn resolves(&mut self, point: &CycleInspection) -> bool {
+        let floquet = &point.floquet;
+        let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
+        let error = if floquet.is_contradictory() { f64::INFINITY } else { floquet.trivial_error };
+        if error <= allowed {
+            if error < MUCH_LESS * allowed {
+                self.refinement = (RELAXATION * self.refinement).min(1.0);
+            }
+            return true;
+        }
+        let (strongest, weakest) = REFINEMENT;
+        let reached = (self.error_estimate / self.resolution.tolerance).min(self.refinement);
+        let finer = reached * (allowed / error).clamp(strongest, weakest);
+        let possible = finer >= FINEST;
+        self.refinement = finer.max(FINEST);
+        !possible
     }
 
     fn special_points(

@@ -38,7 +38,6 @@ pub(super) fn between(
     before: &Solution<CycleInspection>,
     after: &Solution<CycleInspection>,
 ) -> Result<Vec<Solution<CycleInspection>>, Error> {
-    curve.refine_for(&after.point.floquet);
     let changes = |a: f64, b: f64| a * b < 0.0;
     let fold = changes(before.point.fold_test, after.point.fold_test);
     let branch_point = changes(before.orientation, after.orientation);
