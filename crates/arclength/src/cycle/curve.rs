@@ -215,10 +215,10 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
-        // Time reversed, a cycle solves the equations too, and Newton's method may jump there from very far.
-        if unknown[unknown.len() - 2] <= 0.0 {
-            let cause = CorrectionFailure::Diverged;
-            return Err(Error::NotFound { sought: "cycle with a positive period", cause });
+        // Equilibria and cycles with the time reversed solve the equations too, and Newton's method may jump there.
+        let end = unknown.len() - 2;
+        if unknown[end] <= 0.0 || self.sizes.is_equilibrium(&unknown[..end]) {
+            return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);

@@ -13,6 +13,8 @@ const MEAN_PART: f64 = 0.01;
 const LARGEST_PART: f64 = 0.1;
 /// Part of the size that the nonlinearity of the field gives a state below which it rests.
 const RESTING_PART: f64 = 1e-4;
+/// Part of the largest amplitude met below which all states have to vary in an equilibrium.
+const EQUILIBRIUM_PART: f64 = 1e-6;
 /// Noise floor of the error estimate: part of the mean that is rounding.
 const ROUNDING_PART: f64 = 1e-6;
 /// The period has to grow to this many times its start, and its logarithm this much faster than the parameters over their
@@ -81,6 +83,18 @@ impl StateSizes {
                 }
             })
             .collect()
+    }
+
+    /// Whether the states, given on nodes, all rest: an equilibrium, which solves the equations of a cycle with any period.
+    pub fn is_equilibrium(&self, states: &[f64]) -> bool {
+        let n = self.largest.len();
+        (0..n).all(|component| {
+            let values = states.iter().skip(component).step_by(n);
+            let (smallest, largest) = values
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+            0.5 * (largest - smallest)
+                <= EQUILIBRIUM_PART * self.largest[component].max(self.resting[component])
+        })
     }
 
     /// Sizes that the nonlinearity of the field gives the states.

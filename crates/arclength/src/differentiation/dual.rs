@@ -267,7 +267,9 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
             return Self::one();
         }
         let lower = self.value.powi(exponent - 1);
-        self.chain(lower * self.value, lower * f64::from(exponent))
+        // At zero a negative power is infinite, but `lower` times zero is not a number.
+        let value = if exponent > 0 { lower * self.value } else { self.value.powi(exponent) };
+        self.chain(value, lower * f64::from(exponent))
     }
     #[inline]
     fn powf(self, exponent: Self) -> Self {
@@ -278,7 +280,8 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
         }
         if constant {
             let lower = self.value.powf(exponent.value - 1.0);
-            return self.chain(lower * self.value, lower * exponent.value);
+            let value = if power > 1.0 { lower * self.value } else { self.value.powf(exponent.value) };
+            return self.chain(value, lower * exponent.value);
         }
         (self.ln() * exponent).exp()
     }
@@ -286,5 +289,25 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     fn is_constant(&self) -> bool {
         self.value.is_constant()
             && self.derivatives.iter().all(|derivative| derivative.value() == 0.0 && derivative.is_constant())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_value_is_that_of_the_plain_function_at_the_edge_of_its_domain_too() {
+        for base in [0.0, -0.0, 0.5, 2.0] {
+            let x = Dual::<f64, 1>::variable(base, 0);
+            for exponent in [-2, -1, 0, 1, 2, 3] {
+                let (dual, plain) = (x.powi(exponent).value, base.powi(exponent));
+                assert!((dual - plain).abs() <= 1e-15 * plain || dual == plain, "{base}^{exponent}: {dual}");
+            }
+            for exponent in [-1.5, -0.5, 0.5, 1.5, 2.5] {
+                let (dual, plain) = (x.powf(Dual::constant(exponent)).value, base.powf(exponent));
+                assert!((dual - plain).abs() <= 1e-15 * plain || dual == plain, "{base}^{exponent}: {dual}");
+            }
+        }
     }
 }

@@ -209,9 +209,8 @@ impl Curve for CycleLocusCurve<'_> {
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
         let (cycle, eigenfunctions) = split(unknown, self.states, self.kind());
         let period = cycle[cycle.len() - 3];
-        if period <= 0.0 {
-            let cause = CorrectionFailure::Diverged;
-            return Err(Error::NotFound { sought: "cycle with a positive period", cause });
+        if period <= 0.0 || self.sizes.is_equilibrium(&cycle[..cycle.len() - 3]) {
+            return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
         self.system.collocation.problem.period_scale = period;
         let rescaled = self.rescale(&cycle);
