@@ -29,6 +29,8 @@ pub enum Special {
 
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
 const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
+/// Part of the range of the parameter by which it has to vary in a step for a fold to be told from rounding.
+const PARAMETER_ROUNDING: f64 = 1e-13;
 /// A special cycle may lie this part of the step outside it.
 const MARGIN: f64 = 0.1;
 
@@ -56,6 +58,9 @@ pub(super) fn between(
         (torus, Kind::Torus),
     ];
     let length = along(curve, before, &after.unknown);
+    // On the explosion of a canard the parameter may vary by its rounding only.
+    let variation = length * before.point.fold_test.abs().max(after.point.fold_test.abs());
+    let varies = variation > PARAMETER_ROUNDING;
     let resolved = ![before, after].iter().any(|solution| solution.point.floquet.is_contradictory());
     for (_, kind) in wanted.into_iter().filter(|(detected, _)| *detected) {
         let settings = curve.settings;
@@ -70,8 +75,8 @@ pub(super) fn between(
             }
         };
         // The tests of all but folds are multipliers.
-        let mut bracket =
-            if resolved || kind == Kind::Fold { Bracket::new(curve, before, after, test) } else { None };
+        let decidable = if kind == Kind::Fold { varies } else { resolved };
+        let mut bracket = decidable.then(|| Bracket::new(curve, before, after, test)).flatten();
         for tolerance in START_TOLERANCES {
             let Some(bracket) = &mut bracket else { break };
             let converged = match bracket.narrow(curve, &settings, tolerance, test) {
@@ -101,10 +106,14 @@ pub(super) fn between(
             Some(located) => found.push(describe(curve, located, kind)?),
             // On the branch that turns at a pitchfork the parameter turns too, but that is no fold.
             None if kind == Kind::Fold && at_branch_point(&found) => {}
-            None => curve.unlocated.push(Unlocated {
-                test: name(kind),
-                between: [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]),
-            }),
+            None => {
+                let [from, to] = [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]);
+                // Rounding may change a sign in step after step.
+                match curve.unlocated.last_mut() {
+                    Some(last) if last.test == name(kind) && last.between[1] == from => last.between[1] = to,
+                    _ => curve.unlocated.push(Unlocated { test: name(kind), between: [from, to] }),
+                }
+            }
         }
     }
     Ok(found)
