@@ -26,6 +26,9 @@ pub(crate) struct Tape {
     registers: usize,
 }
 
+/// Registers of a workspace that is small enough, with dual numbers too, for the stack not to be probed page by page.
+const FEW_REGISTERS: usize = 32;
+
 /// Invariant: every register that an instruction or a result reads is below the number of registers
 /// and holds a state or a parameter, or was written by an earlier instruction.
 #[derive(Clone, Debug)]
@@ -118,16 +121,32 @@ impl Tape {
     }
 
     #[inline(always)]
+    fn run_on_stack<T: Scalar, const N: usize>(
+        &self,
+        code: &Code<u8>,
+        time: T,
+        state: &[T],
+        parameters: &[T],
+        results: &mut [T],
+    ) {
+        // SAFETY: the invariant of `Program`, with no more registers than `N`; states and parameters are written first.
+        let mut registers = unsafe { Stack::<T, N>::new() };
+        registers.load(0, state);
+        registers.load(self.states, parameters);
+        code.run(&mut registers, time, results);
+    }
+
+    #[inline(always)]
     fn evaluate_kernel<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         let state = &state[..self.states];
         let parameters = &parameters[..self.parameters];
         match &self.program {
             Program::OnStack(code) => {
-                // SAFETY: the invariant of `Program`, and the states and parameters are written first.
-                let mut registers = unsafe { Stack::new() };
-                registers.load(0, state);
-                registers.load(self.states, parameters);
-                code.run(&mut registers, time, results);
+                if self.registers <= FEW_REGISTERS {
+                    self.run_on_stack::<T, FEW_REGISTERS>(code, time, state, parameters, results);
+                } else {
+                    self.run_on_stack::<T, STACK_REGISTERS>(code, time, state, parameters, results);
+                }
             }
             Program::OnHeap(code) => {
                 let mut registers = vec![T::zero(); self.registers];

@@ -15,33 +15,34 @@ pub(super) const STACK_REGISTERS: usize = 256;
 
 /// Registers on the stack, none of them initialised.
 ///
-/// A byte cannot name a register that is not there, so no access needs a check; and clearing the
+/// Whoever makes one promises that no register is used that is not there, so no access needs a check; and clearing the
 /// registers would cost more than running a short model.
-pub(super) struct Stack<T> {
-    slots: [MaybeUninit<T>; STACK_REGISTERS],
+pub(super) struct Stack<T, const N: usize> {
+    slots: [MaybeUninit<T>; N],
 }
 
-impl<T: Copy> Stack<T> {
+impl<T: Copy, const N: usize> Stack<T, N> {
     /// # Safety
     ///
-    /// No register may be read before it is written. [`Tape`](super::Tape) checks this once for its
-    /// instructions when it is made.
+    /// No register may be read before it is written, and none from `N` on may be read or written.
+    /// [`Tape`](super::Tape) checks this once for its instructions when it is made.
     #[inline(always)]
     pub unsafe fn new() -> Self {
-        Self { slots: [const { MaybeUninit::uninit() }; STACK_REGISTERS] }
+        Self { slots: [const { MaybeUninit::uninit() }; N] }
     }
 }
 
-impl<T: Copy> Registers<T, u8> for Stack<T> {
+impl<T: Copy, const N: usize> Registers<T, u8> for Stack<T, N> {
     #[inline(always)]
     fn read(&self, register: u8) -> T {
         // SAFETY: whoever called `new` promised that the register was written before.
-        unsafe { self.slots[register as usize].assume_init() }
+        unsafe { self.slots.get_unchecked(register as usize).assume_init() }
     }
 
     #[inline(always)]
     fn write(&mut self, register: u8, value: T) {
-        self.slots[register as usize] = MaybeUninit::new(value);
+        // SAFETY: as above.
+        unsafe { *self.slots.get_unchecked_mut(register as usize) = MaybeUninit::new(value) };
     }
 
     #[inline(always)]
