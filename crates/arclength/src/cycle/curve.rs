@@ -47,8 +47,10 @@ impl Default for Resolution {
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
 const MULTIPLIER_PART: f64 = 0.1;
-/// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time.
+/// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time. Rounding sets an end
+/// to it, too.
 const FINEST: f64 = 1e-4;
+const FINEST_TOLERANCE: f64 = 1e-10;
 const REFINEMENT: (f64, f64) = (0.1, 0.5);
 /// Where the error is less than this part of what is allowed, the factor of the tolerance grows by `RELAXATION` from point to
 /// point.
@@ -266,9 +268,9 @@ impl Curve for CycleCurve<'_> {
         let (strongest, weakest) = REFINEMENT;
         let reached = (self.error_estimate / self.resolution.tolerance).min(self.refinement);
         let finer = reached * (allowed / error).clamp(strongest, weakest);
-        let possible = finer >= FINEST;
-        self.refinement = finer.max(FINEST);
-        !possible
+        let finest = FINEST.max(FINEST_TOLERANCE / self.resolution.tolerance).min(1.0);
+        self.refinement = finer.max(finest);
+        finer < finest
     }
 
     fn special_points(
