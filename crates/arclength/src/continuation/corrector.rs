@@ -27,6 +27,8 @@ pub enum CorrectionFailure {
 
 /// A chord step that shrinks the update less than this asks for a new Jacobian.
 const CHORD_CONTRACTION: f64 = 0.05;
+/// A chord step that shrinks it less than this is not made.
+const CHORD_REJECTION: f64 = 0.5;
 /// After a first update longer than this the Jacobian at the start is not used again.
 const FAR: f64 = 0.03;
 /// An update this much longer than the one before it counts as divergence.
@@ -61,15 +63,19 @@ pub fn correct<C: Curve>(
         let last = update.len() - 1;
         update[last] = 0.0;
         curve.solve(&mut update);
-        for (entry, step) in unknown.iter_mut().zip(&update) {
-            *entry -= step;
-        }
         let length = norm(curve, &update, &mut image);
         if !length.is_finite() {
             return Err(CorrectionFailure::NotFinite);
         }
         let contraction = length / previous;
-        let stagnates = iteration > 1 && contraction > 0.5 && length < STAGNATION_LIMIT;
+        let stagnates = iteration > 1 && contraction > CHORD_REJECTION && length < STAGNATION_LIMIT;
+        if !fresh_jacobian && contraction > CHORD_REJECTION && !stagnates {
+            fresh_jacobian = true;
+            continue;
+        }
+        for (entry, step) in unknown.iter_mut().zip(&update) {
+            *entry -= step;
+        }
         // The error left is below length * contraction once the contraction is known.
         let converged = length < settings.corrector_tolerance
             || (iteration > 1
@@ -83,11 +89,10 @@ pub fn correct<C: Curve>(
             return Ok(Correction { iterations: iteration, distance });
         }
         // An old Jacobian may not see an error that the new one sees, so updates of different ones are not compared.
-        let growth = if fresh_jacobian { length / previous_fresh } else { contraction };
-        if iteration > 1 && growth > GROWTH_LIMIT {
-            return Err(CorrectionFailure::Diverged);
-        }
         if fresh_jacobian {
+            if length > GROWTH_LIMIT * previous_fresh {
+                return Err(CorrectionFailure::Diverged);
+            }
             previous_fresh = length;
         }
         fresh_jacobian = if iteration == 1 { length > FAR } else { contraction > CHORD_CONTRACTION };
