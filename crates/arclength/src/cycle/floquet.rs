@@ -48,14 +48,13 @@ impl Floquet {
         self.trivial_error.max(f64::EPSILON)
     }
 
-    /// Whether an odd number of the multipliers that are larger than the error is negative. The product of all multipliers is
-    /// the determinant of a flow and positive (Liouville), so the mesh does not resolve them.
+    /// Whether all multipliers are larger than the error and an odd number of them is negative. The product of all multipliers
+    /// is the determinant of a flow and positive (Liouville), so the mesh does not resolve them.
     pub fn is_contradictory(&self) -> bool {
         let floor = self.margin().ln();
-        let negative = self.nontrivial.iter().filter(|multiplier| {
-            multiplier.is_real() && multiplier.argument != 0.0 && multiplier.log_modulus > floor
-        });
-        negative.count() % 2 == 1
+        let negative =
+            self.nontrivial.iter().filter(|multiplier| multiplier.is_real() && multiplier.argument != 0.0);
+        negative.count() % 2 == 1 && self.nontrivial.iter().all(|multiplier| multiplier.log_modulus > floor)
     }
 }
 
