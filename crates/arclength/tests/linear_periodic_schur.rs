@@ -398,3 +398,38 @@ proptest! {
         prop_assert!((sum - expected).abs() < 1e-9 * (1.0 + expected.abs()), "{sum} {expected}");
     }
 }
+
+#[test]
+fn clusters_of_equal_multipliers_in_a_symmetric_ring() {
+    // The flow of 24 coupled oscillators next to the origin: a circulant matrix times a rotation, in eight equal parts of a turn.
+    const CELLS: usize = 24;
+    const PARTS: usize = 8;
+    let step = std::f64::consts::TAU / PARTS as f64;
+    let mode =
+        |j: usize, distance: usize| (std::f64::consts::TAU * (j * distance) as f64 / CELLS as f64).cos();
+    let decay = |j: usize| 0.2 * (1.0 - mode(j, 1));
+    let n = 2 * CELLS;
+    let (sine, cosine) = step.sin_cos();
+    let mut part = vec![0.0; n * n];
+    for (row, column) in (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| (row, column))) {
+        let sum: f64 = (0..CELLS).map(|j| (-step * decay(j)).exp() * mode(j, row.abs_diff(column))).sum();
+        for (a, b, entry) in [(0, 0, cosine), (0, 1, -sine), (1, 0, sine), (1, 1, cosine)] {
+            part[2 * row + a + n * (2 * column + b)] = sum / CELLS as f64 * entry;
+        }
+    }
+    // Other coordinates at every part mix the equal multipliers.
+    let mut random = Random(7);
+    let frames: Vec<Vec<f64>> = (0..PARTS).map(|_| random.orthogonal(n, 1.0)).collect();
+    let factors: Vec<f64> = (0..PARTS)
+        .flat_map(|index| {
+            let changed = product(&part, &transposed(&frames[index], n), n);
+            product(&frames[(index + 1) % PARTS], &changed, n)
+        })
+        .collect();
+    let found = multipliers(&factors, n, PARTS).unwrap();
+    let mut expected: Vec<f64> = (0..CELLS).flat_map(|j| [-std::f64::consts::TAU * decay(j); 2]).collect();
+    expected.sort_by(|a, b| b.total_cmp(a));
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found.log_modulus - expected).abs() < 1e-12, "{} {expected}", found.log_modulus);
+    }
+}

@@ -22,6 +22,9 @@ use super::wide_range::WideRange;
 
 /// Sweeps allowed for one window before it is given up.
 const MAXIMUM_SWEEPS: usize = 300;
+/// After this many sweeps an entry counts as negligible when it is as small as the rounding errors of all factors together: in
+/// a cluster of equal multipliers it gets no smaller.
+const PATIENCE: usize = 30;
 /// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they
 /// may have grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
 const LARGEST_AMPLIFICATION: f64 = 256.0;
@@ -201,7 +204,7 @@ impl PeriodicSchur {
             let last = end - 1;
             let mut sweeps = 0;
             let first = loop {
-                let first = self.window_start(last);
+                let first = self.window_start(last, sweeps);
                 if first == last {
                     break first;
                 }
@@ -243,12 +246,14 @@ impl PeriodicSchur {
     }
 
     /// First row of the window that ends in row `last`: the entry left of it is negligible, and made zero.
-    fn window_start(&mut self, last: usize) -> usize {
+    fn window_start(&mut self, last: usize, sweeps: usize) -> usize {
         let n = self.n;
+        let errors = if sweeps < PATIENCE { 1 } else { n * (self.count + 1) };
+        let negligible = errors as f64 * f64::EPSILON;
         let hessenberg = &mut self.factors[..n * n];
         for k in (1..=last).rev() {
             let neighbours = hessenberg[(n + 1) * (k - 1)].abs() + hessenberg[(n + 1) * k].abs();
-            if hessenberg[k + n * (k - 1)].abs() <= f64::EPSILON * neighbours {
+            if hessenberg[k + n * (k - 1)].abs() <= negligible * neighbours {
                 hessenberg[k + n * (k - 1)] = 0.0;
                 return k;
             }
