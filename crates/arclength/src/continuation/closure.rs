@@ -4,6 +4,7 @@
 //! parameter passes the value that it had there, in the same direction, the solution at exactly that value is computed, and
 //! the signatures of the two are compared.
 
+use super::bracket::locate;
 use super::curve::{Curve, Solution};
 use super::follow::{Bound, Origin, fix};
 use super::settings::Settings;
@@ -12,6 +13,8 @@ use super::settings::Settings;
 const CLOSURE_TOLERANCE: f64 = 1e-6;
 /// The first parameter nearly stands still at a solution if it moves less than this part of how fast it moves soon after.
 const STANDSTILL: f64 = 0.1;
+/// Part of a step to which the place of the parameter value is narrowed down for a second attempt.
+const CLOSE: f64 = 1e-3;
 /// Solutions among which one with a moving parameter is looked for.
 const EARLY: usize = 10;
 /// Part of the length up to the solution compared with; special points this close before the start are those of the start.
@@ -76,7 +79,14 @@ impl Closure {
         if index < self.index + 2 || !crosses {
             return None;
         }
-        let candidate = fix(curve, current, advanced, from_end, self.parameter, settings).ok()?;
+        let value = self.parameter;
+        let candidate = fix(curve, current, advanced, from_end, value, settings).or_else(|error| {
+            // Next to a turning point of the parameter only a close start leads to the right one of two solutions.
+            let near =
+                locate(curve, current, advanced, settings, CLOSE, |_, solution| Some(position(solution)))?;
+            near.map_or(Err(error), |near| fix(curve, &near, &near, from_end, value, settings))
+        });
+        let candidate = candidate.ok()?;
         same(&curve.signature(&candidate.unknown), &self.signature).then_some(candidate)
     }
 
