@@ -80,14 +80,19 @@ impl Closure {
             return None;
         }
         let value = self.parameter;
-        let candidate = fix(curve, current, advanced, from_end, value, settings).or_else(|error| {
-            // Next to a turning point of the parameter only a close start leads to the right one of two solutions.
-            let near =
-                locate(curve, current, advanced, settings, CLOSE, |_, solution| Some(position(solution)))?;
-            near.map_or(Err(error), |near| fix(curve, &near, &near, from_end, value, settings))
-        });
-        let candidate = candidate.ok()?;
-        same(&curve.signature(&candidate.unknown), &self.signature).then_some(candidate)
+        let is_start = |curve: &C, candidate: &Solution<C::Point>| {
+            same(&curve.signature(&candidate.unknown), &self.signature)
+        };
+        if let Ok(candidate) = fix(curve, current, advanced, from_end, value, settings)
+            && is_start(curve, &candidate)
+        {
+            return Some(candidate);
+        }
+        // Next to a turning point of the parameter only a close start leads to the right one of two solutions.
+        let near = locate(curve, current, advanced, settings, CLOSE, |_, solution| Some(position(solution)));
+        let near = near.ok()??;
+        let candidate = fix(curve, &near, &near, from_end, value, settings).ok()?;
+        is_start(curve, &candidate).then_some(candidate)
     }
 
     /// Removes the part of a closed curve, with the lengths of its solutions, behind its start and adds the start as its end.
