@@ -6,15 +6,13 @@
 
 use super::bracket::locate;
 use super::curve::{Curve, Solution};
-use super::follow::{Bound, Origin, fix};
+use super::follow::{Bound, CLOSE, Origin, fix};
 use super::settings::Settings;
 
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;
 /// The first parameter nearly stands still at a solution if it moves less than this part of how fast it moves soon after.
 const STANDSTILL: f64 = 0.1;
-/// Part of a step to which the place of the parameter value is narrowed down for a second attempt.
-const CLOSE: f64 = 1e-3;
 /// Solutions among which one with a moving parameter is looked for.
 const EARLY: usize = 10;
 /// Part of the length up to the solution compared with; special points this close before the start are those of the start.

@@ -1,5 +1,6 @@
 //! The run itself: predict, correct, adapt, inspect, locate, repeat.
 
+use super::bracket::locate;
 use super::closure::Closure;
 use super::corrector::{inner, norm};
 use super::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, correct};
@@ -62,6 +63,8 @@ const ANGLE_PART: f64 = 0.8;
 const MOST_ADAPTATIONS: usize = 12;
 /// Times that a discretisation is made finer at one point because it does not resolve what was found out there.
 const MOST_REFINEMENTS: usize = 6;
+/// Part of a step to which the place of a parameter value is narrowed down for a second attempt.
+pub(super) const CLOSE: f64 = 1e-3;
 /// Part of its range by which a parameter of the start may move by rounding.
 const START_ROUNDING: f64 = 1e-13;
 
@@ -390,7 +393,13 @@ fn requested_values<C: Curve>(
             let (before, after) = (value_of(&left.unknown) - value, value_of(&right.unknown) - value);
             let passes = (before < 0.0) != (after < 0.0) || after == 0.0;
             if passes && before != 0.0 {
-                let found = fix(curve, left, right, bound.from_end, value, &request.settings)?;
+                let settings = &request.settings;
+                let found = fix(curve, left, right, bound.from_end, value, settings).or_else(|error| {
+                    let test = |solution: &Solution<C::Point>| value_of(&solution.unknown) - value;
+                    let near =
+                        locate(curve, left, right, settings, CLOSE, |_, solution| Some(test(solution)))?;
+                    near.map_or(Err(error), |near| fix(curve, &near, &near, bound.from_end, value, settings))
+                })?;
                 between.insert(index, (found, Origin::Requested));
                 index += 1;
             }

@@ -29,6 +29,25 @@ init x=.1,y=.1,z=.1
 done
 ";
 
+/// Two van der Pol oscillators that repel each other.
+const TWO_OSCILLATORS: &str = "par k=.2, mu=.5, d=.1
+x'=y
+y'=mu*(1-x^2)*y-x+k*(u-x)+d*(v-y)
+u'=v
+v'=mu*(1-u^2)*v-u+k*(x-u)+d*(y-v)
+init x=2,y=0,u=2,v=0
+done
+";
+
+/// The neuron of Hindmarsh and Rose.
+const SPIKING_NEURON: &str = "par I=3.6
+x'=y-x^3+3*x^2-z+I
+y'=1-5*x^2-y
+z'=.005*(4*(x+1.6)-z)
+init x=-1.6,y=-12,z=0
+done
+";
+
 /// The nerve of Hodgkin and Huxley.
 const NERVE: &str = "par iapp=0,gna=120,gk=36,gl=.3,vna=50,vk=-77,vl=-54.4,phi=1
 exprel(x,y)=if(abs(x/y)<1e-6)then(y*(1+x/y/2))else(x/(1-exp(-x/y)))
@@ -122,4 +141,29 @@ fn cycles_are_born_where_the_normal_form_holds_only_nearby() {
     let cycles = folder.json("cycles --from eq.json:HB2 --along gk=20:50");
     let first = &points(&cycles)[0];
     assert!((number(&first["value"]) - 36.0).abs() < 0.1 && points(&cycles).len() > 3);
+}
+
+#[test]
+fn a_closed_branch_of_cycles_that_starts_next_to_a_turning_point_ends_after_one_lap() {
+    let folder = folder(TWO_OSCILLATORS);
+    folder.succeed("simulate model.ode --duration 200 -q -o motion.json");
+    folder.succeed("cycles --from motion.json:END --along d=-1:.5 -q -o cycles.json");
+    for steps in ["", " --finer 3"] {
+        let lap = folder.json(&format!("cycles --from cycles.json:BPC1 --along d=-1:.5{steps}"));
+        assert!(lap["ends"][1]["cause"].as_str().unwrap().contains("closed"), "{}", lap["ends"]);
+        let folds = points(&lap).iter().filter_map(|point| point["label"].as_str());
+        assert_eq!(folds.filter(|label| label.starts_with("LPC")).count(), 2);
+    }
+}
+
+#[test]
+fn multipliers_at_rounding_do_not_hide_a_period_doubling() {
+    let folder = folder(SPIKING_NEURON);
+    folder.succeed("simulate model.ode --duration 10000 --points 20001 -q -o motion.json");
+    let cycles = folder.json("cycles --from motion.json:END --along I=3.45:3.6");
+    // SciPy (DOP853 with the variational equations, relative tolerance 1e-11) finds I = 3.4733911357, T = 33.113204094.
+    let doubling = labelled(&cycles, "PD1");
+    assert!((number(&doubling["value"]) - 3.4733911357).abs() < 1e-8, "{}", doubling["value"]);
+    assert!((number(&doubling["period"]) - 33.113204094).abs() < 1e-6, "{}", doubling["period"]);
+    assert!(points(&cycles).iter().filter(|point| point["stable"].is_null()).count() <= 1);
 }
