@@ -47,22 +47,20 @@ pub(super) fn between(
     let (outside_before, _) = before.point.floquet.unstable();
     let (outside_after, _) = after.point.floquet.unstable();
     let explained = usize::from(fold) + usize::from(branch_point) + usize::from(doubling);
-    let torus = outside_before.abs_diff(outside_after) >= explained + 2;
+    let pairs = outside_before.abs_diff(outside_after).saturating_sub(explained) / 2;
     let mut found = Vec::new();
     let sign = before.orientation;
     let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
-    let wanted = [
-        (branch_point, Kind::BranchPoint),
-        (fold, Kind::Fold),
-        (doubling, Kind::Doubling),
-        (torus, Kind::Torus),
-    ];
+    // Each with its rank: pairs that cross together are told apart by it.
+    let single = [(branch_point, Kind::BranchPoint), (fold, Kind::Fold), (doubling, Kind::Doubling)];
+    let wanted = single.into_iter().filter(|(detected, _)| *detected).map(|(_, kind)| (kind, 0));
+    let tori = (0..pairs).map(|pair| (Kind::Torus, outside_before.min(outside_after) + 2 * pair));
     let length = along(curve, before, &after.unknown);
     // On the explosion of a canard the parameter may vary by its rounding only.
     let variation = length * before.point.fold_test.abs().max(after.point.fold_test.abs());
     let varies = variation > PARAMETER_ROUNDING;
     let resolved = ![before, after].iter().any(|solution| solution.point.floquet.is_contradictory());
-    for (_, kind) in wanted.into_iter().filter(|(detected, _)| *detected) {
+    for (kind, rank) in wanted.chain(tori) {
         let settings = curve.settings;
         let mut located = None;
         let test = |_: &mut CycleCurve<'_>, solution: &Solution<CycleInspection>| {
@@ -70,7 +68,7 @@ pub(super) fn between(
             match kind {
                 Kind::Fold => Some(point.fold_test),
                 Kind::Doubling => Some(point.doubling_test()),
-                Kind::Torus => torus_test(point, outside_before.min(outside_after)),
+                Kind::Torus => torus_test(point, rank),
                 Kind::BranchPoint => branch_point_test(solution, sign),
             }
         };

@@ -48,6 +48,18 @@ init x=-1.6,y=-12,z=0
 done
 ";
 
+/// A cycle with two planes across it, which lose their stability at `mu = 0` and `mu = g`.
+const TWO_TORI: &str = "par mu=-1,g=.005
+a'=a-b-a*(a^2+b^2)
+b'=a+b-b*(a^2+b^2)
+x'=mu*x-.37*y-x*(x^2+y^2)
+y'=mu*y+.37*x-y*(x^2+y^2)
+u'=(mu-g)*u-.21*v-u*(u^2+v^2)
+v'=(mu-g)*v+.21*u-v*(u^2+v^2)
+init a=1
+done
+";
+
 /// The nerve of Hodgkin and Huxley.
 const NERVE: &str = "par iapp=0,gna=120,gk=36,gl=.3,vna=50,vk=-77,vl=-54.4,phi=1
 exprel(x,y)=if(abs(x/y)<1e-6)then(y*(1+x/y/2))else(x/(1-exp(-x/y)))
@@ -166,4 +178,14 @@ fn multipliers_at_rounding_do_not_hide_a_period_doubling() {
     assert!((number(&doubling["value"]) - 3.4733911357).abs() < 1e-8, "{}", doubling["value"]);
     assert!((number(&doubling["period"]) - 33.113204094).abs() < 1e-6, "{}", doubling["period"]);
     assert!(points(&cycles).iter().filter(|point| point["stable"].is_null()).count() <= 1);
+}
+
+#[test]
+fn two_torus_bifurcations_in_one_step() {
+    let folder = folder(TWO_TORI);
+    folder.succeed("simulate model.ode --duration 100 -q -o motion.json");
+    let cycles = folder.json("cycles --from motion.json:END --along mu=-1:1");
+    for (label, value) in [("NS1", 0.0), ("NS2", 0.005)] {
+        assert!((number(&labelled(&cycles, label)["value"]) - value).abs() < 1e-10);
+    }
 }
