@@ -493,8 +493,7 @@ fn a_cusp_of_cycles_on_which_a_state_rests() {
 fn folds_of_doubled_cycles_end_at_the_generalised_period_doubling() {
     // Doubled cycles with mu + c s - s^2 = 0, s = xi^2: folds at s = c / 2, mu = -c^2 / 4.
     let parameters = [-0.25, -0.3, 1.0];
-    let orbit =
-        Orbit::from_time_history(&DoublingBand, &parameters, &[1.0 + 0.5_f64.sqrt(), 0.0, 0.0], 13.0);
+    let orbit = Orbit::from_time_history(&DoublingBand, &parameters, &[1.0 + 0.5_f64.sqrt(), 0.0, 0.0], 13.0);
     let folds = CycleLocus::of(&DoublingBand)
         .from_cycle(SpecialKind::FoldOfCycles, &orbit.expect("a cycle"), &parameters)
         .along("mu", -1.0..=1.0)
@@ -599,10 +598,9 @@ fn a_test_function_that_changes_its_sign_without_a_point_is_named() {
     let resonance = |point: &arclength::locus::CycleLocusPoint| {
         point.tests.iter().find(|(name, _)| name == "R2").map(|(_, value)| *value)
     };
-    let changes = doublings
-        .points
-        .windows(2)
-        .filter(|pair| matches!((resonance(&pair[0]), resonance(&pair[1])), (Some(a), Some(b)) if a * b < 0.0));
+    let changes = doublings.points.windows(2).filter(
+        |pair| matches!((resonance(&pair[0]), resonance(&pair[1])), (Some(a), Some(b)) if a * b < 0.0),
+    );
     let named = doublings.unlocated.iter().filter(|change| change.kind == SpecialKind::Resonance2).count();
     let located = found(&doublings).len();
     assert!(changes.count() > 0);

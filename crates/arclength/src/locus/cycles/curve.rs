@@ -4,7 +4,9 @@ use super::branch::UnlocatedChange;
 use super::monitor;
 use crate::algebraic::between;
 use crate::branch::SpecialKind;
-use crate::continuation::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, along, locate};
+use crate::continuation::{
+    Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, along, locate,
+};
 use crate::cycle::Resolution;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
@@ -31,9 +33,9 @@ const LOCATION: f64 = 1e-12;
 /// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
 const POLE: f64 = 1e-3;
 
-/// A state counts as one that rests while its largest amplitude is below this part of the size that the nonlinearity of the
-/// field gives it; that size is then its scale.
-const RESTING: f64 = 1e-3;
+/// A state counts as one that rests if its amplitude where the curve starts is below this part of the size that the
+/// nonlinearity of the field gives it.
+const RESTING: f64 = 1e-4;
 /// At a cusp both parameters turn: their speed there is at most this part of that at the ends of the bracket.
 const TURN: f64 = 1e-2;
 /// A coefficient this many times what it is at the ends of a bracket has a pole between them.
@@ -88,8 +90,8 @@ pub(super) struct CycleLocusCurve<'a> {
     second: usize,
     sizes: StateSizes,
     error_estimate: f64,
-    /// Largest amplitudes met.
-    amplitudes: Vec<f64>,
+    /// Smallest scales of the states: their natural sizes where they rest, otherwise zero.
+    least: Vec<f64>,
     /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
     sign: Option<f64>,
     /// Sign changes of test functions behind which nothing was located.
@@ -105,8 +107,8 @@ impl<'a> CycleLocusCurve<'a> {
         base: Collocation<LimitCycle<'a>>,
         sizes: StateSizes,
         second: usize,
-        resolution: Resolution,
-        settings: Settings,
+        (resolution, settings): (Resolution, Settings),
+        least: Vec<f64>,
     ) -> Self {
         let states = system.collocation.problem.scales.len();
         let kind = system.collocation.problem.kind;
@@ -120,7 +122,7 @@ impl<'a> CycleLocusCurve<'a> {
             second,
             sizes,
             error_estimate: f64::INFINITY,
-            amplitudes: vec![0.0; states],
+            least,
             sign: None,
             unlocated: Vec::new(),
             last: Vec::new(),
@@ -135,20 +137,10 @@ impl<'a> CycleLocusCurve<'a> {
     /// Measures the sizes of the states; whether they have changed so much that the normalisation has to follow.
     fn rescale(&mut self, cycle: &[f64]) -> bool {
         let mut changed = false;
-        let n = self.states;
-        let states = &cycle[..cycle.len() - 3];
-        let natural: Vec<f64> = self.sizes.natural().collect();
-        let sizes = self.sizes.measure(states);
-        for (component, (old, size)) in
-            self.system.collocation.problem.scales.iter_mut().zip(sizes).enumerate()
-        {
-            let values = states.iter().skip(component).step_by(n);
-            let (low, high) =
-                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
-            let met = &mut self.amplitudes[component];
-            *met = met.max(0.5 * (high - low));
-            let rests = *met < RESTING * natural[component];
-            let scale = if rests { size.scale.max(natural[component]) } else { size.scale };
+        let sizes = self.sizes.measure(&cycle[..cycle.len() - 3]);
+        let scales = self.system.collocation.problem.scales.iter_mut();
+        for ((old, size), least) in scales.zip(sizes).zip(&self.least) {
+            let scale = size.scale.max(*least);
             let ratio = scale / *old;
             if scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
                 *old = scale;
@@ -312,9 +304,8 @@ impl<'a> CycleLocusCurve<'a> {
             (differences, parameter)
         };
         let ((one, a), (other, b)) = (half_difference(before), half_difference(after));
-        let product = |a: &[f64], b: &[f64]| {
-            a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / HALF_SAMPLES as f64
-        };
+        let product =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / HALF_SAMPLES as f64;
         let (first, second) = (product(&one, &one), product(&other, &other));
         let rounding = self.resolution.tolerance.powi(2);
         let exchanged = product(&one, &other) < 0.0 && first > rounding && second > rounding;
@@ -333,6 +324,22 @@ impl<'a> CycleLocusCurve<'a> {
             _ => self.unlocated.push(UnlocatedChange { kind, between: [from, to] }),
         }
     }
+}
+
+/// The sizes that the nonlinearity of the field gives to those states of a cycle, given on its nodes, that rest; zero for the
+/// others.
+pub(super) fn sizes_of_resting(sizes: &StateSizes, states: &[f64]) -> Vec<f64> {
+    let natural: Vec<f64> = sizes.natural().collect();
+    let amplitude = |component: usize| {
+        let values = states.iter().skip(component).step_by(natural.len());
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+        0.5 * (high - low)
+    };
+    let size = |(component, natural): (usize, &f64)| {
+        if amplitude(component) < RESTING * natural { *natural } else { 0.0 }
+    };
+    natural.iter().enumerate().map(size).collect()
 }
 
 fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {

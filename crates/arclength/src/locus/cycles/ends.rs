@@ -19,6 +19,8 @@ const STEPS: usize = 20;
 const NEAR: f64 = 0.2;
 /// Part of the largest amplitudes on the curve below which cycles may be about to vanish.
 const VANISHING: f64 = 0.3;
+/// Distance of the argument from that of a resonance within which the last point counts as the resonance.
+const NEXT_TO: f64 = 1e-2;
 
 impl CycleLocus<'_> {
     /// Adds the ends of the curve that other curves lead to. `parameters` are those of the start.
@@ -59,6 +61,12 @@ impl CycleLocus<'_> {
         };
         let first = solve(&mut branch.backward_stop, branch.points.first());
         let last = solve(&mut branch.forward_stop, branch.points.last());
+        if first.is_none() {
+            label_resonance(&branch.backward_stop, branch.points.iter_mut());
+        }
+        if last.is_none() {
+            label_resonance(&branch.forward_stop, branch.points.iter_mut().rev());
+        }
         branch.extend(first, last);
     }
 
@@ -214,6 +222,23 @@ impl CycleLocus<'_> {
             },
         })
     }
+}
+
+/// Labels the first of `points` where it is next to a resonance that no other curve leads to. The parameters depend on the square
+/// of the distance of the argument from that of the resonance: what is left of it gives the errors.
+fn label_resonance<'p>(stop: &Stop, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
+    let Stop::StrongResonance { order } = stop else { return };
+    let (kind, resonance) =
+        if *order == 1 { (SpecialKind::Resonance1, 0.0) } else { (SpecialKind::Resonance2, PI) };
+    let (Some(end), Some(before)) = (points.next(), points.next()) else { return };
+    let (Some(near), Some(far)) = (end.argument, before.argument) else { return };
+    let (near, far) = ((near - resonance).powi(2), (far - resonance).powi(2));
+    if end.label.is_some() || near > NEXT_TO * NEXT_TO || far <= near {
+        return;
+    }
+    let error = |index: usize| ((end.values[index] - before.values[index]) * near / (far - near)).abs();
+    end.location_error = Some([error(0), error(1)]);
+    end.label = Some(Label { kind, number: 1 });
 }
 
 fn amplitudes(point: &CycleLocusPoint) -> impl Iterator<Item = f64> + '_ {

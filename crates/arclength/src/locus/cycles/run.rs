@@ -1,7 +1,7 @@
 //! Asking for a curve of special cycles.
 
 use super::branch::{CycleLocusBranch, UnlocatedChange};
-use super::curve::{CycleLocusCurve, Inspection};
+use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
 use crate::branch::SpecialKind;
 use crate::continuation::{Followed, Origin, Request, Settings, Solution, Stop, correct, finish, follow};
 use crate::cycle::collocation::Collocation;
@@ -207,6 +207,10 @@ impl<'a> CycleLocus<'a> {
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
         let sizes = StateSizes::new(&collocation.problem, &cycle);
         let mut base = CycleCurve::new(collocation, self.resolution, ranges[0], &cycle).collocation;
+        let least = sizes_of_resting(&sizes, &orbit.states);
+        for (scale, least) in base.problem.scales.iter_mut().zip(&least) {
+            *scale = scale.max(*least);
+        }
         let mut border = vec![0.0; cycle.len()];
         border[cycle.len() - 1] = 1.0;
         let mut residual = vec![0.0; cycle.len()];
@@ -224,7 +228,8 @@ impl<'a> CycleLocus<'a> {
         }
         let nodes = (orbit.mesh.clone(), orbit.degree);
         let system = DefiningCurve::new(&base.problem, kind, nodes, (Some(active[1]), ranges), &unknown);
-        Ok((CycleLocusCurve::new(system, base, sizes, active[1], self.resolution, self.settings), unknown))
+        let control = (self.resolution, self.settings);
+        Ok((CycleLocusCurve::new(system, base, sizes, active[1], control, least), unknown))
     }
 
     /// The first solution, corrected with one of the parameters fixed, and the tangent there.

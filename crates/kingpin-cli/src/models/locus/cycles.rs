@@ -9,8 +9,8 @@ use crate::models::branch::{
 use crate::models::model::ChosenModel;
 use crate::models::picture::{self, Curve};
 use crate::models::story::{self, Part};
-use crate::output::Output;
 use crate::numbers::{readable, significant};
+use crate::output::Output;
 use crate::range::Range;
 use crate::report::Report;
 use crate::table::{Cell, Table};
@@ -72,9 +72,9 @@ pub struct UnlocatedChangeReport {
 impl UnlocatedChangeReport {
     /// In words, with what to try.
     fn text(&self, [one, two]: [&str; 2]) -> String {
-        let [from, to] = self.between.map(|[first, second]| {
-            format!("{one} = {}, {two} = {}", readable(first), readable(second))
-        });
+        let [from, to] = self
+            .between
+            .map(|[first, second]| format!("{one} = {}, {two} = {}", readable(first), readable(second)));
         format!(
             "the test for a {} changes its sign between {from} and {to}, but no such point was located there; \
              try: shorter steps (--finer 10)",
