@@ -60,6 +60,10 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
                         let mut here = solution_at(curve, &near, &unknown).unwrap_or(near);
                         let own = &mut here.point.monitor.frequency;
                         *own = own.and(frequencies.first().copied());
+                        // Where eigenvalues are on the axis their test function may be undefined; its limit is zero.
+                        if test_value(&here, kind).is_none() {
+                            here.point.monitor.tests.push((kind, 0.0));
+                        }
                         return Ok(Some(complete(curve, here, unknown, error, kind, true)?));
                     }
                 }

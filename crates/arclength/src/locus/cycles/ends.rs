@@ -4,7 +4,7 @@
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::run::CycleLocus;
 use crate::branch::{Label, SpecialKind};
-use crate::continuation::{Settings, Stop};
+use crate::continuation::{CorrectionFailure, Settings, Stop};
 use crate::cycle::Orbit;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::limit_cycle::LimitCycle;
@@ -62,10 +62,10 @@ impl CycleLocus<'_> {
         let first = solve(&mut branch.backward_stop, branch.points.first());
         let last = solve(&mut branch.forward_stop, branch.points.last());
         if first.is_none() {
-            label_resonance(&branch.backward_stop, branch.points.iter_mut());
+            label_resonance(&mut branch.backward_stop, branch.points.iter_mut());
         }
         if last.is_none() {
-            label_resonance(&branch.forward_stop, branch.points.iter_mut().rev());
+            label_resonance(&mut branch.forward_stop, branch.points.iter_mut().rev());
         }
         branch.extend(first, last);
     }
@@ -225,15 +225,21 @@ impl CycleLocus<'_> {
 }
 
 /// Labels the first of `points` where it is next to a resonance that no other curve leads to. The parameters depend on the square
-/// of the distance of the argument from that of the resonance: what is left of it gives the errors.
-fn label_resonance<'p>(stop: &Stop, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
+/// of the distance of the argument from that of the resonance: what is left of it gives the errors. A point that is not next to it
+/// is no reason to call the end a resonance.
+fn label_resonance<'p>(stop: &mut Stop, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
     let Stop::StrongResonance { order } = stop else { return };
     let (kind, resonance) =
         if *order == 1 { (SpecialKind::Resonance1, 0.0) } else { (SpecialKind::Resonance2, PI) };
     let (Some(end), Some(before)) = (points.next(), points.next()) else { return };
     let (Some(near), Some(far)) = (end.argument, before.argument) else { return };
     let (near, far) = ((near - resonance).powi(2), (far - resonance).powi(2));
-    if end.label.is_some() || near > NEXT_TO * NEXT_TO || far <= near {
+    if near > NEXT_TO * NEXT_TO || far <= near {
+        // The curve turned back behind this point, but where it did was not reached.
+        *stop = Stop::StepTooSmall { cause: CorrectionFailure::Diverged };
+        return;
+    }
+    if end.label.is_some() {
         return;
     }
     let error = |index: usize| ((end.values[index] - before.values[index]) * near / (far - near)).abs();
