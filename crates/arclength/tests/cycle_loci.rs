@@ -437,3 +437,172 @@ fn an_observer_ends_a_branch_and_what_there_is_stays() {
     assert!(matches!(branch.stops, (Some(Stop::Interrupted), Stop::Interrupted)), "{:?}", branch.stops);
     assert_eq!(branch.points.len(), 5);
 }
+
+/// The unit circle with the rotation speed one, and beside it states of their own with the right-hand sides `rest`.
+macro_rules! beside_a_circle {
+    ($name:ident, [$($state:literal),*], [$($parameter:literal),*], |$s:ident, $p:ident, $d:ident| $rest:block) => {
+        struct $name;
+
+        impl VectorField for $name {
+            fn state_names(&self) -> Vec<String> {
+                names!["u", "v", $($state),*]
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                names![$($parameter),*]
+            }
+            fn evaluate<T: Scalar>(&self, $s: &[T], $p: &[T], $d: &mut [T]) {
+                let growth = T::one() - $s[0] * $s[0] - $s[1] * $s[1];
+                $d[0] = growth * $s[0] - $s[1];
+                $d[1] = growth * $s[1] + $s[0];
+                $rest
+            }
+        }
+    };
+}
+
+// Folds at a = 3 z^2, c = -2 z^3 with a cusp at the origin; z is constant on the cycles.
+beside_a_circle!(RestingCusp, ["z"], ["a", "c"], |s, p, d| {
+    d[2] = p[0] * s[2] + p[1] - s[2] * s[2] * s[2];
+});
+
+#[test]
+fn a_cusp_of_cycles_on_which_a_state_rests() {
+    for (z, finer) in [(0.3_f64, 1.0), (0.3, 3.0), (-0.45, 1.0), (0.57, 1.0)] {
+        let parameters = [3.0 * z * z, -2.0 * z.powi(3)];
+        let orbit =
+            Orbit::from_time_history(&RestingCusp, &parameters, &[1.0, 0.0, z], 7.0).expect("a cycle");
+        let settings = arclength::continuation::Settings::default();
+        let folds = CycleLocus::of(&RestingCusp)
+            .from_cycle(SpecialKind::FoldOfCycles, &orbit, &parameters)
+            .along("c", -1.0..=1.0)
+            .and("a", -1.0..=2.0)
+            .settings(arclength::continuation::Settings {
+                largest_step: settings.largest_step / finer,
+                ..settings
+            })
+            .run()
+            .expect("exists");
+        assert_at(&folds, SpecialKind::CuspOfCycles, [0.0, 0.0], 1e-7);
+        assert_eq!(found(&folds).len(), 1, "{:?}", found(&folds));
+        // Steps in units of what the state does, not of what it would do at rest.
+        assert!(folds.points.len() < 120, "{} points", folds.points.len());
+    }
+}
+
+#[test]
+fn folds_of_doubled_cycles_end_at_the_generalised_period_doubling() {
+    // Doubled cycles with mu + c s - s^2 = 0, s = xi^2: folds at s = c / 2, mu = -c^2 / 4.
+    let parameters = [-0.25, -0.3, 1.0];
+    let orbit = Orbit::from_time_history(&DoublingBand, &parameters, &[1.0 + 0.5_f64.sqrt(), 0.0, 0.0], 13.0);
+    let folds = CycleLocus::of(&DoublingBand)
+        .from_cycle(SpecialKind::FoldOfCycles, &orbit.expect("a cycle"), &parameters)
+        .along("mu", -1.0..=1.0)
+        .and("c", -1.5..=1.5)
+        .run()
+        .expect("exists");
+    let ends = [(&folds.backward_stop, folds.points.first()), (&folds.forward_stop, folds.points.last())];
+    let (stop, end) = ends
+        .into_iter()
+        .find(|(stop, _)| matches!(stop, Stop::PeriodDoubling { .. }))
+        .unwrap_or_else(|| panic!("{} and {}", folds.backward_stop, folds.forward_stop));
+    let Stop::PeriodDoubling { parameter, period } = stop else { unreachable!() };
+    assert!(parameter.abs() < 1e-8, "{parameter}");
+    assert_relative_eq!(*period, 2.0 * std::f64::consts::PI, max_relative = 1e-8);
+    let end = end.expect("not empty");
+    assert_eq!(end.label.map(|label| label.kind), Some(SpecialKind::GeneralizedPeriodDoubling));
+    assert!(end.values.iter().all(|value| value.abs() < 1e-8), "{:?}", end.values);
+    assert_relative_eq!(end.period, 4.0 * std::f64::consts::PI, max_relative = 1e-8);
+    assert_eq!(found(&folds).len(), 1, "{:?}", found(&folds));
+    assert!(folds.points.iter().all(|point| (point.values[0] + 0.25 * point.values[1].powi(2)).abs() < 1e-8));
+}
+
+// Torus bifurcations at rho = 0 with the argument 2 pi w, that of a double multiplier -1 without a Jordan block at w = 1/2.
+beside_a_circle!(TurnedBeside, ["x", "y"], ["rho", "w"], |s, p, d| {
+    let square = s[2] * s[2] + s[3] * s[3];
+    d[2] = (p[0] - square) * s[2] - p[1] * s[3];
+    d[3] = (p[0] - square) * s[3] + p[1] * s[2];
+});
+
+#[test]
+fn tori_go_on_where_their_multipliers_pass_through_minus_one() {
+    let parameters = [0.0, 0.37];
+    let orbit = Orbit::from_time_history(&TurnedBeside, &parameters, &[1.0, 0.0, 0.0, 0.0], 7.0);
+    let tori = CycleLocus::of(&TurnedBeside)
+        .from_cycle(SpecialKind::Torus, &orbit.expect("a cycle"), &parameters)
+        .along("rho", -1.0..=1.0)
+        .and("w", 0.2..=0.9)
+        .run()
+        .expect("exists");
+    for stop in [&tori.backward_stop, &tori.forward_stop] {
+        assert!(matches!(stop, Stop::RangeEnd { .. }), "{stop}");
+    }
+    for point in &tori.points {
+        let exact = (2.0 * std::f64::consts::PI * point.values[1]).cos().acos();
+        assert!(point.values[0].abs() < 1e-8);
+        assert_relative_eq!(point.argument.expect("an argument"), exact, epsilon = 1e-6);
+    }
+    assert!(tori.points.iter().any(|point| point.values[1] > 0.89));
+}
+
+#[test]
+fn the_coefficient_of_folds_is_that_of_the_null_function_of_unit_size() {
+    // r' = r (a + b r^2 - r^4): half the second derivative at r^2 = b / 2 is -2 b r, with the radial unit vector.
+    for (b, intervals) in [(1.0_f64, 0), (0.8, 0), (1.0, 1)] {
+        let parameters = [-0.25 * b * b, b];
+        let start = [(0.5 * b).sqrt(), 0.0];
+        let period = 2.0 * std::f64::consts::PI / (2.0 + 0.5 * b);
+        let orbit = Orbit::from_time_history(&Bautin, &parameters, &start, 1.1 * period).expect("a cycle");
+        let resolution = arclength::cycle::Resolution::default();
+        let resolution = if intervals == 0 {
+            resolution
+        } else {
+            arclength::cycle::Resolution { tolerance: 0.01 * resolution.tolerance, ..resolution }
+        };
+        let folds = CycleLocus::of(&Bautin)
+            .from_cycle(SpecialKind::FoldOfCycles, &orbit, &parameters)
+            .along("a", -1.0..=1.0)
+            .and("b", 0.3..=1.5)
+            .resolution(resolution)
+            .run()
+            .expect("exists");
+        for point in &folds.points {
+            let exact = 2.0 * point.values[1] * (0.5 * point.values[1]).sqrt();
+            assert_relative_eq!(point.coefficient.expect("exists"), exact, max_relative = 1e-5);
+        }
+    }
+}
+
+// The circle with the plane (x, y) that turns half round: period doublings at a = 0 and at b = 0, which cross in a 1:2 resonance
+// that is regular on neither curve.
+beside_a_circle!(CrossingDoublings, ["x", "y"], ["a", "b"], |s, p, d| {
+    let (u, v, x, y, a, b) = (s[0], s[1], s[2], s[3], p[0], p[1]);
+    let square = x * x + y * y;
+    let growth = -square - square * square;
+    let (even, odd) = ((u + 1.0) * 0.5, (-u + 1.0) * 0.5);
+    let (half, e) = (v * 0.5, 0.5);
+    d[2] = (a * even - b * odd - half * e) * x + ((a + b) * half + even * e) * y - y * 0.5 + growth * x;
+    d[3] = ((a + b) * half - odd * e) * x + (a * odd - b * even + half * e) * y + x * 0.5 + growth * y;
+});
+
+#[test]
+fn a_test_function_that_changes_its_sign_without_a_point_is_named() {
+    let parameters = [0.0, 0.7];
+    let orbit = Orbit::from_time_history(&CrossingDoublings, &parameters, &[1.0, 0.0, 0.0, 0.0], 7.0);
+    let doublings = CycleLocus::of(&CrossingDoublings)
+        .from_cycle(SpecialKind::PeriodDoubling, &orbit.expect("a cycle"), &parameters)
+        .along("a", -1.0..=1.0)
+        .and("b", -1.0..=1.0)
+        .run()
+        .expect("exists");
+    // Wherever the sign of a test function changes from one point to the next, there is a labelled point or a note.
+    let resonance = |point: &arclength::locus::CycleLocusPoint| {
+        point.tests.iter().find(|(name, _)| name == "R2").map(|(_, value)| *value)
+    };
+    let changes = doublings.points.windows(2).filter(
+        |pair| matches!((resonance(&pair[0]), resonance(&pair[1])), (Some(a), Some(b)) if a * b < 0.0),
+    );
+    let named = doublings.unlocated.iter().filter(|change| change.kind == SpecialKind::Resonance2).count();
+    let located = found(&doublings).len();
+    assert!(changes.count() > 0);
+    assert!(named + located > 0, "{:?}", doublings.unlocated);
+}

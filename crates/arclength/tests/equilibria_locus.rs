@@ -592,3 +592,38 @@ fn curves_of_branch_points_have_their_points_of_codimension_two() {
         assert!(near, "{kind:?} among {found:?}");
     }
 }
+
+field!(ShiftedFrequencies, ["x", "y", "u", "v", "z"], ["p", "q"], |x, p, d| {
+    let growths = [p[0] + p[1] * p[1] * 0.3, p[1] + p[0] * 0.5];
+    let frequencies = [p[0] * 0.4 + p[1] * 0.7 + 1.0, p[0] * 0.9 - p[1] * 0.2 + 3.0];
+    d[0] = growths[0] * x[0] - frequencies[0] * x[1];
+    d[1] = frequencies[0] * x[0] + growths[0] * x[1];
+    d[2] = growths[1] * x[2] - frequencies[1] * x[3];
+    d[3] = frequencies[1] * x[2] + growths[1] * x[3];
+    d[4] = (p[1] - 0.15) * (p[0] * 0.1 + 1.0) * x[4];
+});
+
+#[test]
+fn what_is_reported_at_a_point_of_codimension_two_is_its_own() {
+    let branch =
+        Equilibria::of(&ShiftedFrequencies).parameters(&[-1.0, 0.3]).along("p", -1.0..=1.0).run().unwrap();
+    let mut seen = 0;
+    for hopf in branch.hopf_points() {
+        let locus = EquilibriumLocus::of(&ShiftedFrequencies).from_hopf(hopf);
+        let locus = locus.along("p", -1.0..=1.0).and("q", -0.4..=0.4).run().unwrap();
+        for point in locus.points.iter().filter(|point| point.special.is_some()) {
+            let [p, q] = point.values;
+            let kind = point.special.as_ref().map(|special| special.kind);
+            let own = |exact: f64| (point.frequency.unwrap() - exact).abs() < 1e-11;
+            let [one, other] = [p * 0.4 + q * 0.7 + 1.0, p * 0.9 - q * 0.2 + 3.0];
+            assert!(own(one) || own(other), "{:?} {one} {other}", point.frequency);
+            // The zero-Hopf point is a branch point too, so that the curve has no regular solution there.
+            if kind == Some(SpecialKind::HopfHopf) {
+                let own = point.tests.iter().find(|(test, _)| test == "HH");
+                assert!(own.is_some_and(|(_, value)| value.abs() < 1e-11), "{:?}", point.tests);
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen >= 3, "{seen}");
+}

@@ -64,13 +64,26 @@ impl<'a> CriticalCycle<'a> {
         values
     }
 
-    /// Fold: `b` of `d tau/dt = 1 + kappa xi`, `d xi/dt = b xi^2` for the null function `v' = T f_x v + beta f` of unit size
-    /// (`kappa = -beta / T`), and `b / kappa`, its value when `v` is scaled to `kappa = 1`; the latter is what MatCont prints.
+    /// The null function of a fold with the integral of `<v, f>` over the cycle zero, and the square root of that of `<v, v>`
+    /// over the unit interval: a property of the cycle, whatever mesh, scales and reference of the phase were.
+    fn across_the_flow(&self, null: &NodeFunction) -> (NodeFunction, f64) {
+        let Linearization { nodes, flow, .. } = &self.linearization;
+        let share = nodes.product(null, flow) / nodes.product(flow, flow);
+        let across: NodeFunction = null.iter().zip(flow).map(|(value, flow)| value - share * flow).collect();
+        let size = nodes.product(&across, &across).sqrt();
+        (across, size)
+    }
+
+    /// Fold: `b` of `d tau/dt = 1 + kappa xi`, `d xi/dt = b xi^2` for the null function `v' = T f_x v + beta f` with the
+    /// integral of `<v, v>` over the unit interval equal to one and that of `<v, f>` zero (`kappa = -beta / T`), and
+    /// `b / kappa`, its value when `v` is scaled to `kappa = 1`; the latter is what MatCont prints. The sign of `b` is that of
+    /// the function.
     pub fn fold(&self, (functions, own): &Eigenfunctions) -> Option<(f64, Option<f64>)> {
         let linear = &self.linearization;
         let (null, beta) = (functions.first()?, *own.first()?);
-        // The normalisation of the defining system counts beta; here the function itself has unit size.
-        let size = linear.nodes.product(null, &linear.dual(null)).sqrt();
+        let scaled_size = linear.nodes.product(null, &linear.dual(null)).sqrt();
+        let shifts = beta.abs() > SMALLEST_SHIFT * scaled_size * scaled_size;
+        let (null, size) = self.across_the_flow(null);
         let null: NodeFunction = null.iter().map(|value| value / size).collect();
         let beta = beta / size;
         let kappa = -beta / self.period;
@@ -86,7 +99,7 @@ impl<'a> CriticalCycle<'a> {
             LinearProblem::new(linear.nodes, signs, &linear.matrices, &columns, &[&rows[0], &rows[1]])?;
         let (_, scalars) = problem.solve(&source, &[0.0, 0.0])?;
         let coefficient = -scalars[1] / (2.0 * self.period);
-        let scaled = (kappa.abs() > SMALLEST_SHIFT * size / self.period).then(|| coefficient / kappa);
+        let scaled = shifts.then(|| coefficient / kappa);
         Some((coefficient, scaled))
     }
 
@@ -94,20 +107,25 @@ impl<'a> CriticalCycle<'a> {
     /// `sizes`; coefficients are counted against it.
     pub fn natural_coefficient(&self, kind: Kind, (functions, _): &Eigenfunctions, sizes: &[f64]) -> f64 {
         let linear = &self.linearization;
-        let square = |dual: &dyn Fn(&NodeFunction) -> NodeFunction| -> f64 {
-            functions.iter().map(|function| linear.nodes.product(function, &dual(function))).sum()
-        };
-        let sized = square(&|function| {
-            function
+        let sized = |function: &NodeFunction| {
+            let dual: NodeFunction = function
                 .iter()
                 .enumerate()
                 .map(|(index, value)| value / sizes[index % sizes.len()].powi(2))
-                .collect()
-        });
-        match kind {
-            // The coefficient is quadratic, for a null function of unit size in the scales.
-            Kind::Fold => (sized / square(&|function| linear.dual(function))).sqrt() / self.period,
-            _ => sized / square(&NodeFunction::clone) / self.period,
+                .collect();
+            linear.nodes.product(function, &dual)
+        };
+        match (kind, &functions[..]) {
+            // The coefficient is quadratic.
+            (Kind::Fold, [null]) => {
+                let (across, size) = self.across_the_flow(null);
+                sized(&across).sqrt() / size / self.period
+            }
+            _ => {
+                let square: f64 =
+                    functions.iter().map(|function| linear.nodes.product(function, function)).sum();
+                functions.iter().map(sized).sum::<f64>() / square / self.period
+            }
         }
     }
 

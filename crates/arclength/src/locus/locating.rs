@@ -9,7 +9,7 @@ use super::kind::LocusKind;
 use super::normal_form;
 use crate::algebraic::{AlgebraicProblem, ScaledLu, Solved, length, solve_square};
 use crate::branch::SpecialKind;
-use crate::continuation::{Solution, locate};
+use crate::continuation::{Solution, correct, finish, locate};
 use crate::equilibrium::defining::{FoldSystem, HopfSystem};
 use crate::equilibrium::spectrum::{critical_pair, without};
 use crate::error::Error;
@@ -57,7 +57,14 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
                     }
                     let spectrum = curve.spectrum(&unknown)?;
                     if frequencies.iter().all(|&frequency| spectrum.has_pair(frequency, true)) {
-                        return Ok(Some(complete(curve, near, unknown, error, kind, true)?));
+                        let mut here = solution_at(curve, &near, &unknown).unwrap_or(near);
+                        let own = &mut here.point.monitor.frequency;
+                        *own = own.and(frequencies.first().copied());
+                        // Where eigenvalues are on the axis their test function may be undefined; its limit is zero.
+                        if test_value(&here, kind).is_none() {
+                            here.point.monitor.tests.push((kind, 0.0));
+                        }
+                        return Ok(Some(complete(curve, here, unknown, error, kind, true)?));
                     }
                 }
                 Newton::OtherKind => return Ok(None),
@@ -108,6 +115,25 @@ fn near_zero<'a, K: LocusKind<'a>>(
     }
 }
 
+/// The solution of the curve at the equilibrium and the parameters in `unknown`, so that eigenvectors, frequency and test
+/// functions are those of the located point and not of its neighbour `near`.
+fn solution_at<'a, K: LocusKind<'a>>(
+    curve: &mut LocusCurve<'a, K>,
+    near: &Node,
+    unknown: &[f64],
+) -> Option<Node> {
+    let (n, end) = (curve.states.len(), unknown.len() - 2);
+    // Of states and parameters the one that the curve moves most tells its points apart, also where both parameters turn.
+    let speed = |place: usize| (near.tangent[place] / curve.system.scales[place]).abs();
+    let place = (0..n).chain([end, end + 1]).max_by(|&one, &other| speed(one).total_cmp(&speed(other)))?;
+    let mut border = vec![0.0; unknown.len()];
+    border[place] = 1.0;
+    let mut corrected = unknown.to_vec();
+    let settings = curve.settings;
+    correct(curve, &mut corrected, &border, &settings).ok()?;
+    finish(curve, corrected, &near.tangent).ok()
+}
+
 /// The located point as a solution of the curve.
 fn complete<'a, K: LocusKind<'a>>(
     curve: &mut LocusCurve<'a, K>,
@@ -117,8 +143,9 @@ fn complete<'a, K: LocusKind<'a>>(
     kind: SpecialKind,
     regular: bool,
 ) -> Result<Node, Error> {
-    let spectrum = curve.spectrum(&unknown)?;
     let n = curve.states.len();
+    let end = unknown.len() - 2;
+    let spectrum = curve.spectrum(&unknown)?;
     let values = [unknown[unknown.len() - 2], unknown[unknown.len() - 1]];
     let problem = curve.system.problem.equilibria();
     let parameters = problem.parameters_at(&values);
@@ -137,7 +164,9 @@ fn complete<'a, K: LocusKind<'a>>(
         coefficients,
         regular,
     };
-    let mut node = Solution { unknown, ..near };
+    let mut node = near;
+    node.unknown[..n].copy_from_slice(&unknown[..n]);
+    node.unknown[end..].copy_from_slice(&unknown[end..]);
     node.point.spectrum = spectrum;
     // Those of the neighbour do not hold here.
     if kind == SpecialKind::BogdanovTakens {

@@ -21,5 +21,5 @@ mod run;
 
 pub use branch::{EquilibriumLocusBranch, LocusPoint};
 pub use codimension_two::CodimensionTwoPoint;
-pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusPoint};
+pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusPoint, UnlocatedChange};
 pub use run::{EquilibriumLocus, LocusObserver};

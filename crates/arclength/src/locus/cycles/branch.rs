@@ -27,8 +27,10 @@ pub struct CycleLocusPoint {
     pub error_estimate: f64,
     /// Argument of the multipliers of a torus bifurcation.
     pub argument: Option<f64>,
-    /// Coefficient of the normal form: of a fold the quadratic one for the null function of unit size, of a period doubling
-    /// the cubic one, of a torus bifurcation the real part of the cubic one.
+    /// Coefficient of the normal form, with the integral of the eigenfunction's square over the unit interval equal to one: of
+    /// a fold the quadratic one, with the null function orthogonal to the flow in the mean and its sign such that the
+    /// coefficient is positive where the curve starts; of a period doubling the cubic one; of a torus bifurcation the real part
+    /// of the cubic one. `None` where it does not exist: at resonances where it has a pole.
     pub coefficient: Option<f64>,
     /// Label of a point of codimension two or of a value asked for.
     pub label: Option<Label>,
@@ -40,6 +42,15 @@ pub struct CycleLocusPoint {
     pub orbit: Orbit,
 }
 
+/// A change of sign of a test function behind which no point of codimension two could be located.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UnlocatedChange {
+    /// What lies where the test function vanishes.
+    pub kind: SpecialKind,
+    /// Values of the two parameters between which it changed.
+    pub between: [[f64; 2]; 2],
+}
+
 /// A curve of special cycles in two parameters.
 #[derive(Debug)]
 pub struct CycleLocusBranch {
@@ -49,6 +60,8 @@ pub struct CycleLocusBranch {
     pub active: [usize; 2],
     /// The points in the order of the curve.
     pub points: Vec<CycleLocusPoint>,
+    /// What was detected but not located.
+    pub unlocated: Vec<UnlocatedChange>,
     /// Why the curve ends at its first point.
     pub backward_stop: Stop,
     /// Why the curve ends at its last point.
@@ -61,6 +74,7 @@ impl CycleLocusBranch {
         active: [usize; 2],
         degree: usize,
         [mut backward, forward]: [Followed<Inspection>; 2],
+        unlocated: Vec<UnlocatedChange>,
     ) -> Self {
         if !backward.solutions.is_empty() {
             backward.solutions.remove(0);
@@ -79,7 +93,7 @@ impl CycleLocusBranch {
                 CycleLocusPoint::new(solution, degree, label)
             })
             .collect();
-        Self { kind, active, points, backward_stop: backward.stop, forward_stop: forward.stop }
+        Self { kind, active, points, unlocated, backward_stop: backward.stop, forward_stop: forward.stop }
     }
 
     /// Adds the points in which the curve ends.

@@ -1,8 +1,12 @@
 //! A curve of special cycles as continuation sees it.
 
+use super::branch::UnlocatedChange;
 use super::monitor;
+use crate::algebraic::between;
 use crate::branch::SpecialKind;
-use crate::continuation::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, locate};
+use crate::continuation::{
+    Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, along, locate,
+};
 use crate::cycle::Resolution;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
@@ -14,11 +18,11 @@ use crate::cycle::locating::{DefiningCurve, component_scales, split};
 use crate::cycle::mesh::{error_profile, fit_mesh};
 use crate::cycle::normal_form::CriticalCycle;
 use crate::cycle::problem::PeriodicProblem;
-use crate::cycle::sizes::StateSizes;
+use crate::cycle::sizes::{StateSizes, vanishing_point};
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Sizes of eigenfunctions in the metric, so that they count less than states and parameters.
 const EIGENFUNCTION_WEIGHT: f64 = 10.0;
@@ -29,13 +33,33 @@ const LOCATION: f64 = 1e-12;
 /// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
 const POLE: f64 = 1e-3;
 
-/// A point at which a test function vanishes, with error estimates of the two parameters.
-type Zero = (Solution<Inspection>, [f64; 2]);
+/// A state counts as one that rests if its amplitude where the curve starts is below this part of the size that the
+/// nonlinearity of the field gives it.
+const RESTING: f64 = 1e-4;
+/// At a cusp both parameters turn: their speed there is at most this part of that at the ends of the bracket.
+const TURN: f64 = 1e-2;
+/// A coefficient this many times what it is at the ends of a bracket has a pole between them.
+const POLE_GROWTH: f64 = 30.0;
+/// Part by which the distance from a resonance shrinks with every trial on the way to it, and the trials.
+const APPROACH: f64 = 0.1;
+const APPROACHES: usize = 4;
+
+/// What a change of sign of a test function turned out to be.
+enum Zero {
+    /// A point at which it vanishes, with error estimates of the two parameters.
+    At(Box<Solution<Inspection>>, [f64; 2]),
+    /// A coefficient goes through infinity.
+    Pole,
+    /// No point was located.
+    Missed,
+}
 
 /// A test function made of multipliers, which is at most one, is zero below this where the curve starts at a special point.
 const ZERO: f64 = 1e-10;
 /// Distance of the angle from that of a resonance within which it counts as there.
 const AT_RESONANCE: f64 = 1e-6;
+/// Samples for the difference of the halves of a doubled cycle.
+const HALF_SAMPLES: usize = 64;
 
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
@@ -66,6 +90,14 @@ pub(super) struct CycleLocusCurve<'a> {
     second: usize,
     sizes: StateSizes,
     error_estimate: f64,
+    /// Smallest scales of the states: their natural sizes where they rest, otherwise zero.
+    least: Vec<f64>,
+    /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
+    sign: Option<f64>,
+    /// Sign changes of test functions behind which nothing was located.
+    pub unlocated: Vec<UnlocatedChange>,
+    /// Solutions next to the resonance in which the curve ends, behind its last step.
+    pub last: Vec<Solution<Inspection>>,
     schur: Option<(usize, PeriodicSchur)>,
 }
 
@@ -75,8 +107,8 @@ impl<'a> CycleLocusCurve<'a> {
         base: Collocation<LimitCycle<'a>>,
         sizes: StateSizes,
         second: usize,
-        resolution: Resolution,
-        settings: Settings,
+        (resolution, settings): (Resolution, Settings),
+        least: Vec<f64>,
     ) -> Self {
         let states = system.collocation.problem.scales.len();
         let kind = system.collocation.problem.kind;
@@ -90,6 +122,10 @@ impl<'a> CycleLocusCurve<'a> {
             second,
             sizes,
             error_estimate: f64::INFINITY,
+            least,
+            sign: None,
+            unlocated: Vec::new(),
+            last: Vec::new(),
             schur: None,
         }
     }
@@ -102,10 +138,12 @@ impl<'a> CycleLocusCurve<'a> {
     fn rescale(&mut self, cycle: &[f64]) -> bool {
         let mut changed = false;
         let sizes = self.sizes.measure(&cycle[..cycle.len() - 3]);
-        for (old, size) in self.system.collocation.problem.scales.iter_mut().zip(sizes) {
-            let ratio = size.scale / *old;
-            if size.scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
-                *old = size.scale;
+        let scales = self.system.collocation.problem.scales.iter_mut();
+        for ((old, size), least) in scales.zip(sizes).zip(&self.least) {
+            let scale = size.scale.max(*least);
+            let ratio = scale / *old;
+            if scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
+                *old = scale;
                 changed = true;
             }
         }
@@ -153,30 +191,155 @@ impl<'a> CycleLocusCurve<'a> {
         before: &Solution<Inspection>,
         after: &Solution<Inspection>,
         kind: SpecialKind,
-    ) -> Result<Option<Zero>, Error> {
-        let test = |solution: &Solution<Inspection>| test_value(solution, kind);
-        let zero = if monitor::is_coefficient(kind) { 0.0 } else { ZERO };
+    ) -> Result<Zero, Error> {
+        let coefficient = monitor::is_coefficient(kind);
+        let zero = if coefficient { ZERO * after.point.natural_coefficient } else { ZERO };
         let settings = self.settings;
-        let found = match locate(self, before, after, &settings, LOCATION, |_, solution| test(solution)) {
+        let mut largest = 0.0_f64;
+        let test = |_: &mut Self, solution: &Solution<Inspection>| {
+            let value = test_value(solution, kind);
+            largest = value.map_or(largest, |value| largest.max(value.abs()));
+            value
+        };
+        let found = match locate(self, before, after, &settings, LOCATION, test) {
             Ok(Some(found)) => found,
-            Ok(None) | Err(Error::NotFound { .. }) => return Ok(None),
+            Ok(None) | Err(Error::NotFound { .. }) => return Ok(Zero::Missed),
             Err(error) => return Err(error),
         };
-        let value = |solution: &Solution<Inspection>| test(solution).map_or(f64::INFINITY, f64::abs);
+        let value =
+            |solution: &Solution<Inspection>| test_value(solution, kind).map_or(f64::INFINITY, f64::abs);
         let (ends, nearer) = (value(before).max(value(after)), value(before).min(value(after)));
         let smallest = value(&found);
         if smallest > POLE * nearer && smallest > zero {
-            return Ok(None);
+            return Ok(if coefficient && largest > POLE_GROWTH * ends { Zero::Pole } else { Zero::Missed });
+        }
+        if kind == SpecialKind::CuspOfCycles {
+            let speed = |solution: &Solution<Inspection>| {
+                let [one, other] = self.parameter_speeds(solution);
+                one.hypot(other)
+            };
+            if speed(&found) > TURN * speed(before).max(speed(after)) {
+                return Ok(Zero::Missed);
+            }
         }
         // The parameters are known as well as the test function: its slope along the bracket gives the error.
+        let noise = if coefficient {
+            found.point.error_estimate * found.point.natural_coefficient
+        } else {
+            found.point.floquet.trivial_error
+        };
         let end = found.unknown.len();
-        let part = LOCATION.max(smallest / ends.max(f64::MIN_POSITIVE));
+        let part = LOCATION.max(smallest.max(noise) / ends.max(f64::MIN_POSITIVE)).min(1.0);
         let error = [2, 1].map(|place| {
             let change = (after.unknown[end - place] - before.unknown[end - place]).abs();
             (part * change).max(f64::EPSILON * found.unknown[end - place].abs())
         });
-        Ok(Some((found, error)))
+        Ok(Zero::At(Box::new(found), error))
     }
+
+    /// Speeds of the two parameters over their ranges.
+    fn parameter_speeds(&self, solution: &Solution<Inspection>) -> [f64; 2] {
+        let last = solution.tangent.len() - 2;
+        [0, 1].map(|index| solution.tangent[last + index] / self.system.parameter_scales[index])
+    }
+
+    /// Whether the curve turns back between two solutions.
+    fn turns_back(&self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> bool {
+        let [one, other] = [before, after].map(|solution| self.parameter_speeds(solution));
+        one[0] * other[0] + one[1] * other[1] < 0.0
+    }
+
+    /// The angle of a torus bifurcation as the curve counts it: past 0 and pi it goes on.
+    fn angle(&self, solution: &Solution<Inspection>) -> Option<f64> {
+        let end = solution.unknown.len() - self.system.collocation.problem.scalars();
+        (self.kind() == Kind::Torus).then(|| solution.unknown[end + 1])
+    }
+
+    /// Collects what lies between the last solution and a resonance, with a solution close to it.
+    fn approach(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>, resonance: f64) {
+        let settings = self.settings;
+        let mut nearest: Option<Solution<Inspection>> = None;
+        for _ in 0..APPROACHES {
+            let start = nearest.as_ref().unwrap_or(before);
+            let (Some(from), Some(to)) = (self.angle(start), self.angle(after)) else { return };
+            let distance = along(self, start, &after.unknown);
+            let fraction = (1.0 - APPROACH) * (resonance - from) / (to - from);
+            let start = start.clone();
+            let Ok(trial) = between(self, &start, after, distance, fraction, &settings) else { break };
+            let Some(angle) = self.angle(&trial) else { return };
+            // Behind the resonance the curve comes back on itself; at it others cross.
+            let part = (angle - resonance) / (from - resonance);
+            if part <= 0.0 || part >= 1.0 || (angle - resonance).abs() < AT_RESONANCE {
+                break;
+            }
+            nearest = Some(trial);
+        }
+        if let Some(nearest) = nearest {
+            self.last = self.special_points(before, &nearest).unwrap_or_default();
+            self.last.push(nearest);
+        }
+    }
+
+    /// Parameter value at which the two halves of doubled cycles become equal between two solutions; behind it a curve goes on
+    /// to the same cycles, the halves exchanged.
+    fn halves_become_equal(
+        &self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<f64> {
+        let n = self.states;
+        let half_difference = |solution: &Solution<Inspection>| -> (Vec<f64>, f64) {
+            let (mut cycle, _) = split(&solution.unknown, n, self.kind());
+            let parameter = cycle[cycle.len() - 2];
+            cycle.pop();
+            let (mut one, mut other) = (vec![0.0; n], vec![0.0; n]);
+            let mut differences = Vec::with_capacity(n * HALF_SAMPLES);
+            for sample in 0..HALF_SAMPLES {
+                let time = 0.5 * sample as f64 / HALF_SAMPLES as f64;
+                self.base.evaluate(&cycle, time, &mut one);
+                self.base.evaluate(&cycle, time + 0.5, &mut other);
+                let scaled = one.iter().zip(&other).zip(&self.base.problem.scales);
+                differences.extend(scaled.map(|((a, b), scale)| (a - b) / scale));
+            }
+            (differences, parameter)
+        };
+        let ((one, a), (other, b)) = (half_difference(before), half_difference(after));
+        let product =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / HALF_SAMPLES as f64;
+        let (first, second) = (product(&one, &one), product(&other, &other));
+        let rounding = self.resolution.tolerance.powi(2);
+        let exchanged = product(&one, &other) < 0.0 && first > rounding && second > rounding;
+        exchanged.then(|| vanishing_point((a, first), (b, second)))
+    }
+
+    /// Notes that a test function changed its sign and no point was located.
+    fn missed(&mut self, kind: SpecialKind, before: &Solution<Inspection>, after: &Solution<Inspection>) {
+        let [from, to] = [before, after].map(|solution| {
+            let last = solution.unknown.len() - 2;
+            [solution.unknown[last], solution.unknown[last + 1]]
+        });
+        // Rounding may change a sign in step after step.
+        match self.unlocated.iter_mut().rev().find(|change| change.kind == kind) {
+            Some(last) if last.between[1] == from => last.between[1] = to,
+            _ => self.unlocated.push(UnlocatedChange { kind, between: [from, to] }),
+        }
+    }
+}
+
+/// The sizes that the nonlinearity of the field gives to those states of a cycle, given on its nodes, that rest; zero for the
+/// others.
+pub(super) fn sizes_of_resting(sizes: &StateSizes, states: &[f64]) -> Vec<f64> {
+    let natural: Vec<f64> = sizes.natural().collect();
+    let amplitude = |component: usize| {
+        let values = states.iter().skip(component).step_by(natural.len());
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+        0.5 * (high - low)
+    };
+    let size = |(component, natural): (usize, &f64)| {
+        if amplitude(component) < RESTING * natural { *natural } else { 0.0 }
+    };
+    natural.iter().enumerate().map(size).collect()
 }
 
 fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
@@ -234,8 +397,13 @@ impl Curve for CycleLocusCurve<'_> {
         let mut residual = vec![0.0; base.len()];
         self.base.factorize(base, &border, &mut residual);
         let floquet = floquet(&self.base, base, &self.base.problem.scales, &mut self.schur)?;
-        let (coefficient, natural_coefficient) = self.coefficient(&cycle, &eigenfunctions);
-        let angle = eigenfunctions.1.first().copied().unwrap_or(0.0);
+        let (mut coefficient, natural_coefficient) = self.coefficient(&cycle, &eigenfunctions);
+        if let (Kind::Fold, Some(value)) = (kind, &mut coefficient) {
+            *value *= *self.sign.get_or_insert(value.signum());
+        }
+        // Where the multipliers have met and gone on, the angle of the other one is below pi.
+        let angle = eigenfunctions.1.first().map_or(0.0, |angle| angle.rem_euclid(TAU));
+        let angle = angle.min(TAU - angle);
         let multipliers: Vec<Complex64> =
             floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
         Ok(Inspection {
@@ -266,12 +434,22 @@ impl Curve for CycleLocusCurve<'_> {
             if monitor::is_coefficient(kind) && value.abs().max(other.abs()) < noise {
                 continue;
             }
-            let Some((mut solution, error)) = self.zero(before, after, kind)? else {
-                continue;
+            let (mut solution, error) = match self.zero(before, after, kind)? {
+                Zero::At(solution, error) => (*solution, error),
+                Zero::Pole => continue,
+                Zero::Missed => {
+                    self.missed(kind, before, after);
+                    continue;
+                }
             };
             let multipliers: Vec<Complex64> =
                 solution.point.floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
             if monitor::is_genuine(kind, self.kind(), &multipliers) {
+                // At a point where the coefficient has a pole, rounding is all that is left of it.
+                let size = |solution: &Solution<Inspection>| solution.point.coefficient.map(f64::abs);
+                let ends = size(before).into_iter().chain(size(after)).fold(0.0, f64::max);
+                solution.point.coefficient =
+                    solution.point.coefficient.filter(|value| value.abs() <= POLE_GROWTH * ends);
                 solution.point.special = Some((kind, error));
                 found.push(solution);
             }
@@ -309,14 +487,25 @@ impl Curve for CycleLocusCurve<'_> {
             let frequency = 2.0 * PI / period;
             return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
         }
-        let angle = |solution: &Solution<Inspection>| solution.point.argument;
-        let (from, to) = (angle(before)?, angle(after)?);
+        if let Some(parameter) = self.halves_become_equal(before, after) {
+            return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));
+        }
+        let (from, to) = (self.angle(before)?, self.angle(after)?);
         // Folds with the angle 0 and period doublings with the angle pi solve the defining system as well and cross its curve
         // at the resonances, where the continuation may turn onto theirs.
-        for (resonance, order) in [(0.0, 1), (PI, 2)] {
-            if (from - resonance) * (to - resonance) < 0.0 || (to - resonance).abs() < AT_RESONANCE {
-                return Some(Ending::Between(Stop::StrongResonance { order }));
-            }
+        let nearest = (to / PI).round();
+        let order = |multiple: f64| if multiple.rem_euclid(2.0) == 0.0 { 1 } else { 2 };
+        if (to - nearest * PI).abs() < AT_RESONANCE {
+            self.approach(before, after, nearest * PI);
+            return Some(Ending::Between(Stop::StrongResonance { order: order(nearest) }));
+        }
+        let multiple = (from.max(to) / PI).floor();
+        let crosses = from.min(to) < multiple * PI;
+        // Cycles that a symmetry maps onto themselves half a period later have the squares of other multipliers: theirs go
+        // through -1 together, and the curve goes on. At a resonance it comes back on itself.
+        if crosses && self.turns_back(before, after) {
+            self.approach(before, after, multiple * PI);
+            return Some(Ending::Between(Stop::StrongResonance { order: order(multiple) }));
         }
         None
     }

@@ -1,11 +1,13 @@
 //! The points in which curves of special cycles end: curves of torus bifurcations in strong resonances, curves of folds in
-//! generalised Hopf points. The continuation cannot reach them; other curves on which they are regular points pass them.
+//! generalised Hopf points and, of doubled cycles, in generalised period doublings. The continuation cannot reach them; other curves on which they are regular points pass them.
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::run::CycleLocus;
 use crate::branch::{Label, SpecialKind};
-use crate::continuation::{Settings, Stop};
+use crate::continuation::{CorrectionFailure, Settings, Stop};
 use crate::cycle::Orbit;
+use crate::cycle::collocation::Collocation;
+use crate::cycle::limit_cycle::LimitCycle;
 use crate::equilibrium::locating::hopf_point_near;
 use crate::locus::EquilibriumLocus;
 use num_complex::Complex64;
@@ -17,6 +19,8 @@ const STEPS: usize = 20;
 const NEAR: f64 = 0.2;
 /// Part of the largest amplitudes on the curve below which cycles may be about to vanish.
 const VANISHING: f64 = 0.3;
+/// Distance of the argument from that of a resonance within which the last point counts as the resonance.
+const NEXT_TO: f64 = 1e-2;
 
 impl CycleLocus<'_> {
     /// Adds the ends of the curve that other curves lead to. `parameters` are those of the start.
@@ -47,11 +51,22 @@ impl CycleLocus<'_> {
                         Stop::GeneralizedHopfPoint { values: found.values, frequency: TAU / found.period };
                     Some(found)
                 }
+                Stop::PeriodDoubling { parameter, period } if branch.kind == SpecialKind::FoldOfCycles => {
+                    let found = self.generalized_period_doubling(last, parameters, ranges)?;
+                    (*parameter, *period) = (found.values[0], 0.5 * found.period);
+                    Some(found)
+                }
                 _ => None,
             }
         };
         let first = solve(&mut branch.backward_stop, branch.points.first());
         let last = solve(&mut branch.forward_stop, branch.points.last());
+        if first.is_none() {
+            label_resonance(&mut branch.backward_stop, branch.points.iter_mut());
+        }
+        if last.is_none() {
+            label_resonance(&mut branch.forward_stop, branch.points.iter_mut().rev());
+        }
         branch.extend(first, last);
     }
 
@@ -69,23 +84,83 @@ impl CycleLocus<'_> {
         } else {
             (SpecialKind::PeriodDoubling, SpecialKind::Resonance2, PI)
         };
+        let nearest = self.nearest_on(kind, last.orbit.clone(), parameters, sought, (last.values, ranges))?;
+        Some(CycleLocusPoint { argument: Some(argument), coefficient: None, ..nearest })
+    }
+
+    /// The point of kind `sought` nearest to the values `from`, on the curve of special cycles `kind` through one near `orbit`.
+    fn nearest_on(
+        &self,
+        kind: SpecialKind,
+        orbit: Orbit,
+        parameters: Vec<f64>,
+        sought: SpecialKind,
+        (from, ranges): ([f64; 2], [f64; 2]),
+    ) -> Option<CycleLocusPoint> {
+        let period = orbit.period;
         let curve = CycleLocus {
             field: self.field,
-            start: Some((kind, last.orbit.clone(), parameters)),
+            start: Some((kind, orbit, parameters)),
             along: self.along.clone(),
             at: Vec::new(),
             resolution: self.resolution,
             settings: Settings { most_steps: STEPS, ..self.settings },
         };
-        let found = curve.run().ok()?;
-        let distance = |point: &CycleLocusPoint| distance(point.values, last.values, ranges);
+        let distance = |point: &CycleLocusPoint| distance(point.values, from, ranges);
+        let found = curve.run().ok()?.points.into_iter();
         let nearest = found
-            .points
-            .into_iter()
             .filter(|point| point.label.is_some_and(|label| label.kind == sought))
             .min_by(|one, other| distance(one).total_cmp(&distance(other)))?;
-        let near = distance(&nearest) < NEAR && (nearest.period / last.period).ln().abs() < NEAR;
-        near.then_some(CycleLocusPoint { argument: Some(argument), coefficient: None, ..nearest })
+        (distance(&nearest) < NEAR && (nearest.period / period).ln().abs() < NEAR).then_some(nearest)
+    }
+
+    /// The generalised period doubling in which a curve of folds of doubled cycles ends behind its point `last`, located on the
+    /// curve of period doublings of the single cycle; as a doubled cycle.
+    fn generalized_period_doubling(
+        &self,
+        last: &CycleLocusPoint,
+        parameters: Vec<f64>,
+        ranges: [f64; 2],
+    ) -> Option<CycleLocusPoint> {
+        let single = self.mean_of_halves(&last.orbit, &parameters);
+        let kinds = (SpecialKind::PeriodDoubling, SpecialKind::GeneralizedPeriodDoubling);
+        let nearest = self.nearest_on(kinds.0, single, parameters, kinds.1, (last.values, ranges))?;
+        let once = &nearest.orbit;
+        let half = |offset: f64| once.mesh.iter().map(move |time| 0.5 * (time + offset));
+        let orbit = Orbit {
+            mesh: half(0.0).chain(half(1.0).skip(1)).collect(),
+            states: once.states.repeat(2),
+            period: 2.0 * once.period,
+            ..*once
+        };
+        Some(CycleLocusPoint {
+            period: 2.0 * nearest.period,
+            multipliers: nearest.multipliers.iter().map(|value| value * value).collect(),
+            coefficient: None,
+            tests: Vec::new(),
+            orbit,
+            ..nearest
+        })
+    }
+
+    /// The single cycle next to a doubled one: the mean of its halves, on the same number of intervals.
+    fn mean_of_halves(&self, orbit: &Orbit, parameters: &[f64]) -> Orbit {
+        let problem = LimitCycle {
+            field: self.field,
+            parameters: parameters.to_vec(),
+            active: 0,
+            scales: vec![1.0; orbit.dimension],
+        };
+        let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
+        let mut states = Vec::with_capacity(orbit.states.len());
+        for pair in orbit.mesh.windows(2) {
+            let points = std::iter::once(0.0).chain(collocation.gauss().points.iter().copied());
+            for time in points.map(|point| 0.5 * (pair[0] + point * (pair[1] - pair[0]))) {
+                let [one, other] = [time, time + 0.5].map(|time| orbit.state_at(time * orbit.period));
+                states.extend(one.iter().zip(&other).map(|(a, b)| 0.5 * (a + b)));
+            }
+        }
+        Orbit { mesh: orbit.mesh.clone(), states, period: 0.5 * orbit.period, ..*orbit }
     }
 
     /// The generalised Hopf point in which a curve of folds ends behind its point `last`, located on the curve of Hopf points.
@@ -147,6 +222,29 @@ impl CycleLocus<'_> {
             },
         })
     }
+}
+
+/// Labels the first of `points` where it is next to a resonance that no other curve leads to. The parameters depend on the square
+/// of the distance of the argument from that of the resonance: what is left of it gives the errors. A point that is not next to it
+/// is no reason to call the end a resonance.
+fn label_resonance<'p>(stop: &mut Stop, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
+    let Stop::StrongResonance { order } = stop else { return };
+    let (kind, resonance) =
+        if *order == 1 { (SpecialKind::Resonance1, 0.0) } else { (SpecialKind::Resonance2, PI) };
+    let (Some(end), Some(before)) = (points.next(), points.next()) else { return };
+    let (Some(near), Some(far)) = (end.argument, before.argument) else { return };
+    let (near, far) = ((near - resonance).powi(2), (far - resonance).powi(2));
+    if near > NEXT_TO * NEXT_TO || far <= near {
+        // The curve turned back behind this point, but where it did was not reached.
+        *stop = Stop::StepTooSmall { cause: CorrectionFailure::Diverged };
+        return;
+    }
+    if end.label.is_some() {
+        return;
+    }
+    let error = |index: usize| ((end.values[index] - before.values[index]) * near / (far - near)).abs();
+    end.location_error = Some([error(0), error(1)]);
+    end.label = Some(Label { kind, number: 1 });
 }
 
 fn amplitudes(point: &CycleLocusPoint) -> impl Iterator<Item = f64> + '_ {

@@ -10,5 +10,5 @@ mod ends;
 mod monitor;
 mod run;
 
-pub use branch::{CycleLocusBranch, CycleLocusPoint};
+pub use branch::{CycleLocusBranch, CycleLocusPoint, UnlocatedChange};
 pub use run::CycleLocus;

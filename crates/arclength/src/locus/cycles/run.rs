@@ -1,9 +1,9 @@
 //! Asking for a curve of special cycles.
 
-use super::branch::CycleLocusBranch;
-use super::curve::{CycleLocusCurve, Inspection};
+use super::branch::{CycleLocusBranch, UnlocatedChange};
+use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
 use crate::branch::SpecialKind;
-use crate::continuation::{Followed, Request, Settings, Solution, Stop, correct, finish, follow};
+use crate::continuation::{Followed, Origin, Request, Settings, Solution, Stop, correct, finish, follow};
 use crate::cycle::collocation::Collocation;
 use crate::cycle::curve::CycleCurve;
 use crate::cycle::defining::Kind;
@@ -165,7 +165,9 @@ impl<'a> CycleLocus<'a> {
             observer(values, &solution.unknown[end - scalars..=end - scalars])
         };
         let degree = orbit.degree;
-        let forward = follow(&mut curve, unknown.clone(), tangent.clone(), &request, &mut observe)?;
+        let mut unlocated = Vec::new();
+        let mut forward = follow(&mut curve, unknown.clone(), tangent.clone(), &request, &mut observe)?;
+        close(&mut forward, &mut curve, &mut unlocated);
         let backward = if matches!(forward.stop, Stop::Closed) {
             Followed { solutions: Vec::new(), stop: Stop::Closed }
         } else {
@@ -176,9 +178,11 @@ impl<'a> CycleLocus<'a> {
             if product > 0.0 {
                 backward.iter_mut().for_each(|entry| *entry = -*entry);
             }
-            follow(&mut curve, unknown, backward, &request, &mut observe)?
+            let mut followed = follow(&mut curve, unknown, backward, &request, &mut observe)?;
+            close(&mut followed, &mut curve, &mut unlocated);
+            followed
         };
-        let mut branch = CycleLocusBranch::assemble(*special, active, degree, [backward, forward]);
+        let mut branch = CycleLocusBranch::assemble(*special, active, degree, [backward, forward], unlocated);
         self.solve_for_ends(&mut branch, parameters, ranges);
         Ok(branch)
     }
@@ -203,6 +207,10 @@ impl<'a> CycleLocus<'a> {
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
         let sizes = StateSizes::new(&collocation.problem, &cycle);
         let mut base = CycleCurve::new(collocation, self.resolution, ranges[0], &cycle).collocation;
+        let least = sizes_of_resting(&sizes, &orbit.states);
+        for (scale, least) in base.problem.scales.iter_mut().zip(&least) {
+            *scale = scale.max(*least);
+        }
         let mut border = vec![0.0; cycle.len()];
         border[cycle.len() - 1] = 1.0;
         let mut residual = vec![0.0; cycle.len()];
@@ -220,7 +228,8 @@ impl<'a> CycleLocus<'a> {
         }
         let nodes = (orbit.mesh.clone(), orbit.degree);
         let system = DefiningCurve::new(&base.problem, kind, nodes, (Some(active[1]), ranges), &unknown);
-        Ok((CycleLocusCurve::new(system, base, sizes, active[1], self.resolution, self.settings), unknown))
+        let control = (self.resolution, self.settings);
+        Ok((CycleLocusCurve::new(system, base, sizes, active[1], control, least), unknown))
     }
 
     /// The first solution, corrected with one of the parameters fixed, and the tangent there.
@@ -241,4 +250,18 @@ impl<'a> CycleLocus<'a> {
         }
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "Floquet multipliers" }))
     }
+}
+
+/// Adds what the curve itself has noted to a run: solutions behind the last step, and what was not located.
+fn close(
+    followed: &mut Followed<Inspection>,
+    curve: &mut CycleLocusCurve<'_>,
+    unlocated: &mut Vec<UnlocatedChange>,
+) {
+    let last = std::mem::take(&mut curve.last);
+    followed.solutions.extend(last.into_iter().map(|solution| {
+        let origin = if solution.point.special.is_some() { Origin::Special } else { Origin::Step };
+        (solution, origin)
+    }));
+    unlocated.append(&mut curve.unlocated);
 }

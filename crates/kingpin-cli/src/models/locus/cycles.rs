@@ -10,6 +10,7 @@ use crate::models::model::ChosenModel;
 use crate::models::picture::{self, Curve};
 use crate::models::story::{self, Part};
 use crate::numbers::{readable, significant};
+use crate::output::Output;
 use crate::range::Range;
 use crate::report::Report;
 use crate::table::{Cell, Table};
@@ -22,6 +23,8 @@ use std::io::{self, Write};
 
 /// Digits of the parameters at labelled points.
 const DIGITS: usize = 11;
+/// Warnings about what was not located.
+const MOST_WARNINGS: usize = 5;
 
 /// A cycle of the curve in a result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -57,6 +60,29 @@ pub struct CycleLocusPointReport {
     pub orbit: Option<Orbit>,
 }
 
+/// A change of sign of a test function behind which no point of codimension two could be located.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct UnlocatedChangeReport {
+    /// What the test is for.
+    pub test: String,
+    /// Values of the two parameters between which it changed.
+    pub between: [[f64; 2]; 2],
+}
+
+impl UnlocatedChangeReport {
+    /// In words, with what to try.
+    fn text(&self, [one, two]: [&str; 2]) -> String {
+        let [from, to] = self
+            .between
+            .map(|[first, second]| format!("{one} = {}, {two} = {}", readable(first), readable(second)));
+        format!(
+            "the test for a {} changes its sign between {from} and {to}, but no such point was located there; \
+             try: shorter steps (--finer 10)",
+            self.test
+        )
+    }
+}
+
 /// A curve of special cycles in two parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleLocusReport {
@@ -73,6 +99,9 @@ pub struct CycleLocusReport {
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
     pub ends: [End; 2],
+    /// What was detected but not located.
+    #[serde(default)]
+    pub unlocated: Vec<UnlocatedChangeReport>,
     /// The points in the order of the curve.
     pub points: Vec<CycleLocusPointReport>,
     /// Whether the story of the run is told.
@@ -105,6 +134,10 @@ impl CycleLocusReport {
             });
             NamedNumbers(values.unwrap_or_default())
         };
+        let unlocated = branch.unlocated.iter().map(|change| UnlocatedChangeReport {
+            test: change.kind.name().to_owned(),
+            between: change.between,
+        });
         Self {
             parameters: named_parameters(chosen, &branch.active),
             kind: branch.kind,
@@ -115,8 +148,21 @@ impl CycleLocusReport {
                 End::of(&branch.backward_stop, &keys, last(points.first())),
                 End::of(&branch.forward_stop, &keys, last(points.last())),
             ],
+            unlocated: unlocated.collect(),
             points,
             explain: false,
+        }
+    }
+
+    /// Says what was detected but not located.
+    pub fn warn(&self, output: &Output) {
+        let keys = self.keys();
+        self.unlocated.iter().take(MOST_WARNINGS).for_each(|change| output.warn(&change.text(keys)));
+        let left = self.unlocated.len().saturating_sub(MOST_WARNINGS);
+        if left > 0 {
+            output.warn(&format!(
+                "and {left} more such changes, all named under `unlocated` in a .json result"
+            ));
         }
     }
 
@@ -157,6 +203,8 @@ impl CycleLocusReport {
             parts
                 .push(Part::new("course", format!("{label} at {one} = {first}, {two} = {second}: {remark}")));
         }
+        let unlocated = self.unlocated.iter().map(|change| change.text(self.keys()));
+        parts.extend(unlocated.map(|text| Part::new("not located", text)));
         parts.push(Part::new("steps", format!("{} points", self.points.len())));
         let meshes = self.points.iter().map(|point| point.intervals);
         if let (Some(fewest), Some(most)) = (meshes.clone().min(), meshes.max()) {

@@ -3,7 +3,7 @@
 mod cycles;
 mod report;
 
-pub use cycles::{CycleLocusPointReport, CycleLocusReport};
+pub use cycles::{CycleLocusPointReport, CycleLocusReport, UnlocatedChangeReport};
 pub use report::{LocusPointReport, LocusReport};
 
 use super::branch::{Interruption, Origin, StepOptions};
@@ -164,6 +164,7 @@ impl Locus {
         let mut report = CycleLocusReport::new(request.chosen, request.ranges, origin, branch);
         report.explain = self.explain;
         output.deliver(&report)?;
+        report.warn(output);
         interruption.report()
     }
 }
