@@ -81,8 +81,13 @@ fn three_special_points_in_one_step_are_all_found() {
         for gap in [0.02, 0.01, 0.001] {
             let start = Equilibria::of(&TwoHopfAndPitchfork).parameters(&[-0.37, gap, sense]);
             let branch = start.along("mu", -1.0..=1.0).run().unwrap();
+            let found = labelled(&branch);
+            let found: Vec<_> = found.iter().filter(|(label, _)| !label.starts_with("NSE")).collect();
+            assert_eq!(found.len(), 3, "gap {gap}, sense {sense}: {found:?}");
             let expected = [("HB1", 0.0), ("HB2", gap), ("BP1", 2.0 * gap)];
-            expect(&branch, &expected, 1e-12, &format!("gap {gap}, sense {sense}"));
+            for ((label, value), (name, place)) in found.into_iter().zip(expected) {
+                assert!(label == name && (value - place).abs() < 1e-12, "gap {gap}, sense {sense}: {label} {value}");
+            }
             stability_changes_at_special_points_only(&branch);
         }
     }
@@ -179,7 +184,7 @@ fn a_branch_point_is_followed_along_another_parameter() {
     let trivial = Equilibria::of(&Pitchfork).parameters(&[-0.7, 0.1]).along("p", -1.0..=1.0).run().unwrap();
     let point = trivial.branch_points().next().unwrap();
     let error = Equilibria::of(&Pitchfork).from_branch_point(point).along("r", -1.0..=1.0).run().unwrap_err();
-    assert!(error.to_string().contains("r"), "{error}");
+    assert!(error.to_string().contains("slightly different r"), "{error}");
 }
 
 /// A ring of oscillators with linear coupling `k` of both components: Hopf points at `mu = 2 k (1 - cos(2 pi j/count))`.

@@ -48,17 +48,14 @@ pub(super) fn is_branching(
     Ok(push.abs() <= SINGULAR * rate * size)
 }
 
-/// The branch point at an equilibrium, found along another parameter: the branch that it calls its own is the one closer to
-/// the branch of `known` of its own.
+/// The branch point at an equilibrium through which branches of this parameter pass, `known` along another one: the branch that
+/// it calls its own is the one closer to the own branch of `known`. `None` where it is not regular.
 pub(super) fn branch_point_along(
     problem: &EquilibriumProblem<'_>,
     unknown: &[f64],
     known: &BranchPoint,
     scales: &[f64],
 ) -> Result<Option<BranchPoint>, Error> {
-    if !is_branching(problem, unknown, scales)? {
-        return Ok(None);
-    }
     let mut tangent = known.tangents[0].clone();
     if let (Some(last), Some(range)) = (tangent.last_mut(), scales.last()) {
         *last = *range;

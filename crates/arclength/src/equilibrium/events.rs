@@ -13,7 +13,7 @@ use super::curve::{EquilibriumCurve, Inspection, Tests};
 use super::locating;
 use super::special::SpecialPoint;
 use crate::algebraic::{between, length, position};
-use crate::branch::Stability;
+use crate::branch::{SpecialKind, Stability};
 use crate::continuation::{Curve, Solution, correct, finish};
 use crate::error::Error;
 
@@ -40,7 +40,7 @@ const NEARLY_FOLD: f64 = 1e-9;
 const MOST_SEARCHES: usize = 4;
 const SURROUNDINGS: f64 = 0.02;
 /// Distance, in the metric, from one located point to the next between which there is nothing to count.
-const COINCIDENT: f64 = 1e-9;
+const COINCIDENT: f64 = 1e-8;
 /// A rate of change of the parameter along the curve that may be rounding error.
 const UNDECIDED_FOLD: f64 = 1e-13;
 /// Rate of change of the parameter at a branch point, relative to its values around, below which the branch is tangential
@@ -116,11 +116,12 @@ fn closest_approach(values: [f64; 2], slopes: [f64; 2]) -> Option<f64> {
         .map(|(s, _)| s.clamp(SMALLEST_FRACTION, 1.0 - SMALLEST_FRACTION))
 }
 
-/// Where a second look is needed although no test function changes sign.
+/// Where a second look is needed because a test function that does not change its sign comes close to zero.
 fn suspicious(before: &Node, after: &Node, distance: f64) -> Option<f64> {
     let tests = |pick: fn(&Tests) -> f64| [pick(&before.point.tests), pick(&after.point.tests)];
     let decided = before.point.spectrum.hopf_undecided == after.point.spectrum.hopf_undecided;
-    let hopf = decided
+    let changes = Changes::between(before, after);
+    let hopf = (decided && !changes.hopf)
         .then(|| {
             let slopes = [before.point.hopf_slope * distance, after.point.hopf_slope * distance];
             closest_approach(tests(|tests| tests.hopf), slopes)
@@ -132,7 +133,7 @@ fn suspicious(before: &Node, after: &Node, distance: f64) -> Option<f64> {
         let parameter = before.unknown.len() - 1;
         let unit = before.tangent[parameter] / one;
         let mean = (after.unknown[parameter] - before.unknown[parameter]) / (unit * distance);
-        if opposite(one, other) || !mean.is_finite() {
+        if changes.count() > 0 || opposite(one, other) || !mean.is_finite() {
             return None;
         }
         // Derivative of the cubic: one + s (6 mean - 4 one - 2 other) + s^2 (3 one + 3 other - 6 mean).
@@ -254,6 +255,20 @@ fn surplus(points: &[Node], before: &Node, after: &Node) -> Option<bool> {
     (!agrees).then_some(change > most)
 }
 
+/// Bracketed points of one kind at one place are one point, and none where the number of unstable eigenvalues stays: where
+/// symmetry makes eigenvalues equal, the signs of test functions are rounding.
+fn without_repetitions(mut points: Vec<Node>, before: &Node, after: &Node) -> Vec<Node> {
+    let bracketed = |point: &Node| match point.point.special.as_deref() {
+        Some(SpecialPoint::Degenerate { of, .. }) => Some(*of),
+        _ => None,
+    };
+    if change(before, after) == Some(0) && points.len() == 1 {
+        points.retain(|point| bracketed(point) != Some(SpecialKind::Hopf));
+    }
+    points.dedup_by(|next, previous| bracketed(next).is_some() && bracketed(next) == bracketed(previous));
+    points
+}
+
 impl Scan<'_, '_> {
     /// Special points between two solutions, each with the change in the number of unstable eigenvalues that belongs to it.
     fn verified(&mut self, before: &Node, after: &Node, searches: usize) -> Result<Vec<Node>, Error> {
@@ -296,6 +311,7 @@ impl Scan<'_, '_> {
         origin: &Node,
         searches: usize,
     ) -> Result<Vec<Node>, Error> {
+        let group = without_repetitions(group, left, right);
         let Some(larger) = surplus(&group, left, right) else { return Ok(group) };
         if searches > 0
             && let Some((low, high)) = self.surroundings(&group, left, right, origin)
@@ -343,10 +359,8 @@ impl Scan<'_, '_> {
         let distance = distance(self.curve, before, after);
         let divide = if changes.count() > 1 || !changes.explain(before, after) {
             Some(0.5)
-        } else if changes.count() == 0 {
-            suspicious(before, after, distance)
         } else {
-            None
+            suspicious(before, after, distance)
         };
         // A fold at a branch point is most likely one and the same point.
         let smallest = if changes.fold && changes.branch_point { COINCIDENT_PART } else { SMALLEST_PART };

@@ -196,27 +196,28 @@ impl<'a> Equilibria<'a> {
         };
         let scales = scales(&problem, &unknown, bound.upper - bound.lower);
         let (mut tangent, mut departure) = (tangent, departure);
-        if tangent.is_none() {
-            match &mut self.start {
-                // Another parameter may unfold the branch point; else the other branch is followed here too.
+        if tangent.is_none() && is_branching(&problem, &unknown, &scales)? {
+            // From a branch point found along another parameter the other branch is followed here too.
+            let point = match &self.start {
                 Start::OtherBranch { branch_point, .. } => {
-                    if let Some(point) = branch_point_along(&problem, &unknown, branch_point, &scales)? {
-                        (tangent, departure) = (Some(point.tangents[1].clone()), DEPARTURE);
-                        **branch_point = point;
-                    }
+                    branch_point_along(&problem, &unknown, branch_point, &scales)?
                 }
-                _ if is_branching(&problem, &unknown, &scales)? => {
-                    return Err(Error::Invalid {
-                        name: format!("start at {name}"),
-                        value: unknown[n].to_string(),
-                        allowed: format!(
-                            "the equilibrium there is a branch point, or degenerate, and no single branch passes through \
-                             it; start beside it, at a slightly different {name}"
-                        ),
-                    });
-                }
-                _ => {}
-            }
+                _ => None,
+            };
+            let Some(point) = point else {
+                return Err(Error::Invalid {
+                    name: format!("start at {name}"),
+                    value: unknown[n].to_string(),
+                    allowed: format!(
+                        "the equilibrium there is a branch point, or degenerate, and no single branch passes through \
+                         it; start beside it, at a slightly different {name}"
+                    ),
+                });
+            };
+            let tangent_there = point.tangents[1].clone();
+            self.start =
+                Start::OtherBranch { branch_point: Box::new(point), tangent: tangent_there.clone() };
+            (tangent, departure) = (Some(tangent_there), DEPARTURE);
         }
         let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
         let mut tangent = match tangent {
