@@ -16,8 +16,12 @@ use crate::error::Error;
 
 /// Places that are sought between two solutions.
 const MOST_PLACES: usize = 64;
-/// A bracket is widened by this part of the whole, so that eigenvalues that rounding splits cross in one place.
+/// Shortest bracket, in the metric: rounding shows below.
+const RESOLUTION: f64 = 1e-13;
+/// A bracket is widened by this part of the whole, and by this much of the metric at least, so that eigenvalues that rounding
+/// splits cross in one place.
 const WIDENING: f64 = 1e-8;
+const LEAST_WIDENING: f64 = 1e-11;
 /// Distance, in the metric, of a point located by Newton's method from its bracket.
 const AGREEMENT: f64 = 1e-6;
 /// Relative difference of the frequencies of two pairs.
@@ -38,6 +42,8 @@ pub(super) fn crossings(
         between(curve, before, after, distance, fraction, &settings).ok()
     };
     let unstable = |node: &Node| node.point.spectrum.unstable;
+    let resolution = LAST_BRACKET.max(RESOLUTION / distance);
+    let widening = WIDENING.max(LEAST_WIDENING / distance);
     let mut found = Vec::new();
     let mut left = (0.0, before.clone());
     for _ in 0..MOST_PLACES {
@@ -45,7 +51,7 @@ pub(super) fn crossings(
             break;
         }
         let mut right = (1.0, after.clone());
-        while right.0 - left.0 > LAST_BRACKET {
+        while right.0 - left.0 > resolution {
             let fraction = 0.5 * (left.0 + right.0);
             let Some(middle) = at(curve, fraction) else { break };
             if unstable(&middle) == unstable(&left.1) {
@@ -56,7 +62,7 @@ pub(super) fn crossings(
         }
         let near = right.1.clone();
         let half = 0.5 * (right.0 - left.0) * distance * curve.system.scales[curve.dimension()];
-        let (low, high) = ((right.0 - WIDENING).max(0.0), (right.0 + WIDENING).min(1.0));
+        let (low, high) = ((right.0 - widening).max(0.0), (right.0 + widening).min(1.0));
         if let Some(node) = at(curve, low) {
             left = (low, node);
         }
@@ -81,7 +87,7 @@ fn located(
     let eigenvalues = &near.point.spectrum.eigenvalues;
     let closest = eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
     let oscillates = closest.is_some_and(|value| value.im != 0.0);
-    if oscillates && difference.is_multiple_of(2) {
+    if oscillates && difference > 0 && difference.is_multiple_of(2) {
         let pairs = critical_pairs(eigenvalues).into_iter().filter(|pair| pair[0].im != 0.0);
         let mut hopf: Vec<Node> = Vec::new();
         for pair in pairs.take(difference / 2) {

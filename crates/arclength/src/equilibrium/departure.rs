@@ -20,7 +20,7 @@ const SINGULAR: f64 = 1e-8;
 /// Distance from the start, in the metric, and difference of the parameter, as part of its range, below which a special point
 /// is the start.
 const SAME_PLACE: f64 = 1e-8;
-const SAME_PARAMETER: f64 = 1e-13;
+const SAME_PARAMETER: f64 = 1e-14;
 
 type Node = Solution<Inspection>;
 
@@ -35,8 +35,7 @@ pub(super) fn is_branching(
     let mut residual = vec![0.0; n];
     Differentiator::default().jacobian(problem, unknown, &mut residual, &mut matrix, n);
     let (jacobian, slope) = matrix.split_at(n * n);
-    let eigenvalues =
-        eigenvalues(jacobian, n).map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?;
+    let eigenvalues = eigenvalues(jacobian, n).map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?;
     let sizes = || eigenvalues.iter().map(|value| value.norm());
     let rate = sizes().fold(0.0, f64::max);
     if sizes().fold(f64::INFINITY, f64::min) > SINGULAR * rate {
@@ -99,7 +98,8 @@ pub(super) fn insert(
     for mut node in special {
         let last = node.unknown.len() - 1;
         let offset: Vec<f64> = node.unknown.iter().zip(&origin.unknown).map(|(a, b)| a - b).collect();
-        let same = length(&offset, scales) < SAME_PLACE && offset[last].abs() <= SAME_PARAMETER * scales[last];
+        let same =
+            length(&offset, scales) < SAME_PLACE && offset[last].abs() <= SAME_PARAMETER * scales[last];
         // A start on another branch is the branch point between the two directions.
         if same && origin.point.special.is_some() {
             continue;

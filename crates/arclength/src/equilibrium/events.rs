@@ -201,7 +201,8 @@ pub(super) fn special_points(
     let first_step = curve.first_beyond.is_none();
     let reach = distance(curve, before, after);
     let least = undecided(before).min(undecided(after));
-    let from = if first_step || undecided(before) > least { beyond(curve, before, least, reach) } else { None };
+    let from =
+        if first_step || undecided(before) > least { beyond(curve, before, least, reach) } else { None };
     let to = if undecided(after) > least { beyond(curve, after, least, reach) } else { None };
     let from = from.as_ref().unwrap_or(before);
     if first_step {
@@ -226,8 +227,7 @@ fn distance(curve: &EquilibriumCurve<'_>, before: &Node, after: &Node) -> f64 {
 
 /// The change in the number of unstable eigenvalues; `None` where it is not decided.
 fn change(before: &Node, after: &Node) -> Option<usize> {
-    let [one, other] =
-        [before, after].map(|node| node.point.spectrum.stability.unstable_dimension());
+    let [one, other] = [before, after].map(|node| node.point.spectrum.stability.unstable_dimension());
     Some(one?.abs_diff(other?))
 }
 
@@ -251,7 +251,8 @@ fn surplus(points: &[Node], before: &Node, after: &Node) -> Option<bool> {
             Some(SpecialPoint::Degenerate { .. }) | None => return None,
         };
     }
-    let agrees = change <= most && (!exact || change == most) && (!parity || (most - change).is_multiple_of(2));
+    let agrees =
+        change <= most && (!exact || change == most) && (!parity || (most - change).is_multiple_of(2));
     (!agrees).then_some(change > most)
 }
 

@@ -215,8 +215,7 @@ impl<'a> Equilibria<'a> {
                 });
             };
             let tangent_there = point.tangents[1].clone();
-            self.start =
-                Start::OtherBranch { branch_point: Box::new(point), tangent: tangent_there.clone() };
+            self.start = Start::OtherBranch { branch_point: Box::new(point), tangent: tangent_there.clone() };
             (tangent, departure) = (Some(tangent_there), DEPARTURE);
         }
         let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
