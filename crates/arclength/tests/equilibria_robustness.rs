@@ -493,9 +493,10 @@ impl VectorField for TwoAtOnce {
 fn pairs_that_cross_together_are_found_wherever_the_steps_fall() {
     for start in [-1.0, -1.03, -0.7, -0.512] {
         let branch = Equilibria::of(&TwoAtOnce).parameters(&[start]).along("p", start..=1.0).run().unwrap();
-        assert_eq!(kinds(&branch), ["HB1"], "{start}");
-        let place = branch.special_points().next().map(|special| special.parameter()).unwrap();
-        assert!(place.abs() < 1e-8, "{start}: {place}");
+        assert_eq!(kinds(&branch), ["HB1", "HB2"], "{start}");
+        for hopf in branch.hopf_points() {
+            assert!(hopf.parameter.abs() < 1e-12, "{start}: {hopf:?}");
+        }
     }
 }
 

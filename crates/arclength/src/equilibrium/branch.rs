@@ -1,7 +1,8 @@
 //! Branches of equilibria as plain data.
 
 use super::branch_point::BranchPoint;
-use super::curve::Inspection;
+use super::curve::{Inspection, reversed};
+use super::departure;
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::SpecialPoint;
@@ -67,6 +68,8 @@ impl EquilibriumBranch {
         requested: &[f64],
         directions: [BranchDirection; 2],
         middle: Option<(Solution<Inspection>, Origin)>,
+        at_start: Vec<Solution<Inspection>>,
+        scales: &[f64],
     ) -> Self {
         let [backward, forward] = directions;
         let mut solutions = backward.solutions;
@@ -76,10 +79,7 @@ impl EquilibriumBranch {
             solutions.remove(0);
         }
         solutions.reverse();
-        for (solution, _) in &mut solutions {
-            solution.point.tests.fold = -solution.point.tests.fold;
-            solution.point.tests.branch_point = -solution.point.tests.branch_point;
-        }
+        solutions = solutions.into_iter().map(|(solution, origin)| (reversed(solution), origin)).collect();
         let start = if repeated || middle.is_some() || solutions.is_empty() {
             solutions.len()
         } else {
@@ -87,6 +87,7 @@ impl EquilibriumBranch {
         };
         solutions.extend(middle);
         solutions.extend(forward.solutions);
+        let start = departure::insert(&mut solutions, start, at_start, scales);
         // Values asked for at the start or at an end of the range are there already.
         for (solution, origin) in &mut solutions {
             let value = solution.unknown.last();

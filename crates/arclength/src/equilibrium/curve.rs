@@ -31,6 +31,17 @@ pub(crate) struct Inspection {
     pub special: Option<Box<SpecialPoint>>,
 }
 
+/// The same solution for travel in the opposite direction.
+pub(super) fn reversed(mut solution: Solution<Inspection>) -> Solution<Inspection> {
+    solution.tangent.iter_mut().for_each(|entry| *entry = -*entry);
+    solution.orientation = -solution.orientation;
+    let Inspection { tests, hopf_slope, .. } = &mut solution.point;
+    tests.fold = -tests.fold;
+    tests.branch_point = -tests.branch_point;
+    *hopf_slope = -*hopf_slope;
+    solution
+}
+
 /// Displacement along the tangent for the derivative of the Hopf test. Small enough that curvature does not matter,
 /// large enough that rounding does not.
 const DISPLACEMENT: f64 = 1e-7;
@@ -52,6 +63,8 @@ pub(crate) struct EquilibriumCurve<'a> {
     first_scales: Vec<f64>,
     workspace: EigenvalueWorkspace,
     scratch: Vec<f64>,
+    /// Solution close to the start, from which on the direction followed was searched for special points.
+    pub first_beyond: Option<Solution<Inspection>>,
 }
 
 impl<'a> EquilibriumCurve<'a> {
@@ -66,12 +79,14 @@ impl<'a> EquilibriumCurve<'a> {
             first_scales: scales,
             workspace,
             scratch: Vec::new(),
+            first_beyond: None,
         }
     }
 
     /// Forgets the direction followed before.
     pub fn restart(&mut self) {
         self.idle_steps = 0;
+        self.first_beyond = None;
     }
 
     pub fn dimension(&self) -> usize {

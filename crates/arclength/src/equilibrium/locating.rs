@@ -19,7 +19,7 @@ use num_complex::Complex64;
 /// Lengths, as parts of a bracket, to which it is shortened before Newton's method is tried, and tried again.
 const BRACKETS: [f64; 2] = [1e-2, 1e-6];
 /// The same where Newton's method fails and the bracket is all there is.
-const LAST_BRACKET: f64 = 1e-10;
+pub(super) const LAST_BRACKET: f64 = 1e-10;
 /// Pairs of eigenvalues that are tried for a Hopf point.
 const CANDIDATES: usize = 3;
 /// A located point may lie this part of the bracket outside it.
@@ -77,18 +77,6 @@ fn degenerate(
     node
 }
 
-/// A point where several eigenvalues cross the imaginary axis together, so that no test function changes sign.
-pub(super) fn multiple(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node, distance: f64) -> Node {
-    fn critical(point: &Inspection) -> Complex64 {
-        let nearest = point.spectrum.eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
-        nearest.copied().unwrap_or_default()
-    }
-    let oscillates = critical(&before.point).im != 0.0;
-    let of = if oscillates { SpecialKind::Hopf } else { SpecialKind::BranchPoint };
-    let test = |point: &Inspection| critical(point).re;
-    degenerate(curve, before, after, distance, of, test)
-}
-
 /// Completes a located point of the curve.
 fn complete(
     curve: &mut EquilibriumCurve<'_>,
@@ -136,7 +124,6 @@ pub(super) fn hopf(
     after: &Node,
     distance: f64,
 ) -> Result<Node, Error> {
-    let n = curve.dimension();
     let test = |point: &Inspection| point.spectrum.hopf_closest;
     // Pairs that stay on the axis are not what crosses it; of the others a weakly damped one may be closer to it.
     let neutral = before.point.spectrum.hopf_undecided;
@@ -146,44 +133,56 @@ pub(super) fn hopf(
         let near = near_zero(curve, before, after, tolerance, test);
         let pairs = critical_pairs(&near.point.spectrum.eigenvalues);
         let Some(&pair) = pairs.get(neutral + candidate) else { continue };
-        let matrix = curve.jacobian(&near.unknown);
-        let scales = curve.system.scales.clone();
-        let Some((system, start)) =
-            HopfSystem::from_pair(curve.system.problem.clone(), &near.unknown, &matrix, pair, &scales)?
-        else {
-            continue;
-        };
-        let sizes = [&scales[..n], &scales[..n], &scales[..n], &[1.0], &scales[n..]].concat();
-        let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
-        let unknown = [&solved.unknown[..n], &solved.unknown[3 * n + 1..]].concat();
-        if !inside(&scales, before, distance, &unknown) {
-            continue;
+        let Some(node) = hopf_of_pair(curve, before, &near, pair)? else { continue };
+        if inside(&curve.system.scales, before, distance, &node.unknown) {
+            return Ok(node);
         }
-        let kappa = solved.unknown[3 * n];
-        let eigenvalue = system.rate * kappa.abs().sqrt();
-        let mut node = finish(curve, unknown, &before.tangent)?;
-        if !node.point.spectrum.has_pair(eigenvalue, kappa > 0.0) {
-            continue;
-        }
-        let error = location_error(&solved);
-        let (problem, unknown) = (&curve.system.problem, &node.unknown);
-        let special = if kappa > 0.0 {
-            SpecialPoint::Hopf(HopfPoint::at(problem, unknown, &scales, eigenvalue, error)?)
-        } else {
-            let parameters = problem.parameters_at(&unknown[n..]);
-            SpecialPoint::NeutralSaddle(NeutralSaddle {
-                parameter: unknown[n],
-                parameters,
-                active: problem.active[0],
-                location_error: error,
-                state: unknown[..n].to_vec(),
-                eigenvalue,
-            })
-        };
-        node.point.special = Some(Box::new(special));
-        return Ok(node);
     }
     Ok(degenerate(curve, before, after, distance, SpecialKind::Hopf, test))
+}
+
+/// The Hopf point or neutral saddle to which Newton's method converges from a solution and the pair of its eigenvalues that
+/// is about to become critical; wherever it lies.
+pub(super) fn hopf_of_pair(
+    curve: &mut EquilibriumCurve<'_>,
+    before: &Node,
+    near: &Node,
+    pair: [Complex64; 2],
+) -> Result<Option<Node>, Error> {
+    let n = curve.dimension();
+    let matrix = curve.jacobian(&near.unknown);
+    let scales = curve.system.scales.clone();
+    let Some((system, start)) =
+        HopfSystem::from_pair(curve.system.problem.clone(), &near.unknown, &matrix, pair, &scales)?
+    else {
+        return Ok(None);
+    };
+    let sizes = [&scales[..n], &scales[..n], &scales[..n], &[1.0], &scales[n..]].concat();
+    let Ok(solved) = solve_square(&system, &start, &sizes) else { return Ok(None) };
+    let unknown = [&solved.unknown[..n], &solved.unknown[3 * n + 1..]].concat();
+    let kappa = solved.unknown[3 * n];
+    let eigenvalue = system.rate * kappa.abs().sqrt();
+    let Ok(mut node) = finish(curve, unknown, &before.tangent) else { return Ok(None) };
+    if !node.point.spectrum.has_pair(eigenvalue, kappa > 0.0) {
+        return Ok(None);
+    }
+    let error = location_error(&solved);
+    let (problem, unknown) = (&curve.system.problem, &node.unknown);
+    let special = if kappa > 0.0 {
+        SpecialPoint::Hopf(HopfPoint::at(problem, unknown, &scales, eigenvalue, error)?)
+    } else {
+        let parameters = problem.parameters_at(&unknown[n..]);
+        SpecialPoint::NeutralSaddle(NeutralSaddle {
+            parameter: unknown[n],
+            parameters,
+            active: problem.active[0],
+            location_error: error,
+            state: unknown[..n].to_vec(),
+            eigenvalue,
+        })
+    };
+    node.point.special = Some(Box::new(special));
+    Ok(Some(node))
 }
 
 impl<'a> HopfSystem<'a> {

@@ -6,8 +6,10 @@
 
 mod branch;
 mod branch_point;
+mod crossings;
 mod curve;
 pub(crate) mod defining;
+mod departure;
 mod events;
 mod fold;
 pub(crate) mod hopf;

@@ -3,6 +3,7 @@
 use super::branch::{BranchDirection, EquilibriumBranch};
 use super::branch_point::BranchPoint;
 use super::curve::{EquilibriumCurve, Inspection};
+use super::departure::{at_start, branch_point_along, is_branching};
 use super::newton::{check_length, find_erased};
 use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
@@ -139,7 +140,7 @@ impl<'a> Equilibria<'a> {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn observed(
-        self,
+        mut self,
         observer: &mut dyn FnMut(f64, &[f64]) -> ControlFlow<()>,
     ) -> Result<EquilibriumBranch, Error> {
         let names = self.field.parameter_names();
@@ -189,12 +190,34 @@ impl<'a> Equilibria<'a> {
                 check_length("branch point", &branch_point.state, n, "the dimension of the field")?;
                 let mut unknown = branch_point.state.clone();
                 unknown.push(parameters[active]);
-                // Along another parameter the tangent is not known: the curve through the point is followed.
                 let same = branch_point.active == active;
                 (unknown, same.then(|| tangent.clone()), if same { DEPARTURE } else { 0.0 })
             }
         };
         let scales = scales(&problem, &unknown, bound.upper - bound.lower);
+        let (mut tangent, mut departure) = (tangent, departure);
+        if tangent.is_none() && is_branching(&problem, &unknown, &scales)? {
+            // From a branch point found along another parameter the other branch is followed here too.
+            let point = match &self.start {
+                Start::OtherBranch { branch_point, .. } => {
+                    branch_point_along(&problem, &unknown, branch_point, &scales)?
+                }
+                _ => None,
+            };
+            let Some(point) = point else {
+                return Err(Error::Invalid {
+                    name: format!("start at {name}"),
+                    value: unknown[n].to_string(),
+                    allowed: format!(
+                        "the equilibrium there is a branch point, or degenerate, and no single branch passes through \
+                         it; start beside it, at a slightly different {name}"
+                    ),
+                });
+            };
+            let tangent_there = point.tangents[1].clone();
+            self.start = Start::OtherBranch { branch_point: Box::new(point), tangent: tangent_there.clone() };
+            (tangent, departure) = (Some(tangent_there), DEPARTURE);
+        }
         let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
         let mut tangent = match tangent {
             Some(tangent) => tangent,
@@ -222,11 +245,13 @@ impl<'a> Equilibria<'a> {
             follow(curve, start, tangent, &request, &mut observe)
         };
         let forward = run(&mut curve, 1.0)?;
+        let forward_beyond = curve.first_beyond.take();
         let backward = if matches!(forward.stop, Stop::Closed) {
             Followed { solutions: Vec::new(), stop: Stop::Closed }
         } else {
             run(&mut curve, -1.0)?
         };
+        let backward_beyond = curve.first_beyond.take();
         let middle = match self.start {
             Start::OtherBranch { mut branch_point, .. } if departure > 0.0 => {
                 branch_point.tangents.swap(0, 1);
@@ -236,7 +261,11 @@ impl<'a> Equilibria<'a> {
         };
         let directions = [backward, forward]
             .map(|followed| BranchDirection { solutions: followed.solutions, stop: followed.stop });
-        Ok(EquilibriumBranch::assemble(self.field, active, parameters, &self.at, directions, middle))
+        let at_start = at_start(&mut curve, &directions, [backward_beyond, forward_beyond])?;
+        let scales = &curve.system.scales;
+        Ok(EquilibriumBranch::assemble(
+            self.field, active, parameters, &self.at, directions, middle, at_start, scales,
+        ))
     }
 }
 

@@ -84,7 +84,7 @@ impl HopfTest {
                 return;
             }
             test.product *= ratio / ratio.hypot(SATURATION);
-            if one.im == -other.im {
+            if belong_together(one, other) {
                 test.closest = test.closest.min(ratio.abs());
             }
         });
@@ -101,7 +101,7 @@ pub(crate) fn critical_pair(eigenvalues: &[Complex64]) -> Option<[Complex64; 2]>
 pub(crate) fn critical_pairs(eigenvalues: &[Complex64]) -> Vec<[Complex64; 2]> {
     let mut pairs = Vec::new();
     for_each_pair(eigenvalues, |one, other| {
-        if one.im == -other.im {
+        if belong_together(one, other) {
             pairs.push((sum_ratio(one, other).abs(), [one, other]));
         }
     });
@@ -129,7 +129,13 @@ fn sum_ratio(one: Complex64, other: Complex64) -> f64 {
         return 0.0;
     }
     let sum = one + other;
-    if one.im == -other.im { sum.re / size } else { sum.norm() / size }
+    if belong_together(one, other) { sum.re / size } else { sum.norm() / size }
+}
+
+/// Whether two eigenvalues are complex conjugate or both real. Members of two equal pairs, which symmetry makes, are not
+/// conjugate although rounding may give them opposite imaginary parts.
+fn belong_together(one: Complex64, other: Complex64) -> bool {
+    one.im == -other.im && (one.im == 0.0 || one.re == other.re)
 }
 
 fn for_each_pair(eigenvalues: &[Complex64], mut visit: impl FnMut(Complex64, Complex64)) {

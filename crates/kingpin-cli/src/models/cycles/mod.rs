@@ -15,6 +15,7 @@ use crate::output::Output;
 use crate::progress::Progress;
 use crate::range::{Range, Values};
 use crate::stored::PointReference;
+use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
 use arclength::cycle::{CycleStart, Orbit, Resolution, Role};
 use arclength::equilibrium::SpecialPoint;
@@ -153,6 +154,14 @@ impl Cycles {
                 let model = &point.chosen.model;
                 let orbit = Orbit::from_time_history(model, parameters, &point.chosen.start, *duration)?;
                 Ok((CycleStart::Orbit(orbit), origin("the cycle on which the time history has settled")))
+            }
+            What::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
+                Err(self.from.failure(format!(
+                    "no cycles can be started at {}: it is degenerate and only bracketed, either because several pairs of \
+                     eigenvalues cross there together or because a pair does not cross with a speed other than zero; start \
+                     at a regular Hopf point or from the end (END) of a time history on a cycle",
+                    point.label
+                )))
             }
             What::Equilibrium(_) => Err(self.from.failure(format!(
                 "no cycles start at {}; allowed: Hopf points (HB), cycles, and the end (END) of a time history on a cycle",

@@ -18,7 +18,7 @@ use clap::Args;
 /// Equilibria along a parameter, with folds, branch points and Hopf points
 ///
 /// Starts at the equilibrium near the initial state of the model, or at a labelled point of an earlier result: from a
-/// branch point along its own parameter the other branch is followed, from any other point the branch through it.
+/// branch point the other branch is followed, from any other point the branch through it.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: arclength equilibria model.ode --along p=0:1 -o equilibria.json\n         \
                         arclength equilibria --from equilibria.json:BP1 --along p=0:1 -o other.json")]
@@ -54,10 +54,10 @@ impl Equilibria {
         let (chosen, point) = self.model.choose(&output)?;
         let active = chosen.along("--along", &self.along)?;
         let at = chosen.values(active, &self.along, &self.at)?;
-        let (branch_point, origin) = match &point {
+        let (branch_point, mut origin) = match &point {
             Some(point) => {
                 chosen.starts_within("--along", &self.along, &point.label)?;
-                self.departure(point, active)
+                self.departure(point)
             }
             None => (None, Origin::initial_state()),
         };
@@ -82,6 +82,11 @@ impl Equilibria {
                 interruption.flow()
             })?;
         drop(progress);
+        // Whether branches cross there along this parameter too shows when they are followed.
+        let start = branch.points.get(branch.start).and_then(|point| point.special.as_deref());
+        if let (Some(point), Some(_), Some(SpecialPoint::BranchPoint(_))) = (&point, &branch_point, start) {
+            origin = Origin::labelled(&point.label, "the other branch through it");
+        }
         let mut report = EquilibriaReport::new(&chosen, &self.along, origin, &branch);
         report.explain = self.explain;
         output.deliver(&report)?;
@@ -89,16 +94,13 @@ impl Equilibria {
     }
 
     /// What to do at a labelled point: the other branch at a branch point, else the branch through it.
-    fn departure(&self, point: &LabelledPoint, active: usize) -> (Option<BranchPoint>, Origin) {
-        let same = || Origin::labelled(&point.label, "the branch through it");
-        let What::Equilibrium(Some(special)) = &point.what else { return (None, same()) };
-        match special {
-            SpecialPoint::BranchPoint(branch_point)
-                if branch_point.active == active && !self.model.changes_anything() =>
-            {
-                (Some(branch_point.clone()), Origin::labelled(&point.label, "the other branch through it"))
+    fn departure(&self, point: &LabelledPoint) -> (Option<BranchPoint>, Origin) {
+        let branch_point = match &point.what {
+            What::Equilibrium(Some(SpecialPoint::BranchPoint(known))) if !self.model.changes_anything() => {
+                Some(known.clone())
             }
-            _ => (None, same()),
-        }
+            _ => None,
+        };
+        (branch_point, Origin::labelled(&point.label, "the branch through it"))
     }
 }
