@@ -60,6 +60,16 @@ pub(super) struct BranchDirection {
     pub stop: Stop,
 }
 
+/// What lies between the two directions.
+pub(super) struct BetweenDirections<'a> {
+    /// The branch point from which both leave.
+    pub middle: Option<(Solution<Inspection>, Origin)>,
+    /// Special points at the start and close to it.
+    pub special: Vec<Solution<Inspection>>,
+    /// Sizes of the unknowns.
+    pub scales: &'a [f64],
+}
+
 impl EquilibriumBranch {
     pub(super) fn assemble(
         field: ErasedField<'_>,
@@ -67,10 +77,9 @@ impl EquilibriumBranch {
         parameters: Vec<f64>,
         requested: &[f64],
         directions: [BranchDirection; 2],
-        middle: Option<(Solution<Inspection>, Origin)>,
-        at_start: Vec<Solution<Inspection>>,
-        scales: &[f64],
+        between: BetweenDirections<'_>,
     ) -> Self {
+        let BetweenDirections { middle, special, scales } = between;
         let [backward, forward] = directions;
         let mut solutions = backward.solutions;
         // Both directions begin with the start.
@@ -87,7 +96,7 @@ impl EquilibriumBranch {
         };
         solutions.extend(middle);
         solutions.extend(forward.solutions);
-        let start = departure::insert(&mut solutions, start, at_start, scales);
+        let start = departure::insert(&mut solutions, start, special, scales);
         // Values asked for at the start or at an end of the range are there already.
         for (solution, origin) in &mut solutions {
             let value = solution.unknown.last();

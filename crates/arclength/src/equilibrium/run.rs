@@ -1,6 +1,6 @@
 //! Asking for a branch of equilibria.
 
-use super::branch::{BranchDirection, EquilibriumBranch};
+use super::branch::{BetweenDirections, BranchDirection, EquilibriumBranch};
 use super::branch_point::BranchPoint;
 use super::curve::{EquilibriumCurve, Inspection};
 use super::departure::{at_start, branch_point_along, is_branching};
@@ -261,11 +261,9 @@ impl<'a> Equilibria<'a> {
         };
         let directions = [backward, forward]
             .map(|followed| BranchDirection { solutions: followed.solutions, stop: followed.stop });
-        let at_start = at_start(&mut curve, &directions, [backward_beyond, forward_beyond])?;
-        let scales = &curve.system.scales;
-        Ok(EquilibriumBranch::assemble(
-            self.field, active, parameters, &self.at, directions, middle, at_start, scales,
-        ))
+        let special = at_start(&mut curve, &directions, [backward_beyond, forward_beyond])?;
+        let between = BetweenDirections { middle, special, scales: &curve.system.scales };
+        Ok(EquilibriumBranch::assemble(self.field, active, parameters, &self.at, directions, between))
     }
 }
 

@@ -114,3 +114,40 @@ fn files_that_cannot_be_started_from() {
         &["--named-set a", "none"],
     );
 }
+
+#[test]
+fn a_restart_from_its_own_label_finds_that_point_again() {
+    let folder = Folder::with("ab.ode");
+    folder.succeed("equilibria ab.ode --along D=0:0.4 -s B=18 -q -o equilibria.json");
+    let first = folder.json("equilibria ab.ode --along D=0:0.4 -s B=18");
+    for label in ["HB1", "LP1", "LP2", "HB2"] {
+        let again = folder.json(&format!("equilibria --from equilibria.json:{label} --along D=0:0.4"));
+        let places = |result: &serde_json::Value| -> Vec<f64> {
+            let points = result["points"].as_array().unwrap().iter();
+            let mut places: Vec<f64> = points
+                .filter(|point| point["special"].is_object())
+                .map(|p| p["value"].as_f64().unwrap())
+                .collect();
+            places.sort_by(f64::total_cmp);
+            places
+        };
+        let (expected, found) = (places(&first), places(&again));
+        assert_eq!(found.len(), expected.len(), "{label}: {found:?} {expected:?}");
+        assert!(found.iter().zip(&expected).all(|(one, other)| (one - other).abs() < 1e-11), "{label}");
+    }
+}
+
+#[test]
+fn starts_on_singular_points_say_why_they_are_refused() {
+    let folder = Folder::with("ab.ode");
+    let model =
+        "par m=0, p=0\nx' = m*x - y\ny' = m*y + x\nu' = m*u - v\nv' = m*v + u\nz' = p*z - z^3\ndone\n";
+    std::fs::write(folder.0.path().join("singular.ode"), model).unwrap();
+    folder.fails(
+        "equilibria singular.ode --along p=-1:1 -s m=-1",
+        2,
+        &["branch point", "slightly different p"],
+    );
+    folder.succeed("equilibria singular.ode --along m=-1:1 -s p=-1 -q -o pairs.json");
+    folder.fails("cycles --from pairs.json:HB1 --along m=-1:1", 2, &["HB1", "degenerate"]);
+}
