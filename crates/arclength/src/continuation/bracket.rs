@@ -83,7 +83,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
 }
 
 /// The solution where a test function that changes its sign between two neighbouring solutions has its smallest modulus in a
-/// [`Bracket`] of a part `tolerance` of the distance between them; `None` where it does not exist or does not change its sign.
+/// bracket of a part `tolerance` of the distance between them; `None` where it does not exist or does not change its sign.
 ///
 /// # Errors
 /// When a trial point cannot be corrected.
