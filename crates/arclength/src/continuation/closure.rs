@@ -4,9 +4,8 @@
 //! parameter passes the value that it had there, in the same direction, the solution at exactly that value is computed, and
 //! the signatures of the two are compared.
 
-use super::bracket::locate;
 use super::curve::{Curve, Solution};
-use super::follow::{Bound, CLOSE, Origin, fix};
+use super::follow::{Bound, Origin, fix, fix_closely};
 use super::settings::Settings;
 
 /// Relative agreement of signatures that makes a curve closed.
@@ -86,10 +85,7 @@ impl Closure {
         {
             return Some(candidate);
         }
-        // Next to a turning point of the parameter only a close start leads to the right one of two solutions.
-        let near = locate(curve, current, advanced, settings, CLOSE, |_, solution| Some(position(solution)));
-        let near = near.ok()??;
-        let candidate = fix(curve, &near, &near, from_end, value, settings).ok()?;
+        let candidate = fix_closely(curve, current, advanced, from_end, value, settings).ok()??;
         is_start(curve, &candidate).then_some(candidate)
     }
 

@@ -64,7 +64,7 @@ const MOST_ADAPTATIONS: usize = 12;
 /// Times that a discretisation is made finer at one point because it does not resolve what was found out there.
 const MOST_REFINEMENTS: usize = 6;
 /// Part of a step to which the place of a parameter value is narrowed down for a second attempt.
-pub(super) const CLOSE: f64 = 1e-3;
+const CLOSE: f64 = 1e-3;
 /// Part of its range by which a parameter of the start may move by rounding.
 const START_ROUNDING: f64 = 1e-13;
 
@@ -326,7 +326,8 @@ fn settle<C: Curve>(
     carried: &mut [&mut Vec<f64>],
     settings: &Settings,
 ) -> Result<Solution<C::Point>, Error> {
-    for refinement in 0.. {
+    let mut refinements = 0;
+    loop {
         for _ in 0..MOST_ADAPTATIONS {
             if curve.adapt(&mut unknown, carried)? == Adaptation::Unchanged {
                 break;
@@ -337,12 +338,12 @@ fn settle<C: Curve>(
         }
         let tangent = carried[1].clone();
         let solution = finish(curve, unknown, &tangent)?;
-        if curve.resolves(&solution.point) || refinement == MOST_REFINEMENTS {
+        if curve.resolves(&solution.point) || refinements == MOST_REFINEMENTS {
             return Ok(solution);
         }
         unknown = solution.unknown;
+        refinements += 1;
     }
-    unreachable!()
 }
 
 /// Point predicted at the distance `length`: along the tangent, bent by the change of the tangent over
@@ -395,10 +396,7 @@ fn requested_values<C: Curve>(
             if passes && before != 0.0 {
                 let settings = &request.settings;
                 let found = fix(curve, left, right, bound.from_end, value, settings).or_else(|error| {
-                    let test = |solution: &Solution<C::Point>| value_of(&solution.unknown) - value;
-                    let near =
-                        locate(curve, left, right, settings, CLOSE, |_, solution| Some(test(solution)))?;
-                    near.map_or(Err(error), |near| fix(curve, &near, &near, bound.from_end, value, settings))
+                    fix_closely(curve, left, right, bound.from_end, value, settings)?.ok_or(error)
                 })?;
                 between.insert(index, (found, Origin::Requested));
                 index += 1;
@@ -429,6 +427,21 @@ pub(super) fn fix<C: Curve>(
         .map_err(|cause| Error::NotFound { sought: "solution at the value asked for", cause })?;
     unknown[index] = value;
     finish(curve, unknown, &before.tangent)
+}
+
+/// As [`fix`], from a start for which the place of the value was narrowed down before: next to a turning point of the unknown
+/// only a close start leads to the right one of two solutions. `None` where the value is not passed.
+pub(super) fn fix_closely<C: Curve>(
+    curve: &mut C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    from_end: usize,
+    value: f64,
+    settings: &Settings,
+) -> Result<Option<Solution<C::Point>>, Error> {
+    let test = |solution: &Solution<C::Point>| solution.unknown[solution.unknown.len() - from_end] - value;
+    let near = locate(curve, before, after, settings, CLOSE, |_, solution| Some(test(solution)))?;
+    near.map(|near| fix(curve, &near, &near, from_end, value, settings)).transpose()
 }
 
 /// Cubic interpolation between two neighbours.

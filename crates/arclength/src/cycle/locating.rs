@@ -9,6 +9,7 @@ use super::limit_cycle::LimitCycle;
 use super::linear_problem::Nodes;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
+use super::sizes::extent;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
 use crate::error::Error;
 
@@ -226,9 +227,7 @@ pub(crate) fn doubling_near(
     let mut problem = problem.clone();
     let states = cycle.len() - 2;
     for (component, scale) in problem.scales.iter_mut().enumerate() {
-        let values = cycle[..states].iter().skip(component).step_by(n);
-        let (low, high) =
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+        let (low, high) = extent(&cycle[..states], n, component);
         *scale = if high > low { 0.5 * (high - low) } else { *scale };
     }
     let nodes = Nodes { mesh: &mesh, gauss: &gauss };

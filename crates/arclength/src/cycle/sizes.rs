@@ -67,9 +67,7 @@ impl StateSizes {
         let n = self.largest.len();
         (0..n)
             .map(|component| {
-                let values = states.iter().skip(component).step_by(n);
-                let (smallest, largest) = values
-                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+                let (smallest, largest) = extent(states, n, component);
                 let amplitude = 0.5 * (largest - smallest);
                 let mean = 0.5 * (largest + smallest).abs();
                 self.largest[component] = self.largest[component].max(amplitude);
@@ -89,9 +87,7 @@ impl StateSizes {
     pub fn is_equilibrium(&self, states: &[f64]) -> bool {
         let n = self.largest.len();
         (0..n).all(|component| {
-            let values = states.iter().skip(component).step_by(n);
-            let (smallest, largest) = values
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)));
+            let (smallest, largest) = extent(states, n, component);
             0.5 * (largest - smallest)
                 <= EQUILIBRIUM_PART * self.largest[component].max(self.resting[component])
         })
@@ -143,6 +139,12 @@ impl StateSizes {
         let limit = (RESOLVED_SENSITIVITY / tolerance).clamp(LEAST_SENSITIVITY, HOMOCLINIC_SENSITIVITY);
         period > HOMOCLINIC_GROWTH * first && sensitivity > limit
     }
+}
+
+/// Smallest and largest value of one of `n` components on the nodes of a cycle.
+pub(super) fn extent(states: &[f64], n: usize, component: usize) -> (f64, f64) {
+    let values = states.iter().skip(component).step_by(n);
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| (a.min(*value), b.max(*value)))
 }
 
 /// Parameter value at which an amplitude vanishes, from two values with the squared amplitudes there: close to a pitchfork
