@@ -8,21 +8,9 @@ use arclength::locus::{CodimensionTwoPoint, EquilibriumLocus, EquilibriumLocusBr
 use arclength::{Scalar, VectorField};
 use proptest::prelude::*;
 
-/// Declares a vector field by its names and its right-hand side.
-macro_rules! field {
-    ($name:ident, [$($state:literal),*], [$($parameter:literal),*], |$x:ident, $p:ident, $d:ident| $body:block) => {
-        struct $name;
-        impl VectorField for $name {
-            fn state_names(&self) -> Vec<String> {
-                vec![$($state.into()),*]
-            }
-            fn parameter_names(&self) -> Vec<String> {
-                vec![$($parameter.into()),*]
-            }
-            fn evaluate<T: Scalar>(&self, $x: &[T], $p: &[T], $d: &mut [T]) $body
-        }
-    };
-}
+#[macro_use]
+#[path = "common/field.rs"]
+mod field;
 
 fn labels(branch: &EquilibriumLocusBranch) -> Vec<String> {
     branch.points.iter().filter_map(|point| Some(point.label?.to_string())).collect()

@@ -4,21 +4,9 @@ use arclength::branch::Stability;
 use arclength::equilibrium::{Equilibria, EquilibriumBranch, SpecialPoint};
 use arclength::{Scalar, VectorField};
 
-/// Declares a vector field by its names and its right-hand side.
-macro_rules! field {
-    ($name:ident, [$($state:literal),*], [$($parameter:literal),*], |$x:ident, $p:ident, $d:ident| $body:block) => {
-        struct $name;
-        impl VectorField for $name {
-            fn state_names(&self) -> Vec<String> {
-                vec![$($state.into()),*]
-            }
-            fn parameter_names(&self) -> Vec<String> {
-                vec![$($parameter.into()),*]
-            }
-            fn evaluate<T: Scalar>(&self, $x: &[T], $p: &[T], $d: &mut [T]) $body
-        }
-    };
-}
+#[macro_use]
+#[path = "common/field.rs"]
+mod field;
 
 /// Labels and parameter values of the labelled points, without neutral saddles.
 fn labelled(branch: &EquilibriumBranch) -> Vec<(String, f64)> {
