@@ -14,6 +14,9 @@ pub enum Error {
         #[source]
         cause: CorrectionFailure,
     },
+    /// Two branches pass each other closely, and a step led from one to the other; it is made anew and shorter.
+    #[error("two branches pass each other closely, and a step led from one to the other; take shorter steps")]
+    OtherBranch,
     /// Eigenvalues or multipliers did not converge.
     #[error(
         "the {quantity} could not be computed: the matrix has entries that are not finite, or the iteration did not converge"

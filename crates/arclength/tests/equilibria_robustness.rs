@@ -458,6 +458,63 @@ proptest! {
     }
 }
 
+/// Two branches pass each other so closely that a step leads from one to the other: none of them has a branch point.
+#[test]
+fn branches_that_pass_each_other_closely_are_told_apart() {
+    let coefficients = [
+        -1.9074235995883173,
+        -0.699464759864915,
+        -1.5641848636893616,
+        1.3328961579178547,
+        -1.9509314304711056,
+        0.5523640341704192,
+        -1.9917973542497072,
+        -1.960599467783581,
+        0.4562250116582117,
+        1.4334043275794528,
+        0.9126585359546365,
+        0.3435030717737226,
+        0.500982231420059,
+        -0.5738345830999323,
+        -0.270291045140513,
+        -1.3736343768839636,
+        1.207477369104842,
+        -0.4675772352177823,
+        0.4981840613230374,
+        -0.2262323227419247,
+    ];
+    let field = Polynomial { dimension: 2, coefficients: coefficients.to_vec() };
+    let branch =
+        Equilibria::of(&field).start(&[0.3; 2]).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
+    assert_eq!(kinds(&branch), ["HB1", "HB2", "LP1", "LP2"]);
+    // The second fold is where the other branch passes.
+    let folds: Vec<f64> = branch.folds().map(|fold| fold.parameter).collect();
+    assert_relative_eq!(folds[1], -0.137595554245, epsilon = 1e-12);
+    // The closer they pass, the shorter the steps have to be.
+    for gap in [1e-2, 1e-4, 1e-6, 1e-7] {
+        let field = NearlyMeeting(gap);
+        let branch =
+            Equilibria::of(&field).start(&[-1.0]).parameters(&[-1.0]).along("p", -1.0..=1.0).run().unwrap();
+        assert_eq!(kinds(&branch), ["LP1"], "{gap}");
+        assert!((branch.folds().next().unwrap().parameter + 2.0 * gap.sqrt()).abs() < 1e-12);
+    }
+}
+
+/// `x' = x (p - x) - gap`: two branches that meet only at `gap = 0`, turning at `p^2 = 4 gap`.
+struct NearlyMeeting(f64);
+
+impl VectorField for NearlyMeeting {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        d[0] = x[0] * (p[0] - x[0]) - self.0;
+    }
+}
+
 /// Two oscillators whose damping vanishes together at `p = 0`.
 struct TwoAtOnce;
 

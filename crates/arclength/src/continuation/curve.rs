@@ -51,7 +51,7 @@ pub trait Curve {
     /// Special points between two consecutive solutions, in any order.
     ///
     /// # Errors
-    /// As [`inspect`](Self::inspect).
+    /// As [`inspect`](Self::inspect); [`Error::OtherBranch`] has the step made anew and shorter.
     fn special_points(
         &mut self,
         before: &Solution<Self::Point>,

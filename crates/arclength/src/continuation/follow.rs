@@ -114,6 +114,11 @@ pub fn follow<C: Curve>(
         };
         let mut special = match curve.special_points(&current, &advanced) {
             Ok(special) => special,
+            Err(Error::OtherBranch) => {
+                step = STEP_REDUCTION * along(curve, &current, &advanced.unknown);
+                previous = None;
+                continue;
+            }
             Err(error) => return Ok(Followed { solutions, stop: Stop::Failed(error) }),
         };
         let position = |solution: &Solution<C::Point>| along(curve, &current, &solution.unknown);

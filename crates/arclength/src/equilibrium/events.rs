@@ -208,7 +208,11 @@ pub(super) fn special_points(
     if first_step {
         curve.first_beyond = Some(from.clone());
     }
-    search(curve, from, to.as_ref().unwrap_or(after))
+    let found = search(curve, from, to.as_ref().unwrap_or(after));
+    if first_step && matches!(found, Err(Error::OtherBranch)) {
+        curve.first_beyond = None;
+    }
+    found
 }
 
 /// Special points between two solutions, in order.

@@ -26,6 +26,8 @@ const CANDIDATES: usize = 3;
 const MARGIN: f64 = 0.1;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
 const UNPERTURBED: f64 = 1e-8;
+/// A step longer than this, in the metric, over a branch point of a perturbed field is shortened.
+const SHORTEST_JUMP: f64 = 1e-6;
 
 type Node = Solution<Inspection>;
 
@@ -281,6 +283,10 @@ pub(crate) fn hopf_point_near(
 }
 
 /// The branch point between two solutions.
+///
+/// # Errors
+/// [`Error::OtherBranch`] if there is none but that of a perturbed field: what looks like one is a step from one branch to
+/// another that passes by.
 pub(super) fn branch_point(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
@@ -290,6 +296,7 @@ pub(super) fn branch_point(
     let n = curve.dimension();
     let test = |point: &Inspection| point.tests.branch_point;
     let failed = |_| Error::Eigenvalues { quantity: "null vector of the branch point" };
+    let mut perturbed = false;
     for tolerance in [1.0, BRACKETS[0], BRACKETS[1]] {
         let near = near_zero(curve, before, after, tolerance, test);
         let matrix = curve.jacobian(&near.unknown);
@@ -315,9 +322,11 @@ pub(super) fn branch_point(
         let sizes = [&scales[..n], &inverse, &[system.rate], &scales[n..]].concat();
         let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
         let unknown = [&solved.unknown[..n], &solved.unknown[2 * n + 1..]].concat();
-        if !inside(&scales, before, distance, &unknown)
-            || solved.unknown[2 * n].abs() > UNPERTURBED * system.rate
-        {
+        if !inside(&scales, before, distance, &unknown) {
+            continue;
+        }
+        if solved.unknown[2 * n].abs() > UNPERTURBED * system.rate {
+            perturbed = true;
             continue;
         }
         let tangent: Vec<f64> =
@@ -328,6 +337,9 @@ pub(super) fn branch_point(
         };
         // The Jacobian bordered by the tangent is singular here: what is known comes from the normal form.
         return curve.at_branch_point(unknown, point);
+    }
+    if perturbed && distance > SHORTEST_JUMP {
+        return Err(Error::OtherBranch);
     }
     Ok(degenerate(curve, before, after, distance, SpecialKind::BranchPoint, test))
 }
