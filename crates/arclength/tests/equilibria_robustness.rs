@@ -198,18 +198,30 @@ fn centres_are_neither_stable_nor_hopf_points() {
     assert!(folds.len() > 1);
 }
 
+/// Wherever on the circle it starts: on a fold, next to it before or behind it, or far from it.
 #[test]
 fn a_closed_branch_ends_after_one_lap() {
-    let branch =
-        Equilibria::of(&Circle).start(&[1.0]).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
-    assert!(matches!(branch.forward_stop, Stop::Closed) && matches!(branch.backward_stop, Stop::Closed));
-    assert_eq!(kinds(&branch), ["LP1", "LP2"]);
-    let length: f64 = branch
-        .points
-        .windows(2)
-        .map(|pair| (pair[1].parameter - pair[0].parameter).hypot(pair[1].state[0] - pair[0].state[0]))
-        .sum();
-    assert!((length - std::f64::consts::TAU).abs() < 0.02, "{length}");
+    for angle in [0.0, 1e-6, -1e-6, 1e-3, -1e-3, 0.04, -0.04, 1.0, 2.0, 3.0, 3.1, -3.1, std::f64::consts::PI]
+    {
+        let (state, parameter) = (f64::sin(angle), f64::cos(angle));
+        let branch = Equilibria::of(&Circle)
+            .start(&[state])
+            .parameters(&[parameter])
+            .along("p", -2.0..=2.0)
+            .run()
+            .unwrap();
+        assert!(matches!(branch.forward_stop, Stop::Closed) && matches!(branch.backward_stop, Stop::Closed));
+        let folds: Vec<f64> = branch.folds().map(|fold| fold.parameter).collect();
+        assert_eq!(folds.len(), 2, "{angle}: {folds:?}");
+        assert_relative_eq!(folds[0] * folds[1], -1.0, epsilon = 1e-12);
+        assert_eq!(kinds(&branch).len(), 2);
+        let length: f64 = branch
+            .points
+            .windows(2)
+            .map(|pair| (pair[1].parameter - pair[0].parameter).hypot(pair[1].state[0] - pair[0].state[0]))
+            .sum();
+        assert!((length - std::f64::consts::TAU).abs() < 0.02, "{angle}: {length}");
+    }
 }
 
 #[test]

@@ -1,112 +1,96 @@
-//! Recognises that a curve is closed: that it has come back to a solution passed before.
+//! Recognises that a curve is closed: that it has come back to its start.
 //!
-//! The discretisation may have changed on the way, so solutions are not compared component by component. Where the first
-//! parameter passes the value that it had there, in the same direction, the solution at exactly that value is computed, and
-//! the signatures of the two are compared.
+//! The discretisation may have changed on the way, so solutions are not compared component by component but by their
+//! signatures. Where the signature passes the plane through that of the start, across the direction in which the curve left
+//! it, the solution on the plane is computed and compared.
 
+use super::bracket::locate;
 use super::curve::{Curve, Solution};
-use super::follow::{Bound, Origin, fix, fix_closely};
+use super::follow::Bound;
 use super::settings::Settings;
 
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;
-/// The first parameter nearly stands still at a solution if it moves less than this part of how fast it moves soon after.
-const STANDSTILL: f64 = 0.1;
-/// Solutions among which one with a moving parameter is looked for.
-const EARLY: usize = 10;
-/// Part of the length up to the solution compared with; special points this close before the start are those of the start.
-const MARGIN: f64 = 0.5;
+/// Part of a step to which the place of the start is narrowed down.
+const PLACE: f64 = 1e-9;
+/// Steps that end farther from the start than this many times their length do not pass it.
+const FAR: f64 = 2.0;
 
-/// The solution to which a closed curve comes back.
+/// The start of a curve, to which it may come back.
 pub(super) struct Closure {
     bound: Bound,
     parameter: f64,
-    /// Rate of the parameter there.
-    rate: f64,
+    /// The signature and the parameter, as a part of its range.
     signature: Vec<f64>,
-    /// Length of the curve from its first solution to this one.
-    length: f64,
-    /// Number of the solution.
-    index: usize,
+    /// How the curve left; empty before its first step.
+    direction: Vec<f64>,
 }
 
 impl Closure {
-    pub fn at<C: Curve>(curve: &C, solution: &Solution<C::Point>, bound: Bound) -> Self {
-        let place = solution.unknown.len() - bound.from_end;
-        Self {
-            bound,
-            parameter: solution.unknown[place],
-            rate: solution.tangent[place],
-            signature: curve.signature(&solution.unknown),
-            length: 0.0,
-            index: 0,
-        }
+    pub fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bound: Bound) -> Self {
+        let parameter = start.unknown[start.unknown.len() - bound.from_end];
+        let mut closure = Self { bound, parameter, signature: Vec::new(), direction: Vec::new() };
+        closure.signature = closure.signature_of(curve, start);
+        closure
     }
 
-    /// Takes `solution`, the next of the curve, in place of one at which the parameter nearly stands still, as it does where a
-    /// branch leaves a pitchfork.
-    pub fn consider<C: Curve>(
-        &mut self,
-        curve: &C,
-        solution: &Solution<C::Point>,
-        index: usize,
-        length: f64,
-    ) {
-        let rate = solution.tangent[solution.tangent.len() - self.bound.from_end];
-        if index <= EARLY && self.rate.abs() < STANDSTILL * rate.abs() {
-            *self = Self { index, length, ..Self::at(curve, solution, self.bound) };
-        }
+    fn signature_of<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> Vec<f64> {
+        let mut signature = curve.signature(&solution.unknown);
+        let parameter = solution.unknown[solution.unknown.len() - self.bound.from_end];
+        signature.push(parameter / (self.bound.upper - self.bound.lower));
+        signature
     }
 
-    /// The solution at which the curve comes back between two of its solutions, `index` the number of the first of them.
+    /// Whether a solution is the start.
+    pub fn is_start<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> bool {
+        let signature = self.signature_of(curve, solution);
+        let close = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSURE_TOLERANCE * (1.0 + a.abs().max(b.abs()));
+        signature.iter().zip(&self.signature).all(close)
+    }
+
+    /// The solution at which the curve comes back between two consecutive solutions.
     pub fn reached<C: Curve>(
-        &self,
+        &mut self,
         curve: &mut C,
         current: &Solution<C::Point>,
         advanced: &Solution<C::Point>,
-        index: usize,
         settings: &Settings,
     ) -> Option<Solution<C::Point>> {
-        let from_end = self.bound.from_end;
-        let position = |solution: &Solution<C::Point>| {
-            solution.unknown[solution.unknown.len() - from_end] - self.parameter
-        };
-        let (here, there) = (position(current), position(advanced));
-        let crosses = here * there <= 0.0 && there * self.rate >= 0.0 && here != 0.0;
-        if index < self.index + 2 || !crosses {
+        if self.direction.is_empty() {
+            self.direction = difference(&self.signature_of(curve, advanced), &self.signature);
             return None;
         }
-        let value = self.parameter;
-        let is_start = |curve: &C, candidate: &Solution<C::Point>| {
-            same(&curve.signature(&candidate.unknown), &self.signature)
-        };
-        if let Ok(candidate) = fix(curve, current, advanced, from_end, value, settings)
-            && is_start(curve, &candidate)
-        {
-            return Some(candidate);
+        // Signatures cost more than the parameter, which tells where a step cannot lead back.
+        let parameter =
+            |solution: &Solution<C::Point>| solution.unknown[solution.unknown.len() - self.bound.from_end];
+        let distance = [current, advanced].map(|solution| (parameter(solution) - self.parameter).abs());
+        let range = self.bound.upper - self.bound.lower;
+        if distance[0].min(distance[1]) > FAR * settings.largest_parameter_change * range {
+            return None;
         }
-        let candidate = fix_closely(curve, current, advanced, from_end, value, settings).ok()??;
-        is_start(curve, &candidate).then_some(candidate)
-    }
-
-    /// Removes the part of a closed curve, with the lengths of its solutions, behind its start and adds the start as its end.
-    pub fn cut<P: Clone>(&self, solutions: &mut Vec<(Solution<P>, Origin)>, lengths: &[f64], total: f64) {
-        if self.length == 0.0 {
-            return;
+        let [here, there] = [current, advanced].map(|solution| self.signature_of(curve, solution));
+        let height = |signature: &[f64]| inner(&self.direction, &difference(signature, &self.signature));
+        let passes = height(&here) < 0.0 && height(&there) >= 0.0;
+        let far = length(&difference(&here, &self.signature)) > FAR * length(&difference(&here, &there));
+        if !passes || far {
+            return None;
         }
-        let start = total - self.length;
-        let mut lengths = lengths.iter();
-        solutions.retain(|_| lengths.next().is_some_and(|length| *length < start - MARGIN * self.length));
-        if let Some((first, _)) = solutions.first().cloned() {
-            solutions.push((first, Origin::End));
-        }
+        let test =
+            |curve: &mut C, solution: &Solution<C::Point>| Some(height(&self.signature_of(curve, solution)));
+        // A curve whose start cannot be computed again is followed on.
+        let candidate = locate(curve, current, advanced, settings, PLACE, test).ok()??;
+        self.is_start(curve, &candidate).then_some(candidate)
     }
 }
 
-fn same(signature: &[f64], other: &[f64]) -> bool {
-    signature.len() == other.len()
-        && signature
-            .iter()
-            .zip(other)
-            .all(|(a, b)| (a - b).abs() <= CLOSURE_TOLERANCE * (1.0 + a.abs().max(b.abs())))
+fn difference(one: &[f64], other: &[f64]) -> Vec<f64> {
+    one.iter().zip(other).map(|(a, b)| a - b).collect()
+}
+
+fn inner(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(a, b)| a * b).sum()
+}
+
+fn length(vector: &[f64]) -> f64 {
+    inner(vector, vector).sqrt()
 }

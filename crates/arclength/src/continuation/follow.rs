@@ -94,9 +94,6 @@ pub fn follow<C: Curve>(
     }
     let mut closure = request.bounds.first().map(|bound| Closure::at(curve, &current, *bound));
     let mut solutions = vec![(current.clone(), Origin::Step)];
-    // Lengths of the curve up to the solutions.
-    let mut lengths = vec![0.0];
-    let mut length = 0.0;
     let mut previous: Option<(Vec<f64>, f64)> = None;
     let mut step = settings.initial_step;
     if observer(&current).is_break() {
@@ -157,19 +154,14 @@ pub fn follow<C: Curve>(
             solutions.extend(between);
             return Ok(Followed { solutions, stop: Stop::RangeEnd { bound, value } });
         }
-        let index = solutions.len() - 1;
-        let closed = closure.as_ref().and_then(|closure| {
-            closure.reached(curve, &current, &advanced, index, settings).map(|end| (closure, end))
-        });
-        let place =
-            |curve: &C, solution: &Solution<C::Point>| length + along(curve, &current, &solution.unknown);
-        if let Some((closure, candidate)) = closed {
-            let reached = place(curve, &candidate);
-            between.retain(|(solution, _)| place(curve, solution) < reached);
-            between.push((candidate, Origin::End));
-            lengths.extend(between.iter().map(|(solution, _)| place(curve, solution)));
+        if let Some(closure) = &mut closure
+            && let Some(end) = closure.reached(curve, &current, &advanced, settings)
+        {
+            let place = |solution: &Solution<C::Point>| along(curve, &current, &solution.unknown);
+            let reached = place(&end);
+            between.retain(|(solution, _)| place(solution) < reached && !closure.is_start(curve, solution));
             solutions.extend(between);
-            closure.cut(&mut solutions, &lengths, reached);
+            solutions.push((solutions[0].0.clone(), Origin::End));
             return Ok(Followed { solutions, stop: Stop::Closed });
         }
         between.push((advanced, Origin::Step));
@@ -181,16 +173,11 @@ pub fn follow<C: Curve>(
         }
         let Some((next, _)) = between.last() else { continue };
         let next = next.clone();
-        lengths.extend(between.iter().map(|(solution, _)| place(curve, solution)));
         solutions.extend(between);
         if let Some(stop) = ending {
             return Ok(Followed { solutions, stop });
         }
         current = next;
-        length = lengths.last().copied().unwrap_or(length);
-        if let Some(closure) = &mut closure {
-            closure.consider(curve, &current, solutions.len() - 1, length);
-        }
     }
     Ok(Followed { solutions, stop: Stop::MostSteps })
 }
@@ -413,7 +400,7 @@ fn requested_values<C: Curve>(
 }
 
 /// The solution between two neighbours at which the unknown `from_end` has the given value.
-pub(super) fn fix<C: Curve>(
+fn fix<C: Curve>(
     curve: &mut C,
     before: &Solution<C::Point>,
     after: &Solution<C::Point>,
@@ -436,7 +423,7 @@ pub(super) fn fix<C: Curve>(
 
 /// As [`fix`], from a start for which the place of the value was narrowed down before: next to a turning point of the unknown
 /// only a close start leads to the right one of two solutions. `None` where the value is not passed.
-pub(super) fn fix_closely<C: Curve>(
+fn fix_closely<C: Curve>(
     curve: &mut C,
     before: &Solution<C::Point>,
     after: &Solution<C::Point>,

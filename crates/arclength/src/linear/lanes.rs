@@ -292,7 +292,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn solves_random_systems(rows in 1usize..40, extra in 1usize..4, seed in prop::collection::vec(-1.0..1.0f64, 1000)) {
+        fn solves_random_systems(rows in 1usize..14, extra in 1usize..4, seed in prop::collection::vec(-1.0..1.0f64, 1000)) {
             // Lanes: dominant diagonal, cyclically dominant (every row is exchanged), random, random with a zero diagonal.
             let mut numbers = seed.iter().cycle();
             let mut next = || *numbers.next().expect("a cycle");
