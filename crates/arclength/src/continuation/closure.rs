@@ -1,8 +1,8 @@
 //! Recognises that a curve is closed: that it has come back to its start.
 //!
 //! The discretisation may have changed on the way, so solutions are not compared component by component but by their
-//! signatures. Where the signature passes the plane through that of the start, across the direction in which the curve left
-//! it, the solution on the plane is computed and compared.
+//! signatures. Where a step passes the plane through the signature of the start, across the step, the solution on the plane
+//! is computed and compared.
 
 use super::bracket::locate;
 use super::curve::{Curve, Solution};
@@ -20,77 +20,61 @@ const FAR: f64 = 2.0;
 pub(super) struct Closure {
     bound: Bound,
     parameter: f64,
-    /// The signature and the parameter, as a part of its range.
+    /// The signature and the parameter.
     signature: Vec<f64>,
-    /// How the curve left; empty before its first step.
-    direction: Vec<f64>,
 }
 
 impl Closure {
     pub fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bound: Bound) -> Self {
         let parameter = start.unknown[start.unknown.len() - bound.from_end];
-        let mut closure = Self { bound, parameter, signature: Vec::new(), direction: Vec::new() };
-        closure.signature = closure.signature_of(curve, start);
-        closure
+        let mut signature: Vec<f64> =
+            curve.signature(&start.unknown).into_iter().map(|(value, _)| value).collect();
+        signature.push(parameter);
+        Self { bound, parameter, signature }
     }
 
-    fn signature_of<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> Vec<f64> {
-        let mut signature = curve.signature(&solution.unknown);
-        let parameter = solution.unknown[solution.unknown.len() - self.bound.from_end];
-        signature.push(parameter / (self.bound.upper - self.bound.lower));
-        signature
+    fn parameter<P>(&self, solution: &Solution<P>) -> f64 {
+        solution.unknown[solution.unknown.len() - self.bound.from_end]
     }
 
-    /// Whether a solution is the start.
-    pub fn is_start<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> bool {
-        let signature = self.signature_of(curve, solution);
-        let close = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSURE_TOLERANCE * (1.0 + a.abs().max(b.abs()));
-        signature.iter().zip(&self.signature).all(close)
+    /// The signature of a solution less that of the start, in parts of the sizes.
+    fn beyond<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> Vec<f64> {
+        let parameter = (self.parameter(solution), self.bound.upper - self.bound.lower);
+        let signature = curve.signature(&solution.unknown).into_iter().chain([parameter]);
+        signature.zip(&self.signature).map(|((here, size), start)| (here - start) / size).collect()
     }
 
-    /// The solution at which the curve comes back between two consecutive solutions.
+    /// The solution at which the curve comes back between two consecutive solutions, which are not the first two.
     pub fn reached<C: Curve>(
-        &mut self,
+        &self,
         curve: &mut C,
         current: &Solution<C::Point>,
         advanced: &Solution<C::Point>,
         settings: &Settings,
     ) -> Option<Solution<C::Point>> {
-        if self.direction.is_empty() {
-            self.direction = difference(&self.signature_of(curve, advanced), &self.signature);
-            return None;
-        }
         // Signatures cost more than the parameter, which tells where a step cannot lead back.
-        let parameter =
-            |solution: &Solution<C::Point>| solution.unknown[solution.unknown.len() - self.bound.from_end];
-        let distance = [current, advanced].map(|solution| (parameter(solution) - self.parameter).abs());
+        let distance = [current, advanced].map(|solution| (self.parameter(solution) - self.parameter).abs());
         let range = self.bound.upper - self.bound.lower;
         if distance[0].min(distance[1]) > FAR * settings.largest_parameter_change * range {
             return None;
         }
-        let [here, there] = [current, advanced].map(|solution| self.signature_of(curve, solution));
-        let height = |signature: &[f64]| inner(&self.direction, &difference(signature, &self.signature));
-        let passes = height(&here) < 0.0 && height(&there) >= 0.0;
-        let far = length(&difference(&here, &self.signature)) > FAR * length(&difference(&here, &there));
+        let [here, there] = [current, advanced].map(|solution| self.beyond(curve, solution));
+        let chord: Vec<f64> = there.iter().zip(&here).map(|(there, here)| there - here).collect();
+        let passes = inner(&chord, &here) < 0.0 && inner(&chord, &there) >= 0.0;
+        let far = inner(&here, &here).sqrt() > FAR * inner(&chord, &chord).sqrt();
         if !passes || far {
             return None;
         }
         let test =
-            |curve: &mut C, solution: &Solution<C::Point>| Some(height(&self.signature_of(curve, solution)));
+            |curve: &mut C, solution: &Solution<C::Point>| Some(inner(&chord, &self.beyond(curve, solution)));
         // A curve whose start cannot be computed again is followed on.
         let candidate = locate(curve, current, advanced, settings, PLACE, test).ok()??;
-        self.is_start(curve, &candidate).then_some(candidate)
+        let same =
+            self.beyond(curve, &candidate).iter().all(|difference| difference.abs() <= CLOSURE_TOLERANCE);
+        same.then_some(candidate)
     }
-}
-
-fn difference(one: &[f64], other: &[f64]) -> Vec<f64> {
-    one.iter().zip(other).map(|(a, b)| a - b).collect()
 }
 
 fn inner(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| a * b).sum()
-}
-
-fn length(vector: &[f64]) -> f64 {
-    inner(vector, vector).sqrt()
 }

@@ -58,9 +58,9 @@ pub trait Curve {
         after: &Solution<Self::Point>,
     ) -> Result<Vec<Solution<Self::Point>>, Error>;
 
-    /// Quantities that tell whether two solutions with the same first bounded parameter are the same;
-    /// independent of discretisation and phase.
-    fn signature(&self, unknown: &[f64]) -> Vec<f64>;
+    /// Quantities, each with its size on the curve so far, that tell whether two solutions with the same first bounded parameter
+    /// are the same; independent of discretisation and phase.
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)>;
 
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
     fn ending(&mut self, _before: &Solution<Self::Point>, _after: &Solution<Self::Point>) -> Option<Ending> {

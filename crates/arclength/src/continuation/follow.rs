@@ -65,6 +65,8 @@ const MOST_ADAPTATIONS: usize = 12;
 const MOST_REFINEMENTS: usize = 6;
 /// Part of a step to which the place of a parameter value is narrowed down for a second attempt.
 const CLOSE: f64 = 1e-3;
+/// Special points this close to the start, in the metric, to which a closed curve comes back are that start.
+const AT_START: f64 = 1e-8;
 /// Part of its range by which a parameter of the start may move by rounding.
 const START_ROUNDING: f64 = 1e-13;
 
@@ -92,7 +94,7 @@ pub fn follow<C: Curve>(
             current.unknown[place] = value;
         }
     }
-    let mut closure = request.bounds.first().map(|bound| Closure::at(curve, &current, *bound));
+    let closure = request.bounds.first().map(|bound| Closure::at(curve, &current, *bound));
     let mut solutions = vec![(current.clone(), Origin::Step)];
     let mut previous: Option<(Vec<f64>, f64)> = None;
     let mut step = settings.initial_step;
@@ -154,12 +156,14 @@ pub fn follow<C: Curve>(
             solutions.extend(between);
             return Ok(Followed { solutions, stop: Stop::RangeEnd { bound, value } });
         }
-        if let Some(closure) = &mut closure
+        if let Some(closure) = &closure
+            && solutions.len() > 1
             && let Some(end) = closure.reached(curve, &current, &advanced, settings)
         {
             let place = |solution: &Solution<C::Point>| along(curve, &current, &solution.unknown);
             let reached = place(&end);
-            between.retain(|(solution, _)| place(solution) < reached && !closure.is_start(curve, solution));
+            // A special start is found again.
+            between.retain(|(solution, _)| place(solution) < reached - AT_START);
             solutions.extend(between);
             solutions.push((solutions[0].0.clone(), Origin::End));
             return Ok(Followed { solutions, stop: Stop::Closed });

@@ -281,9 +281,9 @@ impl Curve for CycleCurve<'_> {
         special::between(self, before, after)
     }
 
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let n = self.collocation.problem.dimension();
-        let mut signature = vec![unknown[unknown.len() - 2].ln()];
+        let mut signature = vec![(unknown[unknown.len() - 2].ln(), 1.0)];
         signature.extend(self.sizes.signature(&ranges(&self.collocation, unknown, n)));
         signature
     }

@@ -99,8 +99,8 @@ impl Curve for DefiningCurve<'_> {
     ) -> Result<Vec<Solution<()>>, Error> {
         Ok(Vec::new())
     }
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
-        unknown.to_vec()
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        unknown.iter().map(|value| (*value, 1.0)).collect()
     }
 }
 

@@ -5,7 +5,6 @@ use super::extrema::Range;
 use super::limit_cycle::LimitCycle;
 use super::problem::PeriodicProblem;
 use crate::algebraic::scales::natural_scales;
-use std::cell::OnceCell;
 
 /// Part of its mean below which the amplitude of a state does not count as its size.
 const MEAN_PART: f64 = 0.01;
@@ -33,8 +32,7 @@ pub(crate) struct StateSizes {
     largest: Vec<f64>,
     /// Sizes below which a state counts as one that rests, from the nonlinearity of the field where the curve starts.
     resting: Vec<f64>,
-    /// Sizes where the curve starts.
-    first: OnceCell<Vec<f64>>,
+    /// The period where the curve starts.
     first_period: Option<f64>,
 }
 
@@ -57,7 +55,6 @@ impl StateSizes {
         Self {
             largest: vec![0.0; n],
             resting: natural.iter().map(|size| RESTING_PART * size).collect(),
-            first: OnceCell::new(),
             first_period: None,
         }
     }
@@ -121,15 +118,10 @@ impl StateSizes {
         (mixed < 0.0).then(|| vanishing_point((a, first), (b, second)))
     }
 
-    /// Extreme values in the sizes of the first cycle asked for (sizes grow along a curve), to tell whether two cycles are the
-    /// same.
-    pub fn signature(&self, ranges: &[Range]) -> Vec<f64> {
-        let scales = self.first.get_or_init(|| self.met().collect());
-        ranges
-            .iter()
-            .zip(scales)
-            .flat_map(|(range, scale)| [range.largest / scale, range.smallest / scale])
-            .collect()
+    /// Extreme values with the sizes of the states, to tell whether two cycles are the same.
+    pub fn signature(&self, ranges: &[Range]) -> Vec<(f64, f64)> {
+        let sized = ranges.iter().zip(self.met());
+        sized.flat_map(|(range, size)| [(range.largest, size), (range.smallest, size)]).collect()
     }
 
     /// Whether the period grows without bound; `sensitivity` is the rate of its logarithm over that of the parameters in parts of

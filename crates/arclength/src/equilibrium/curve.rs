@@ -215,12 +215,8 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
-        unknown
-            .iter()
-            .zip(&self.first_scales)
-            .take(self.dimension())
-            .map(|(value, scale)| value / scale)
-            .collect()
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        let states = unknown.iter().copied().zip(self.system.scales.iter().copied());
+        states.take(self.dimension()).collect()
     }
 }

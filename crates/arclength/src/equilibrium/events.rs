@@ -10,7 +10,7 @@
 
 use super::crossings::crossings;
 use super::curve::{EquilibriumCurve, Inspection, Tests};
-use super::locating;
+use super::locating::{self, SHORTEST_JUMP};
 use super::special::SpecialPoint;
 use crate::algebraic::{between, length, position};
 use crate::branch::{SpecialKind, Stability};
@@ -46,6 +46,9 @@ const UNDECIDED_FOLD: f64 = 1e-13;
 /// Rate of change of the parameter at a branch point, relative to its values around, below which the branch is tangential
 /// there: a pitchfork met on the branch that turns.
 const TANGENTIAL: f64 = 1e-3;
+
+/// Smallest cosine of the angle between a part of a step and the tangents at its ends: shorter parts are straighter.
+const LEAST_COSINE: f64 = 0.5;
 
 type Node = Solution<Inspection>;
 
@@ -359,9 +362,19 @@ impl Scan<'_, '_> {
     }
 
     /// Special points in a part of the step.
+    ///
+    /// # Errors
+    /// [`Error::OtherBranch`] if the ends lie beside each other and not behind each other.
     fn part(&mut self, before: &Node, after: &Node, share: f64) -> Result<(), Error> {
         let changes = Changes::between(before, after);
         let distance = distance(self.curve, before, after);
+        let scales = &self.curve.system.scales;
+        let cosine = |origin: &Node, other: &Node| {
+            position(origin, &other.unknown, scales).abs() / (length(&origin.tangent, scales) * distance)
+        };
+        if distance > SHORTEST_JUMP && cosine(before, after).min(cosine(after, before)) < LEAST_COSINE {
+            return Err(Error::OtherBranch);
+        }
         let divide = if changes.count() > 1 || !changes.explain(before, after) {
             Some(0.5)
         } else {

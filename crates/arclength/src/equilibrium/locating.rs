@@ -26,8 +26,8 @@ const CANDIDATES: usize = 3;
 const MARGIN: f64 = 0.1;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
 const UNPERTURBED: f64 = 1e-8;
-/// A step longer than this, in the metric, over a branch point of a perturbed field is shortened.
-const SHORTEST_JUMP: f64 = 1e-6;
+/// A step longer than this, in the metric, that leads to another branch is shortened.
+pub(super) const SHORTEST_JUMP: f64 = 1e-6;
 
 type Node = Solution<Inspection>;
 

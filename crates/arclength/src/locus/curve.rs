@@ -29,7 +29,6 @@ pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
     /// Sizes of the states.
     pub states: Vec<f64>,
     ranges: [f64; 2],
-    first_scales: Vec<f64>,
     visited: Vec<[f64; 2]>,
     differentiator: Differentiator,
     workspace: EigenvalueWorkspace,
@@ -46,7 +45,6 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
             system: DenseSystem::new(kind, sizes),
             settings,
             ranges,
-            first_scales: states.clone(),
             visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
             states,
             differentiator: Differentiator::default(),
@@ -141,9 +139,9 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         events::special_points(self, before, after)
     }
 
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
-        let states = unknown.iter().zip(&self.first_scales).map(|(value, scale)| value / scale);
-        let last = unknown.last().map(|value| value / self.ranges[1]);
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        let states = unknown.iter().copied().zip(self.system.scales.iter().copied()).take(self.states.len());
+        let last = unknown.last().map(|value| (*value, self.ranges[1]));
         states.chain(last).collect()
     }
 

@@ -353,11 +353,11 @@ impl Curve for SlidingCurve {
         Ok(found)
     }
 
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         // The period and, where the start has not moved, the state itself.
         let start = self.start(unknown);
         let angle = start.state.state[2];
-        vec![start.period, angle - TAU * (angle / TAU).round()]
+        vec![(start.period, self.map.period_scale), (angle - TAU * (angle / TAU).round(), 1.0)]
     }
 
     fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending> {

@@ -457,10 +457,10 @@ impl Curve for CycleLocusCurve<'_> {
         Ok(found)
     }
 
-    fn signature(&self, unknown: &[f64]) -> Vec<f64> {
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let (cycle, _) = split(unknown, self.states, self.kind());
         let end = cycle.len() - 3;
-        let mut signature = vec![cycle[end].ln(), cycle[end + 2] / self.system.parameter_scales[1]];
+        let mut signature = vec![(cycle[end].ln(), 1.0), (cycle[end + 2], self.system.parameter_scales[1])];
         signature.extend(self.sizes.signature(&ranges(&self.base, &cycle[..end + 2], self.states)));
         signature
     }
