@@ -8,7 +8,6 @@ use arclength::Scalar;
 /// One step over registers with indices of type `R`. The last register named is the one that is written.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Instruction<R> {
-    Constant(f64, R),
     Time(R),
     Add(R, R, R),
     Subtract(R, R, R),
@@ -30,6 +29,14 @@ pub(crate) enum Instruction<R> {
     SumOfProducts([R; 4], R),
     /// a b - c d
     DifferenceOfProducts([R; 4], R),
+    /// (a b + c) + d e
+    MultiplyAddAddProduct([R; 5], R),
+    /// (a b + c) - d e
+    MultiplyAddSubtractProduct([R; 5], R),
+    /// (a b - c) - d e
+    MultiplySubtractSubtractProduct([R; 5], R),
+    /// (c - a b) - d e
+    SubtractTwoProducts([R; 5], R),
     /// a b c
     MultiplyMultiply(R, R, R, R),
     /// (a + b) c
@@ -66,7 +73,7 @@ impl<R: Copy> Instruction<R> {
     pub fn registers(&self) -> (Vec<R>, Vec<R>) {
         use Instruction as I;
         match *self {
-            I::Constant(_, to) | I::Time(to) => (vec![], vec![to]),
+            I::Time(to) => (vec![], vec![to]),
             I::Negate(a, to)
             | I::AddConstant(a, _, to)
             | I::MultiplyConstant(a, _, to)
@@ -97,6 +104,10 @@ impl<R: Copy> Instruction<R> {
             I::SumOfProducts(factors, to) | I::DifferenceOfProducts(factors, to) => {
                 (factors.to_vec(), vec![to])
             }
+            I::MultiplyAddAddProduct(operands, to)
+            | I::MultiplyAddSubtractProduct(operands, to)
+            | I::MultiplySubtractSubtractProduct(operands, to)
+            | I::SubtractTwoProducts(operands, to) => (operands.to_vec(), vec![to]),
             I::SineCosine(a, sine, cosine) => (vec![a], vec![sine, cosine]),
         }
     }
@@ -111,7 +122,6 @@ pub(super) fn execute<T: Scalar, R: Copy>(
     use Instruction as I;
     let r = registers;
     match *instruction {
-        I::Constant(value, to) => r.write(to, T::from(value)),
         I::Time(to) => r.write(to, time),
         I::Add(a, b, to) => r.write(to, r.read(a) + r.read(b)),
         I::Subtract(a, b, to) => r.write(to, r.read(a) - r.read(b)),
@@ -128,6 +138,18 @@ pub(super) fn execute<T: Scalar, R: Copy>(
         I::SumOfProducts([a, b, c, d], to) => r.write(to, r.read(a) * r.read(b) + r.read(c) * r.read(d)),
         I::DifferenceOfProducts([a, b, c, d], to) => {
             r.write(to, r.read(a) * r.read(b) - r.read(c) * r.read(d));
+        }
+        I::MultiplyAddAddProduct([a, b, c, d, e], to) => {
+            r.write(to, r.read(a) * r.read(b) + r.read(c) + r.read(d) * r.read(e));
+        }
+        I::MultiplyAddSubtractProduct([a, b, c, d, e], to) => {
+            r.write(to, r.read(a) * r.read(b) + r.read(c) - r.read(d) * r.read(e));
+        }
+        I::MultiplySubtractSubtractProduct([a, b, c, d, e], to) => {
+            r.write(to, r.read(a) * r.read(b) - r.read(c) - r.read(d) * r.read(e));
+        }
+        I::SubtractTwoProducts([a, b, c, d, e], to) => {
+            r.write(to, r.read(c) - r.read(a) * r.read(b) - r.read(d) * r.read(e));
         }
         I::MultiplyMultiply(a, b, c, to) => r.write(to, r.read(a) * r.read(b) * r.read(c)),
         I::AddMultiply(a, b, c, to) => r.write(to, (r.read(a) + r.read(b)) * r.read(c)),

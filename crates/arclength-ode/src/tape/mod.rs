@@ -1,7 +1,7 @@
 //! The compiled form of a model: a straight list of instructions over registers.
 //!
-//! Registers hold, in this order, the states, the parameters and then intermediate results, which
-//! are reused as soon as they are dead. Nearly every model gets by with 256 registers: a workspace
+//! Registers hold, in this order, the states, the parameters, constants and then intermediate results,
+//! which are reused as soon as they are dead. Nearly every model gets by with 256 registers: a workspace
 //! of fixed size on the stack, with indices of one byte that need no check. Others allocate theirs.
 
 mod instruction;
@@ -15,7 +15,7 @@ pub(crate) use schedule::{MAXIMUM_REGISTERS, schedule};
 
 use arclength::Scalar;
 use instruction::{Instruction, execute};
-use registers::{Registers, STACK_REGISTERS, Stack};
+use registers::{Registers, STACK_REGISTERS, Stack, for_few};
 
 /// A compiled list of quantities.
 #[derive(Clone, Debug)]
@@ -23,6 +23,7 @@ pub(crate) struct Tape {
     program: Program,
     states: usize,
     parameters: usize,
+    constants: Vec<f64>,
     registers: usize,
 }
 
@@ -30,7 +31,7 @@ pub(crate) struct Tape {
 const FEW_REGISTERS: usize = 32;
 
 /// Invariant: every register that an instruction or a result reads is below the number of registers
-/// and holds a state or a parameter, or was written by an earlier instruction.
+/// and holds a state, a parameter or a constant, or was written by an earlier instruction.
 #[derive(Clone, Debug)]
 enum Program {
     OnStack(Code<u8>),
@@ -71,9 +72,9 @@ impl<R: Copy + Into<usize>> Code<R> {
         if let [last] = last {
             execute(last, time, registers);
         }
-        for (result, &register) in results.iter_mut().zip(&self.results) {
-            *result = registers.read(register);
-        }
+        let count = results.len().min(self.results.len());
+        let (results, sources) = (&mut results[..count], &self.results[..count]);
+        for_few!(count, index => results[index] = registers.read(sources[index]));
     }
 
     fn uses_time(&self) -> bool {
@@ -129,10 +130,11 @@ impl Tape {
         parameters: &[T],
         results: &mut [T],
     ) {
-        // SAFETY: the invariant of `Program`, with no more registers than `N`; states and parameters are written first.
+        // SAFETY: the invariant of `Program`, with no more registers than `N`; states, parameters and constants are written first.
         let mut registers = unsafe { Stack::<T, N>::new() };
-        registers.load(0, state);
-        registers.load(self.states, parameters);
+        registers.load(0, state, |value| value);
+        registers.load(self.states, parameters, |value| value);
+        registers.load(self.states + self.parameters, &self.constants, T::from);
         code.run(&mut registers, time, results);
     }
 
@@ -150,8 +152,9 @@ impl Tape {
             }
             Program::OnHeap(code) => {
                 let mut registers = vec![T::zero(); self.registers];
-                registers.load(0, state);
-                registers.load(self.states, parameters);
+                registers.load(0, state, |value| value);
+                registers.load(self.states, parameters, |value| value);
+                registers.load(self.states + self.parameters, &self.constants, T::from);
                 code.run(&mut registers, time, results);
             }
         }

@@ -2,12 +2,38 @@
 
 use std::mem::MaybeUninit;
 
+/// Does something for every index, without a loop where there are few: preparing one takes longer than running a short model.
+macro_rules! for_few {
+    ($count:expr, $index:ident => $body:expr) => {
+        match $count {
+            0 => {}
+            1 => for_few!(@ $index => $body, 0),
+            2 => for_few!(@ $index => $body, 0, 1),
+            3 => for_few!(@ $index => $body, 0, 1, 2),
+            4 => for_few!(@ $index => $body, 0, 1, 2, 3),
+            5 => for_few!(@ $index => $body, 0, 1, 2, 3, 4),
+            count => {
+                for $index in 0..count {
+                    $body;
+                }
+            }
+        }
+    };
+    (@ $index:ident => $body:expr, $($number:literal),*) => {{
+        $({
+            let $index: usize = $number;
+            $body;
+        })*
+    }};
+}
+pub(super) use for_few;
+
 /// Registers that an instruction reads and writes, with indices of type `R`.
 pub(super) trait Registers<T, R> {
     fn read(&self, register: R) -> T;
     fn write(&mut self, register: R, value: T);
-    /// Writes consecutive registers, the first ones of all.
-    fn load(&mut self, first: usize, values: &[T]);
+    /// Writes consecutive registers.
+    fn load<S: Copy>(&mut self, first: usize, values: &[S], convert: impl Fn(S) -> T);
 }
 
 /// Number of registers that a byte can name.
@@ -46,10 +72,10 @@ impl<T: Copy, const N: usize> Registers<T, u8> for Stack<T, N> {
     }
 
     #[inline(always)]
-    fn load(&mut self, first: usize, values: &[T]) {
-        for (slot, &value) in self.slots[first..first + values.len()].iter_mut().zip(values) {
-            slot.write(value);
-        }
+    fn load<S: Copy>(&mut self, first: usize, values: &[S], convert: impl Fn(S) -> T) {
+        let count = values.len();
+        let slots = &mut self.slots[first..][..count];
+        for_few!(count, index => slots[index].write(convert(values[index])));
     }
 }
 
@@ -65,7 +91,9 @@ impl<T: Copy> Registers<T, u16> for Vec<T> {
         self[register as usize] = value;
     }
 
-    fn load(&mut self, first: usize, values: &[T]) {
-        self[first..first + values.len()].copy_from_slice(values);
+    fn load<S: Copy>(&mut self, first: usize, values: &[S], convert: impl Fn(S) -> T) {
+        for (register, value) in self[first..first + values.len()].iter_mut().zip(values) {
+            *register = convert(*value);
+        }
     }
 }

@@ -51,7 +51,16 @@ fn allot_registers(
     }
     let mut free: Vec<Register> =
         (0..inputs).filter(|&register| !occupied[register]).map(|register| register as Register).collect();
-    let mut registers = inputs;
+    // Constants keep their registers, which every evaluation begins with.
+    let mut constants = Vec::new();
+    for (node, operation) in operations.iter().enumerate() {
+        if let (Operation::Constant(bits), Some(_)) = (*operation, last_use[node]) {
+            register_of[node] = Register::try_from(inputs + constants.len()).ok()?;
+            constants.push(f64::from_bits(bits));
+            last_use[node] = Some(usize::MAX);
+        }
+    }
+    let mut registers = inputs + constants.len();
     let mut allotted = Vec::with_capacity(steps.len());
     for (index, step) in steps.iter().enumerate() {
         let reads: Vec<Register> = step.reads.iter().map(|&node| register_of[node as usize]).collect();
@@ -85,20 +94,24 @@ fn allot_registers(
             .into_iter()
             .map(|(kind, reads, writes)| instruction(kind, &short(reads), &short(writes)))
             .collect();
-        Program::OnStack(Code { instructions, results: short(results.collect()) }.check(inputs, registers))
+        Program::OnStack(
+            Code { instructions, results: short(results.collect()) }
+                .check(inputs + constants.len(), registers),
+        )
     } else {
         let instructions =
             allotted.into_iter().map(|(kind, reads, writes)| instruction(kind, &reads, &writes)).collect();
-        Program::OnHeap(Code { instructions, results: results.collect() }.check(inputs, registers))
+        Program::OnHeap(
+            Code { instructions, results: results.collect() }.check(inputs + constants.len(), registers),
+        )
     };
-    Some(Tape { program, states, parameters, registers })
+    Some(Tape { program, states, parameters, constants, registers })
 }
 
 fn instruction<R: Copy>(kind: Kind, reads: &[R], writes: &[R]) -> Instruction<R> {
     use Instruction as I;
     let to = writes[0];
     match (kind, reads) {
-        (Kind::Constant(value), _) => I::Constant(value, to),
         (Kind::Unary(UnaryOperation::Negate), &[a]) => I::Negate(a, to),
         (Kind::Unary(UnaryOperation::Reciprocal), &[a]) => I::Reciprocal(a, to),
         (Kind::Unary(UnaryOperation::Exponential), &[a]) => I::Exponential(a, to),
@@ -117,6 +130,14 @@ fn instruction<R: Copy>(kind: Kind, reads: &[R], writes: &[R]) -> Instruction<R>
         (Kind::SubtractProduct, &[a, b, c]) => I::SubtractProduct(a, b, c, to),
         (Kind::SumOfProducts, &[a, b, c, d]) => I::SumOfProducts([a, b, c, d], to),
         (Kind::DifferenceOfProducts, &[a, b, c, d]) => I::DifferenceOfProducts([a, b, c, d], to),
+        (Kind::MultiplyAddAddProduct, &[a, b, c, d, e]) => I::MultiplyAddAddProduct([a, b, c, d, e], to),
+        (Kind::MultiplyAddSubtractProduct, &[a, b, c, d, e]) => {
+            I::MultiplyAddSubtractProduct([a, b, c, d, e], to)
+        }
+        (Kind::MultiplySubtractSubtractProduct, &[a, b, c, d, e]) => {
+            I::MultiplySubtractSubtractProduct([a, b, c, d, e], to)
+        }
+        (Kind::SubtractTwoProducts, &[a, b, c, d, e]) => I::SubtractTwoProducts([a, b, c, d, e], to),
         (Kind::MultiplyMultiply, &[a, b, c]) => I::MultiplyMultiply(a, b, c, to),
         (Kind::AddMultiply, &[a, b, c]) => I::AddMultiply(a, b, c, to),
         (Kind::SubtractMultiply, &[a, b, c]) => I::SubtractMultiply(a, b, c, to),

@@ -18,7 +18,6 @@ pub(super) struct Step {
 /// The instructions of [`Instruction`](super::instruction::Instruction), without their registers.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    Constant(f64),
     Time,
     Unary(UnaryOperation),
     Binary(BinaryOperation),
@@ -31,6 +30,10 @@ pub(super) enum Kind {
     SubtractProduct,
     SumOfProducts,
     DifferenceOfProducts,
+    MultiplyAddAddProduct,
+    MultiplyAddSubtractProduct,
+    MultiplySubtractSubtractProduct,
+    SubtractTwoProducts,
     MultiplyMultiply,
     AddMultiply,
     SubtractMultiply,
@@ -61,9 +64,6 @@ pub(super) fn select(graph: &Graph, results: &[NodeId]) -> Vec<Step> {
     for &node in &order {
         selection.select(node);
     }
-    for &result in results {
-        selection.materialize(result);
-    }
     selection.steps
 }
 
@@ -89,16 +89,16 @@ fn evaluation_order(operations: &[Operation], results: &[NodeId]) -> Vec<NodeId>
     order
 }
 
-/// One instruction for an operation and one or two of its operands.
+/// One instruction for an operation and one to three of those that its operands come from.
 struct Fusion {
     kind: Kind,
     reads: Vec<NodeId>,
-    absorbed: [Option<NodeId>; 2],
+    absorbed: [Option<NodeId>; 3],
 }
 
 impl Fusion {
     fn of_one(kind: Kind, reads: &[NodeId], absorbed: NodeId) -> Option<Self> {
-        Some(Self { kind, reads: reads.to_vec(), absorbed: [Some(absorbed), None] })
+        Some(Self { kind, reads: reads.to_vec(), absorbed: [Some(absorbed), None, None] })
     }
 }
 
@@ -196,12 +196,18 @@ impl<'a> Selection<'a> {
     /// A sum or difference with products.
     fn fused_sum(&self, operation: BinaryOperation, left: NodeId, right: NodeId) -> Option<Fusion> {
         let is_sum = operation == BinaryOperation::Add;
-        let products =
-            (self.varying(left, BinaryOperation::Multiply), self.varying(right, BinaryOperation::Multiply));
-        match products {
+        let products = [left, right].map(|node| self.operands_of(node, BinaryOperation::Multiply));
+        let varying = [left, right].map(|node| self.varying(node, BinaryOperation::Multiply));
+        // A constant factor stays within the instruction, unless there are two products.
+        let products = if products.iter().all(Option::is_some) && varying.iter().any(Option::is_some) {
+            products
+        } else {
+            varying
+        };
+        match products.into() {
             (Some((a, b)), Some((c, d))) => {
                 let kind = if is_sum { Kind::SumOfProducts } else { Kind::DifferenceOfProducts };
-                let absorbed = if left == right { [Some(left), None] } else { [Some(left), Some(right)] };
+                let absorbed = [Some(left), (left != right).then_some(right), None];
                 return Some(Fusion { kind, reads: vec![a, b, c, d], absorbed });
             }
             (Some((a, b)), None) => {
@@ -209,6 +215,9 @@ impl<'a> Selection<'a> {
                 return Fusion::of_one(kind, &[a, b, right], left);
             }
             (None, Some((a, b))) => {
+                if let Some(fusion) = self.fused_sum_of_three(is_sum, left, right, (a, b)) {
+                    return Some(fusion);
+                }
                 let kind = if is_sum { Kind::MultiplyAdd } else { Kind::SubtractProduct };
                 return Fusion::of_one(kind, &[a, b, left], right);
             }
@@ -221,6 +230,42 @@ impl<'a> Selection<'a> {
         let (a, value) = self.scaled(right)?;
         let kind = if is_sum { Kind::ScaleAdd(value) } else { Kind::SubtractScaled(value) };
         Fusion::of_one(kind, &[a, left], right)
+    }
+
+    /// A sum or difference of one product and another operand, and a second product, `right = d e`, added or subtracted.
+    fn fused_sum_of_three(
+        &self,
+        is_sum: bool,
+        left: NodeId,
+        right: NodeId,
+        (d, e): (NodeId, NodeId),
+    ) -> Option<Fusion> {
+        use BinaryOperation::{Add, Multiply, Subtract};
+        let sum = self.varying(left, Add);
+        let (one, other) = sum.or_else(|| self.varying(left, Subtract))?;
+        let (kind, product, c) = match (self.varying(one, Multiply), self.varying(other, Multiply)) {
+            (Some(product), None) => {
+                let kind = match (sum.is_some(), is_sum) {
+                    (true, true) => Kind::MultiplyAddAddProduct,
+                    (true, false) => Kind::MultiplyAddSubtractProduct,
+                    (false, false) => Kind::MultiplySubtractSubtractProduct,
+                    (false, true) => return None,
+                };
+                (kind, (one, product), other)
+            }
+            (None, Some(product)) => {
+                let kind = match (sum.is_some(), is_sum) {
+                    (true, true) => Kind::MultiplyAddAddProduct,
+                    (true, false) => Kind::MultiplyAddSubtractProduct,
+                    (false, false) => Kind::SubtractTwoProducts,
+                    (false, true) => return None,
+                };
+                (kind, (other, product), one)
+            }
+            _ => return None,
+        };
+        let (absorbed, (a, b)) = product;
+        Some(Fusion { kind, reads: vec![a, b, c, d, e], absorbed: [Some(left), Some(right), Some(absorbed)] })
     }
 
     /// A product of a product, sum or difference.
@@ -284,18 +329,7 @@ impl<'a> Selection<'a> {
     }
 
     fn push(&mut self, kind: Kind, reads: &[NodeId], writes: &[NodeId]) {
-        reads.iter().for_each(|&read| self.materialize(read));
         writes.iter().for_each(|&node| self.computed[node as usize] = true);
         self.steps.push(Step { kind, reads: reads.to_vec(), writes: writes.to_vec() });
-    }
-
-    /// Puts a constant into a register if it is not there yet.
-    fn materialize(&mut self, node: NodeId) {
-        if let Some(value) = self.graph.constant_value(node)
-            && !self.computed[node as usize]
-        {
-            self.computed[node as usize] = true;
-            self.steps.push(Step { kind: Kind::Constant(value), reads: Vec::new(), writes: vec![node] });
-        }
     }
 }
