@@ -6,8 +6,8 @@ use super::curve::{EquilibriumCurve, Inspection};
 use super::departure::{at_start, branch_point_along, is_branching};
 use super::newton::{check_length, find_erased};
 use super::problem::EquilibriumProblem;
-use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
+use crate::algebraic::{Differentiator, length};
 use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
 use crate::erased::ErasedField;
 use crate::error::Error;
@@ -223,7 +223,7 @@ impl<'a> Equilibria<'a> {
             Some(tangent) => tangent,
             None => curve.system.tangent(&unknown)?,
         };
-        let size = crate::algebraic::length(&tangent, &curve.system.scales);
+        let size = length(&tangent, &curve.system.scales);
         // The forward direction is that of a growing parameter; of two vertical ones it is that of a growing state.
         let vertical = (tangent[n] / curve.system.scales[n]).abs() < 1e-6 * size;
         let lead = if vertical { tangent.iter().find(|entry| **entry != 0.0) } else { tangent.last() };
@@ -244,7 +244,7 @@ impl<'a> Equilibria<'a> {
             curve.restart();
             follow(curve, start, tangent, &request, &mut observe)
         };
-        let forward = run(&mut curve, 1.0)?;
+        let mut forward = run(&mut curve, 1.0)?;
         let forward_beyond = curve.first_beyond.take();
         let backward = if matches!(forward.stop, Stop::Closed) {
             Followed { solutions: Vec::new(), stop: Stop::Closed }
@@ -255,7 +255,11 @@ impl<'a> Equilibria<'a> {
         let middle = match self.start {
             Start::OtherBranch { mut branch_point, .. } if departure > 0.0 => {
                 branch_point.tangents.swap(0, 1);
-                Some((curve.at_branch_point(unknown, *branch_point)?, Origin::Special))
+                let middle = curve.at_branch_point(unknown, *branch_point)?;
+                if matches!(forward.stop, Stop::Closed) {
+                    end_at(&middle, &mut forward.solutions, 2.0 * departure, &curve.system.scales);
+                }
+                Some((middle, Origin::Special))
             }
             _ => None,
         };
@@ -265,6 +269,24 @@ impl<'a> Equilibria<'a> {
         let between = BetweenDirections { middle, special, scales: &curve.system.scales };
         Ok(EquilibriumBranch::assemble(self.field, active, parameters, &self.at, directions, between))
     }
+}
+
+/// Has a closed branch end at the branch point from which it started, which it finds again, and not the distance of the
+/// departure behind it.
+fn end_at(
+    branch_point: &Solution<Inspection>,
+    solutions: &mut Vec<(Solution<Inspection>, Origin)>,
+    reach: f64,
+    scales: &[f64],
+) {
+    solutions.pop();
+    solutions.pop_if(|(last, origin)| {
+        let difference = last.unknown.iter().zip(&branch_point.unknown).map(|(a, b)| a - b);
+        *origin == Origin::Special && length(&difference.collect::<Vec<_>>(), scales) < reach
+    });
+    let mut end = branch_point.clone();
+    end.point.special = None;
+    solutions.push((end, Origin::End));
 }
 
 /// Sizes of the states and of the parameter.
