@@ -8,7 +8,7 @@
 //! cycles, with multipliers and bifurcations: the best of several runs. AUTO's right-hand sides are compiled Fortran, ours
 //! the .ode files as they are.
 //!
-//! Needs the Debian packages `auto-07p` and `gfortran`; says so and stops where they are missing.
+//! Names of models after `--` select those. Needs the Debian packages `auto-07p` and `gfortran`; says so and stops where they are missing.
 
 use arclength::cycle::{CycleBranch, CycleStart, Cycles, Resolution};
 use arclength::equilibrium::{Equilibria, HopfPoint, find_equilibrium};
@@ -64,7 +64,7 @@ struct Case {
     values: &'static [f64],
 }
 
-const CASES: [Case; 8] = [
+const CASES: [Case; 11] = [
     Case {
         model: "towed_wheel",
         parameter: "v",
@@ -145,6 +145,36 @@ const CASES: [Case; 8] = [
         cycles: (1.0, 2.2),
         values: &[1.8, 1.9],
     },
+    Case {
+        model: "hodgkin_huxley",
+        parameter: "i0",
+        set: &[],
+        start: None,
+        equilibria: (0.0, 20.0),
+        hopf: 0,
+        cycles: (0.0, 200.0),
+        values: &[20.0, 60.0, 120.0],
+    },
+    Case {
+        model: "morris_lecar",
+        parameter: "iapp",
+        set: &[],
+        start: None,
+        equilibria: (0.0, 120.0),
+        hopf: 0,
+        cycles: (50.0, 300.0),
+        values: &[120.0, 160.0, 200.0],
+    },
+    Case {
+        model: "bautin",
+        parameter: "beta1",
+        set: &[],
+        start: None,
+        equilibria: (-1.0, 1.0),
+        hopf: 0,
+        cycles: (-1.0, 1.0),
+        values: &[0.2, 0.5, 0.8],
+    },
 ];
 
 fn main() {
@@ -152,6 +182,7 @@ fn main() {
         println!("skipped: AUTO-07p or gfortran is not installed (Debian packages auto-07p, gfortran)");
         return;
     }
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
     for (title, measure) in
         [("period to 1e-6", Measure::Period), ("period and largest values to 1e-5", Measure::PeriodAndMaxima)]
     {
@@ -160,7 +191,9 @@ fn main() {
             "{:16} {:>9} {:>7} {:>9} {:>9} {:>7} {:>5} {:>9} {:>9} {:>7}",
             "model", "tolerance", "points", "error", "time/ms", "points", "NTST", "error", "AUTO/ms", "ratio"
         );
-        for case in &CASES {
+        for case in
+            CASES.iter().filter(|case| wanted.is_empty() || wanted.iter().any(|name| name == case.model))
+        {
             if let Err(problem) = compare(case, measure) {
                 println!("{:16} {problem}", case.model);
             }
