@@ -1,6 +1,7 @@
 //! The one error type of the crate.
 
 use crate::continuation::CorrectionFailure;
+use crate::integration::IntegrationError;
 
 /// What can go wrong in a computation of this crate.
 #[derive(Debug, Clone, thiserror::Error)]
@@ -36,6 +37,24 @@ pub enum Error {
         /// Error estimate on the finest mesh tried.
         error_estimate: f64,
     },
+    /// A motion did not come back to its start.
+    #[error(
+        "the motion does not come back to its start within the time {duration}: it has not settled on a cycle, or the cycle is \
+         longer; follow it longer first"
+    )]
+    NoReturn {
+        /// Time for which it was followed.
+        duration: f64,
+    },
+    /// A motion could not be computed.
+    #[error("the motion that the cycle is to be taken from cannot be computed")]
+    Motion(#[from] IntegrationError),
+    /// A branch point does not persist when a second parameter varies.
+    #[error(
+        "the branch point breaks up when the second parameter varies; a curve of branch points exists where symmetry, or a \
+         state that stays zero, keeps them"
+    )]
+    BranchPointBreaksUp,
     /// A setting or start value is outside what is allowed.
     #[error("{name} = {value} is not allowed: {allowed}")]
     Invalid {

@@ -37,18 +37,13 @@ impl Orbit {
     /// normal to the flow there, close to `initial`. Good enough to start [`Cycles`](super::Cycles) from.
     ///
     /// # Errors
-    /// [`Error::Invalid`] when the motion cannot be integrated or does not return in that time.
+    /// [`Error::Motion`] when the motion cannot be integrated, [`Error::NoReturn`] when it does not return in that time.
     pub fn from_time_history<F: VectorField>(
         field: &F,
         parameters: &[f64],
         initial: &[f64],
         longest_period: f64,
     ) -> Result<Self, Error> {
-        let not_periodic = |what: String| Error::Invalid {
-            name: "time history".into(),
-            value: what,
-            allowed: format!("a motion that returns to its start within the time {longest_period}"),
-        };
         let dimension = initial.len();
         let mut normal = vec![0.0; dimension];
         field.evaluate(initial, parameters, &mut normal);
@@ -58,15 +53,12 @@ impl Orbit {
         let integrator = Integrator::with_tolerance(HISTORY_TOLERANCE);
         let mut events = [Event::new(|_, state: &[f64]| position(state)).rising()];
         let system = autonomous(field, parameters);
-        let history = integrator
-            .with_events(system, 0.0, initial, longest_period, &[], &mut events)
-            .map_err(|error| not_periodic(error.to_string()))?;
+        let history = integrator.with_events(system, 0.0, initial, longest_period, &[], &mut events)?;
         let distance =
             |state: &[f64]| state.iter().zip(initial).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let sampling: Vec<f64> = (0..=100).map(|index| longest_period * f64::from(index) / 100.0).collect();
         let size = integrator
-            .sample(autonomous(field, parameters), initial, &sampling)
-            .map_err(|error| not_periodic(error.to_string()))?
+            .sample(autonomous(field, parameters), initial, &sampling)?
             .samples()
             .map(|(_, state)| distance(state))
             .fold(0.0, f64::max);
@@ -75,7 +67,7 @@ impl Orbit {
             .iter()
             .find(|crossing| crossing.time > 0.0 && distance(&crossing.state) < HISTORY_CLOSURE * size)
             .map(|crossing| crossing.time)
-            .ok_or_else(|| not_periodic("no return".into()))?;
+            .ok_or(Error::NoReturn { duration: longest_period })?;
         let gauss = Gauss::new(HISTORY_DEGREE);
         let mesh: Vec<f64> = (0..=HISTORY_INTERVALS).map(|j| j as f64 / HISTORY_INTERVALS as f64).collect();
         let times: Vec<f64> = mesh
@@ -85,10 +77,7 @@ impl Orbit {
             })
             .map(|time| time * period)
             .collect();
-        let states = integrator
-            .sample(autonomous(field, parameters), initial, &times)
-            .map_err(|error| not_periodic(error.to_string()))?
-            .states;
+        let states = integrator.sample(autonomous(field, parameters), initial, &times)?.states;
         Ok(Self { mesh, degree: HISTORY_DEGREE, dimension, states, period })
     }
 

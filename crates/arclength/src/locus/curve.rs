@@ -151,12 +151,6 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         }
         let perturbation = after.unknown[2 * self.states.len()];
         let limit = UNPERTURBED * self.system.scales[2 * self.states.len()];
-        (perturbation.abs() > limit).then(|| {
-            Ending::Between(Stop::Failed(Error::Invalid {
-                name: "branch point".into(),
-                value: "one that breaks up when the second parameter varies".into(),
-                allowed: "branch points that persist, by symmetry or because a state stays zero".into(),
-            }))
-        })
+        (perturbation.abs() > limit).then(|| Ending::Between(Stop::Failed(Error::BranchPointBreaksUp)))
     }
 }
