@@ -59,6 +59,10 @@ const STEP_REDUCTION: f64 = 0.4;
 const TANGENT_COSINE: f64 = 0.9;
 /// The next step aims at this part of the angle allowed.
 const ANGLE_PART: f64 = 0.8;
+/// Largest angle, in radians, by which a curve in two parameters turns in their plane in one step, unless it moves by less than
+/// this part of their ranges: drawn as a polygon it is smooth.
+const PLANE_ANGLE: f64 = 0.2;
+const PLANE_DISTANCE: f64 = 0.005;
 /// Corrections after a change of mesh that may follow each other at one point.
 const MOST_ADAPTATIONS: usize = 12;
 /// Times that a discretisation is made finer at one point because it does not resolve what was found out there.
@@ -300,17 +304,33 @@ fn advance<C: Curve>(
         // The metric may have changed with the discretisation: lengths behind are measured anew.
         let stretch = norm(curve, &current.tangent, &mut scratch);
         let cosine = inner(&current.tangent, &image) / stretch;
-        if cosine < TANGENT_COSINE && length > 1e3 * settings.smallest_step {
+        let plane_angle = angle_in_plane(current, &solution, &request.bounds);
+        let turns = cosine < TANGENT_COSINE || plane_angle > PLANE_ANGLE;
+        if turns && length > 1e3 * settings.smallest_step {
             *previous = old_previous;
             *step = length * 0.5;
             continue;
         }
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
         let angle = cosine.min(1.0).acos();
-        let growth = slower.min(ANGLE_PART * TANGENT_COSINE.acos() / angle.max(f64::MIN_POSITIVE));
+        let growth = slower
+            .min(ANGLE_PART * TANGENT_COSINE.acos() / angle.max(f64::MIN_POSITIVE))
+            .min(ANGLE_PART * PLANE_ANGLE / plane_angle.max(f64::MIN_POSITIVE));
         *step = (length * growth.max(STEP_REDUCTION)).min(settings.largest_step);
         return Ok(solution);
     }
+}
+
+/// Angle between the tangents at two solutions in the plane of two bounded parameters; zero if there are not two or the curve
+/// moves too little there to be seen.
+fn angle_in_plane<P>(current: &Solution<P>, next: &Solution<P>, bounds: &[Bound]) -> f64 {
+    let [one, other] = bounds else { return 0.0 };
+    let part =
+        |vector: &[f64], bound: &Bound| vector[vector.len() - bound.from_end] / (bound.upper - bound.lower);
+    let [[a, b], [c, d]] =
+        [current, next].map(|solution| [one, other].map(|bound| part(&solution.tangent, bound)));
+    let [x, y] = [one, other].map(|bound| part(&next.unknown, bound) - part(&current.unknown, bound));
+    if x.hypot(y) < PLANE_DISTANCE { 0.0 } else { (a * d - b * c).atan2(a * c + b * d).abs() }
 }
 
 /// Adapts the discretisation to a corrected solution until it holds, then finishes it.

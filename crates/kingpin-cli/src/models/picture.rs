@@ -6,7 +6,7 @@ use kingpin_figure::{
     Stability, palette,
 };
 
-/// Relative distance within which two labelled points are drawn as one.
+/// Part of the extent of the picture within which two labelled points are drawn as one.
 const SAME_POINT: f64 = 1e-6;
 /// Most panels.
 const MOST_PANELS: usize = 4;
@@ -80,6 +80,16 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
         panel = panel.curve(if first { line.legend(curve.name) } else { line });
     }
     // Labels of several curves at one point are one.
+    let extent = |pick: fn(&(f64, f64)) -> f64| {
+        let values = curves.iter().flat_map(|curve| &curve.points).map(|(at, _)| pick(at));
+        let (low, high) = values
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        high - low
+    };
+    let extents = (extent(|at| at.0), extent(|at| at.1));
+    let same = |one: (f64, f64), other: (f64, f64)| {
+        (one.0 - other.0).abs() <= SAME_POINT * extents.0 && (one.1 - other.1).abs() <= SAME_POINT * extents.1
+    };
     let mut labelled: Vec<(&(f64, f64), &str)> = Vec::new();
     for (at, label) in curves.iter().flat_map(|curve| &curve.labels) {
         if !labelled.iter().any(|(other, text)| text == label && same(**other, *at)) {
@@ -92,12 +102,6 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
         panel = panel.legend_entry(LegendEntry::line(text, palette::BLACK, Dash::Dashed));
     }
     panel
-}
-
-/// Whether two points are one, as far as a picture can tell.
-fn same(one: (f64, f64), other: (f64, f64)) -> bool {
-    let near = |a: f64, b: f64| (a - b).abs() <= SAME_POINT * (a.abs() + b.abs());
-    near(one.0, other.0) && near(one.1, other.1)
 }
 
 fn marker(label: &str) -> Marker {
