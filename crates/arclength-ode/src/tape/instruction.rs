@@ -37,6 +37,22 @@ pub(crate) enum Instruction<R> {
     MultiplySubtractSubtractProduct([R; 5], R),
     /// (c - a b) - d e
     SubtractTwoProducts([R; 5], R),
+    /// (a + b) + c d
+    SumAddProduct([R; 4], R),
+    /// (a + b) - c d
+    SumSubtractProduct([R; 4], R),
+    /// (a - b) + c d
+    DifferenceAddProduct([R; 4], R),
+    /// (a - b) - c d
+    DifferenceSubtractProduct([R; 4], R),
+    /// (a b + c d) + e f
+    SumOfProductsAddProduct([R; 6], R),
+    /// (a b + c d) - e f
+    SumOfProductsSubtractProduct([R; 6], R),
+    /// (a b - c d) + e f
+    DifferenceOfProductsAddProduct([R; 6], R),
+    /// (a b - c d) - e f
+    DifferenceOfProductsSubtractProduct([R; 6], R),
     /// a b c
     MultiplyMultiply(R, R, R, R),
     /// (a + b) c
@@ -101,9 +117,16 @@ impl<R: Copy> Instruction<R> {
             | I::SubtractMultiply(a, b, c, to)
             | I::MultiplyDivide(a, b, c, to)
             | I::Select(a, b, c, to) => (vec![a, b, c], vec![to]),
-            I::SumOfProducts(factors, to) | I::DifferenceOfProducts(factors, to) => {
-                (factors.to_vec(), vec![to])
-            }
+            I::SumOfProducts(operands, to)
+            | I::DifferenceOfProducts(operands, to)
+            | I::SumAddProduct(operands, to)
+            | I::SumSubtractProduct(operands, to)
+            | I::DifferenceAddProduct(operands, to)
+            | I::DifferenceSubtractProduct(operands, to) => (operands.to_vec(), vec![to]),
+            I::SumOfProductsAddProduct(operands, to)
+            | I::SumOfProductsSubtractProduct(operands, to)
+            | I::DifferenceOfProductsAddProduct(operands, to)
+            | I::DifferenceOfProductsSubtractProduct(operands, to) => (operands.to_vec(), vec![to]),
             I::MultiplyAddAddProduct(operands, to)
             | I::MultiplyAddSubtractProduct(operands, to)
             | I::MultiplySubtractSubtractProduct(operands, to)
@@ -150,6 +173,30 @@ pub(super) fn execute<T: Scalar, R: Copy>(
         }
         I::SubtractTwoProducts([a, b, c, d, e], to) => {
             r.write(to, r.read(c) - r.read(a) * r.read(b) - r.read(d) * r.read(e));
+        }
+        I::SumAddProduct([a, b, c, d], to) => {
+            r.write(to, r.read(a) + r.read(b) + r.read(c) * r.read(d));
+        }
+        I::SumSubtractProduct([a, b, c, d], to) => {
+            r.write(to, r.read(a) + r.read(b) - r.read(c) * r.read(d));
+        }
+        I::DifferenceAddProduct([a, b, c, d], to) => {
+            r.write(to, r.read(a) - r.read(b) + r.read(c) * r.read(d));
+        }
+        I::DifferenceSubtractProduct([a, b, c, d], to) => {
+            r.write(to, r.read(a) - r.read(b) - r.read(c) * r.read(d));
+        }
+        I::SumOfProductsAddProduct([a, b, c, d, e, f], to) => {
+            r.write(to, r.read(a) * r.read(b) + r.read(c) * r.read(d) + r.read(e) * r.read(f));
+        }
+        I::SumOfProductsSubtractProduct([a, b, c, d, e, f], to) => {
+            r.write(to, r.read(a) * r.read(b) + r.read(c) * r.read(d) - r.read(e) * r.read(f));
+        }
+        I::DifferenceOfProductsAddProduct([a, b, c, d, e, f], to) => {
+            r.write(to, r.read(a) * r.read(b) - r.read(c) * r.read(d) + r.read(e) * r.read(f));
+        }
+        I::DifferenceOfProductsSubtractProduct([a, b, c, d, e, f], to) => {
+            r.write(to, r.read(a) * r.read(b) - r.read(c) * r.read(d) - r.read(e) * r.read(f));
         }
         I::MultiplyMultiply(a, b, c, to) => r.write(to, r.read(a) * r.read(b) * r.read(c)),
         I::AddMultiply(a, b, c, to) => r.write(to, (r.read(a) + r.read(b)) * r.read(c)),

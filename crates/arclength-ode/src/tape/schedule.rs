@@ -138,6 +138,22 @@ fn instruction<R: Copy>(kind: Kind, reads: &[R], writes: &[R]) -> Instruction<R>
             I::MultiplySubtractSubtractProduct([a, b, c, d, e], to)
         }
         (Kind::SubtractTwoProducts, &[a, b, c, d, e]) => I::SubtractTwoProducts([a, b, c, d, e], to),
+        (Kind::SumAddProduct, &[a, b, c, d]) => I::SumAddProduct([a, b, c, d], to),
+        (Kind::SumSubtractProduct, &[a, b, c, d]) => I::SumSubtractProduct([a, b, c, d], to),
+        (Kind::DifferenceAddProduct, &[a, b, c, d]) => I::DifferenceAddProduct([a, b, c, d], to),
+        (Kind::DifferenceSubtractProduct, &[a, b, c, d]) => I::DifferenceSubtractProduct([a, b, c, d], to),
+        (Kind::SumOfProductsAddProduct, &[a, b, c, d, e, f]) => {
+            I::SumOfProductsAddProduct([a, b, c, d, e, f], to)
+        }
+        (Kind::SumOfProductsSubtractProduct, &[a, b, c, d, e, f]) => {
+            I::SumOfProductsSubtractProduct([a, b, c, d, e, f], to)
+        }
+        (Kind::DifferenceOfProductsAddProduct, &[a, b, c, d, e, f]) => {
+            I::DifferenceOfProductsAddProduct([a, b, c, d, e, f], to)
+        }
+        (Kind::DifferenceOfProductsSubtractProduct, &[a, b, c, d, e, f]) => {
+            I::DifferenceOfProductsSubtractProduct([a, b, c, d, e, f], to)
+        }
         (Kind::MultiplyMultiply, &[a, b, c]) => I::MultiplyMultiply(a, b, c, to),
         (Kind::AddMultiply, &[a, b, c]) => I::AddMultiply(a, b, c, to),
         (Kind::SubtractMultiply, &[a, b, c]) => I::SubtractMultiply(a, b, c, to),

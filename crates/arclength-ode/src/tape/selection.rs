@@ -34,6 +34,14 @@ pub(super) enum Kind {
     MultiplyAddSubtractProduct,
     MultiplySubtractSubtractProduct,
     SubtractTwoProducts,
+    SumAddProduct,
+    SumSubtractProduct,
+    DifferenceAddProduct,
+    DifferenceSubtractProduct,
+    SumOfProductsAddProduct,
+    SumOfProductsSubtractProduct,
+    DifferenceOfProductsAddProduct,
+    DifferenceOfProductsSubtractProduct,
     MultiplyMultiply,
     AddMultiply,
     SubtractMultiply,
@@ -89,16 +97,16 @@ fn evaluation_order(operations: &[Operation], results: &[NodeId]) -> Vec<NodeId>
     order
 }
 
-/// One instruction for an operation and one to three of those that its operands come from.
+/// One instruction for an operation and some of those that its operands come from.
 struct Fusion {
     kind: Kind,
     reads: Vec<NodeId>,
-    absorbed: [Option<NodeId>; 3],
+    absorbed: [Option<NodeId>; 4],
 }
 
 impl Fusion {
     fn of_one(kind: Kind, reads: &[NodeId], absorbed: NodeId) -> Option<Self> {
-        Some(Self { kind, reads: reads.to_vec(), absorbed: [Some(absorbed), None, None] })
+        Some(Self { kind, reads: reads.to_vec(), absorbed: [Some(absorbed), None, None, None] })
     }
 }
 
@@ -207,7 +215,7 @@ impl<'a> Selection<'a> {
         match products.into() {
             (Some((a, b)), Some((c, d))) => {
                 let kind = if is_sum { Kind::SumOfProducts } else { Kind::DifferenceOfProducts };
-                let absorbed = [Some(left), (left != right).then_some(right), None];
+                let absorbed = [Some(left), (left != right).then_some(right), None, None];
                 return Some(Fusion { kind, reads: vec![a, b, c, d], absorbed });
             }
             (Some((a, b)), None) => {
@@ -232,40 +240,60 @@ impl<'a> Selection<'a> {
         Fusion::of_one(kind, &[a, left], right)
     }
 
-    /// A sum or difference of one product and another operand, and a second product, `right = d e`, added or subtracted.
+    /// A sum or difference `left`, to which the product `right` of `last` is added or from which it is subtracted.
     fn fused_sum_of_three(
         &self,
         is_sum: bool,
         left: NodeId,
         right: NodeId,
-        (d, e): (NodeId, NodeId),
+        last: (NodeId, NodeId),
     ) -> Option<Fusion> {
         use BinaryOperation::{Add, Multiply, Subtract};
         let sum = self.varying(left, Add);
         let (one, other) = sum.or_else(|| self.varying(left, Subtract))?;
-        let (kind, product, c) = match (self.varying(one, Multiply), self.varying(other, Multiply)) {
-            (Some(product), None) => {
-                let kind = match (sum.is_some(), is_sum) {
+        let signs = (sum.is_some(), is_sum);
+        let products = (self.varying(one, Multiply), self.varying(other, Multiply));
+        let (kind, mut reads) = match products {
+            (None, None) => {
+                let kind = match signs {
+                    (true, true) => Kind::SumAddProduct,
+                    (true, false) => Kind::SumSubtractProduct,
+                    (false, true) => Kind::DifferenceAddProduct,
+                    (false, false) => Kind::DifferenceSubtractProduct,
+                };
+                (kind, vec![one, other])
+            }
+            (Some((a, b)), Some((c, d))) => {
+                let kind = match signs {
+                    (true, true) => Kind::SumOfProductsAddProduct,
+                    (true, false) => Kind::SumOfProductsSubtractProduct,
+                    (false, true) => Kind::DifferenceOfProductsAddProduct,
+                    (false, false) => Kind::DifferenceOfProductsSubtractProduct,
+                };
+                (kind, vec![a, b, c, d])
+            }
+            (Some((a, b)), None) => {
+                let kind = match signs {
                     (true, true) => Kind::MultiplyAddAddProduct,
                     (true, false) => Kind::MultiplyAddSubtractProduct,
                     (false, false) => Kind::MultiplySubtractSubtractProduct,
                     (false, true) => return None,
                 };
-                (kind, (one, product), other)
+                (kind, vec![a, b, other])
             }
-            (None, Some(product)) => {
-                let kind = match (sum.is_some(), is_sum) {
+            (None, Some((a, b))) => {
+                let kind = match signs {
                     (true, true) => Kind::MultiplyAddAddProduct,
                     (true, false) => Kind::MultiplyAddSubtractProduct,
                     (false, false) => Kind::SubtractTwoProducts,
                     (false, true) => return None,
                 };
-                (kind, (other, product), one)
+                (kind, vec![a, b, one])
             }
-            _ => return None,
         };
-        let (absorbed, (a, b)) = product;
-        Some(Fusion { kind, reads: vec![a, b, c, d, e], absorbed: [Some(left), Some(right), Some(absorbed)] })
+        reads.extend([last.0, last.1]);
+        let absorbed = [Some(left), Some(right), products.0.map(|_| one), products.1.map(|_| other)];
+        Some(Fusion { kind, reads, absorbed })
     }
 
     /// A product of a product, sum or difference.
