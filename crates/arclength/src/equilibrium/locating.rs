@@ -25,7 +25,7 @@ const CANDIDATES: usize = 3;
 /// A located point may lie this part of the bracket outside it.
 const MARGIN: f64 = 0.1;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
-const UNPERTURBED: f64 = 1e-8;
+const UNPERTURBED: f64 = 1e-12;
 /// A step longer than this, in the metric, that leads to another branch is shortened.
 pub(super) const SHORTEST_JUMP: f64 = 1e-6;
 
