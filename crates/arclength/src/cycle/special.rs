@@ -31,10 +31,20 @@ pub enum Special {
 const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
 /// Part of the range of the parameter by which it has to vary in a step for a fold to be told from rounding.
 const PARAMETER_ROUNDING: f64 = 1e-13;
+/// Perturbation of the field at a branch point, relative to its size over one period, below which it is one of the field itself:
+/// a part of the tolerance of the cycles, whose mesh may break a symmetry by so much, and never less than this.
+const UNPERTURBED_PART: f64 = 0.1;
+const UNPERTURBED: f64 = 1e-10;
+/// A step longer than this, in the metric, over a branch point that is none of the field itself is shortened.
+const SHORTEST_JUMP: f64 = 1e-4;
 /// A special cycle may lie this part of the step outside it.
 const MARGIN: f64 = 0.1;
 
 /// All special cycles between two consecutive solutions.
+///
+/// # Errors
+/// [`Error::OtherBranch`] if the orientation changes where there is no branch point, or only one of a perturbed field: then the
+/// step has led to another branch.
 pub(super) fn between(
     curve: &mut CycleCurve<'_>,
     before: &Solution<CycleInspection>,
@@ -60,6 +70,7 @@ pub(super) fn between(
     let variation = length * before.point.fold_test.abs().max(after.point.fold_test.abs());
     let varies = variation > PARAMETER_ROUNDING;
     let resolved = ![before, after].iter().any(|solution| solution.point.floquet.is_contradictory());
+    let unperturbed = (UNPERTURBED_PART * curve.resolution.tolerance).max(UNPERTURBED);
     for (kind, rank) in wanted.chain(tori) {
         let settings = curve.settings;
         let mut located = None;
@@ -94,7 +105,9 @@ pub(super) fn between(
             // Newton's method may have left for a special cycle elsewhere.
             located = converged.filter(|located| {
                 let position = along(curve, before, &located.solution.unknown);
+                let perturbation = located.eigenfunctions.1.first().filter(|_| kind == Kind::BranchPoint);
                 (-MARGIN * length..=(1.0 + MARGIN) * length).contains(&position)
+                    && perturbation.is_none_or(|perturbation| perturbation.abs() < unperturbed)
             });
             if located.is_some() {
                 break;
@@ -104,6 +117,9 @@ pub(super) fn between(
             Some(located) => found.push(describe(curve, located, kind)?),
             // On the branch that turns at a pitchfork the parameter turns too, but that is no fold.
             None if kind == Kind::Fold && at_branch_point(&found) => {}
+            None if kind == Kind::BranchPoint && resolved && length > SHORTEST_JUMP => {
+                return Err(Error::OtherBranch);
+            }
             None => {
                 let [from, to] = [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]);
                 // Rounding may change a sign in step after step.
