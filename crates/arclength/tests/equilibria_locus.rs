@@ -446,7 +446,7 @@ fn branch_points_persist_by_symmetry_only() {
     let locus = EquilibriumLocus::of(&Imperfect).from_branch_point(branch.branch_points().next().unwrap());
     let locus = locus.along("p", -1.0..=1.0).and("q", -1.0..=1.0).run().unwrap();
     assert!(matches!(locus.forward_stop, Stop::Failed(_)), "{}", locus.forward_stop);
-    assert!(locus.forward_stop.to_string().contains("persist"));
+    assert!(locus.forward_stop.to_string().contains("breaks up"));
 }
 
 #[test]

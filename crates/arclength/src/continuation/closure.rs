@@ -1,8 +1,9 @@
 //! Recognises that a curve is closed: that it has come back to its start.
 //!
 //! The discretisation may have changed on the way, so solutions are not compared component by component but by their
-//! signatures. Where a step passes the plane through the signature of the start, across the step, the solution on the plane
-//! is computed and compared.
+//! signatures. Where a component of the signature passes its value at the start, the solution with that value is computed and
+//! compared; of several components those come first that change most, because at a turning point the parameter stands still, and
+//! the amplitude of a state that vanishes at the start has a kink there.
 
 use super::bracket::locate;
 use super::curve::{Curve, Solution};
@@ -11,8 +12,12 @@ use super::settings::Settings;
 
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;
+/// A step back to the start begins this many times that away from it.
+const AWAY: f64 = 10.0;
 /// Part of a step to which the place of the start is narrowed down.
 const PLACE: f64 = 1e-9;
+/// Components of the signature that are tried.
+const MOST_COMPONENTS: usize = 3;
 /// Steps that end farther from the start than this many times their length do not pass it.
 const FAR: f64 = 2.0;
 
@@ -59,22 +64,23 @@ impl Closure {
             return None;
         }
         let [here, there] = [current, advanced].map(|solution| self.beyond(curve, solution));
-        let chord: Vec<f64> = there.iter().zip(&here).map(|(there, here)| there - here).collect();
-        let passes = inner(&chord, &here) < 0.0 && inner(&chord, &there) >= 0.0;
-        let far = inner(&here, &here).sqrt() > FAR * inner(&chord, &chord).sqrt();
-        if !passes || far {
+        let change = |index: &usize| (there[*index] - here[*index]).abs();
+        let step: f64 = (0..here.len()).map(|index| change(&index).powi(2)).sum();
+        let beyond = here.iter().map(|entry| entry * entry).sum::<f64>();
+        // The first steps may be so short that they do not leave the start.
+        if beyond > (FAR * FAR) * step || beyond < (AWAY * AWAY) * (CLOSURE_TOLERANCE * CLOSURE_TOLERANCE) {
             return None;
         }
-        let test =
-            |curve: &mut C, solution: &Solution<C::Point>| Some(inner(&chord, &self.beyond(curve, solution)));
-        // A curve whose start cannot be computed again is followed on.
-        let candidate = locate(curve, current, advanced, settings, PLACE, test).ok()??;
-        let same =
-            self.beyond(curve, &candidate).iter().all(|difference| difference.abs() <= CLOSURE_TOLERANCE);
-        same.then_some(candidate)
+        let passes = |index: &usize| here[*index] * there[*index] <= 0.0 && change(index) > 0.0;
+        let mut passing: Vec<usize> = (0..here.len()).filter(passes).collect();
+        passing.sort_by(|one, other| change(other).total_cmp(&change(one)));
+        passing.into_iter().take(MOST_COMPONENTS).find_map(|index| {
+            let test =
+                |curve: &mut C, solution: &Solution<C::Point>| Some(self.beyond(curve, solution)[index]);
+            // A curve whose start cannot be computed again is followed on.
+            let candidate = locate(curve, current, advanced, settings, PLACE, test).ok()??;
+            let beyond = self.beyond(curve, &candidate);
+            beyond.iter().all(|difference| difference.abs() <= CLOSURE_TOLERANCE).then_some(candidate)
+        })
     }
-}
-
-fn inner(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| a * b).sum()
 }

@@ -30,6 +30,8 @@ const LEAST_SENSITIVITY: f64 = 1e5;
 pub(crate) struct StateSizes {
     /// Largest amplitudes met.
     largest: Vec<f64>,
+    /// Smallest and largest values met.
+    visited: Vec<Range>,
     /// Sizes below which a state counts as one that rests, from the nonlinearity of the field where the curve starts.
     resting: Vec<f64>,
     /// The period where the curve starts.
@@ -54,6 +56,7 @@ impl StateSizes {
         let natural = natural_scales(&problem.field, &start[..n], &parameters, &vec![0.0; n]);
         Self {
             largest: vec![0.0; n],
+            visited: vec![Range { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],
             resting: natural.iter().map(|size| RESTING_PART * size).collect(),
             first_period: None,
         }
@@ -68,6 +71,9 @@ impl StateSizes {
                 let amplitude = 0.5 * (largest - smallest);
                 let mean = 0.5 * (largest + smallest).abs();
                 self.largest[component] = self.largest[component].max(amplitude);
+                let visited = &mut self.visited[component];
+                *visited =
+                    Range { smallest: visited.smallest.min(smallest), largest: visited.largest.max(largest) };
                 let resting = self.resting[component];
                 StateSize {
                     amplitude: amplitude.max(ROUNDING_PART * mean).max(resting),
@@ -118,9 +124,11 @@ impl StateSizes {
         (mixed < 0.0).then(|| vanishing_point((a, first), (b, second)))
     }
 
-    /// Extreme values with the sizes of the states, to tell whether two cycles are the same.
+    /// Extreme values with the sizes of the states, to tell whether two cycles are the same. A state that rests on every cycle
+    /// may move along the curve.
     pub fn signature(&self, ranges: &[Range]) -> Vec<(f64, f64)> {
-        let sized = ranges.iter().zip(self.met());
+        let moved = self.visited.iter().map(|visited| 0.5 * (visited.largest - visited.smallest));
+        let sized = ranges.iter().zip(self.met().zip(moved).map(|(met, moved)| met.max(moved)));
         sized.flat_map(|(range, size)| [(range.largest, size), (range.smallest, size)]).collect()
     }
 

@@ -13,6 +13,27 @@ done
 ";
 
 /// Two coupled cells with substrate inhibition.
+/// The circuit of Freire and others (1993), AUTO's `tor`, with an asymmetry.
+const TORUS_CIRCUIT: &str = "\
+par nu=-0.9,gamma=-0.6,r=0.6,a3=0.328578,b3=0.933578,beta=0.5,e=0
+x'=(-(beta+nu)*x+beta*y-a3*x^3+b3*(y-x)^3)/r
+y'=beta*x-(beta+gamma)*y-z-b3*(y-x)^3+e*x^2
+z'=y
+done
+";
+
+/// A circle of cycles over p; the third state vanishes at p = 0.
+const ISOLA: &str = "\
+par p=0,w=1,k=.4
+rr=sqrt(x^2+y^2)
+g=1-p^2-(rr-2)^2
+x'=x*g-w*y*(1+.2*p)+.1*z*x
+y'=y*g+w*x*(1+.2*p)+.1*z*y
+z'=-z+k*p*x
+init x=3,y=0,z=0
+done
+";
+
 const TWO_CELLS: &str = "par s0=0,mu=0,rho=100,kappa=1
 f(s)=s/(1+s+kappa*s^2)
 s1'=(s0-s1)+(s2-s1)-rho*f(s1)
@@ -125,6 +146,58 @@ fn a_closed_branch_through_pitchforks_ends_after_one_lap() {
     let of = |kind: &str| labels.iter().filter(|label| label.starts_with(kind)).count();
     assert_eq!((of("BP"), of("LP")), (2, 4), "{labels:?}");
     assert!(lap["ends"][1]["cause"].as_str().unwrap().contains("closed"));
+}
+
+fn labels(result: &Value) -> Vec<&str> {
+    points(result).iter().filter_map(|point| point["label"].as_str()).collect()
+}
+
+#[test]
+fn cells_that_differ_a_little_have_no_branch_points() {
+    let folder = folder(TWO_CELLS);
+    for difference in ["1e-5", "1e-7", "1e-9"] {
+        let branch = folder.json(&format!("equilibria model.ode -s mu={difference} --along s0=0:200"));
+        let labels = labels(&branch);
+        let of = |kind: &str| labels.iter().filter(|label| label.starts_with(kind)).count();
+        assert_eq!((of("BP"), of("LP")), (0, 4), "{difference}: {labels:?}");
+        assert_eq!(number(&points(&branch)[points(&branch).len() - 1]["value"]), 200.0);
+    }
+}
+
+#[test]
+fn a_circuit_that_is_nearly_symmetric_has_no_branch_point_of_cycles() {
+    let folder = folder(TORUS_CIRCUIT);
+    for asymmetry in ["0.1", "1e-3", "1e-5"] {
+        folder.succeed(&format!("equilibria model.ode --along nu=-.9:-.2 -s e={asymmetry} -q -o eq.json"));
+        let branch = folder.json("cycles --from eq.json:HB1 --along nu=-.65:-.5 -q");
+        assert_eq!(labels(&branch), ["EP1", "LPC1", "NS1", "PD1", "EP2"], "{asymmetry}");
+    }
+    folder.succeed("equilibria model.ode --along nu=-.9:-.2 -s e=0 -q -o eq.json");
+    let branch = folder.json("cycles --from eq.json:HB1 --along nu=-.65:-.5 -q");
+    assert_eq!(labels(&branch), ["EP1", "LPC1", "BPC1", "EP2"]);
+}
+
+#[test]
+fn an_isola_of_cycles_closes_where_a_state_vanishes() {
+    let folder = folder(ISOLA);
+    folder.succeed("simulate model.ode --duration 200 -q -o settled.json");
+    let branch = folder.json("cycles --from settled.json:END --along p=-2:2 -q");
+    assert_eq!(labels(&branch), ["EP1", "LPC1", "LPC2", "EP2"]);
+    assert!(branch["ends"][1]["cause"].as_str().unwrap().contains("closed"));
+}
+
+#[test]
+fn doubled_cycles_from_a_time_history_end_where_they_become_single() {
+    let folder = Folder::with("lure.ode");
+    folder.succeed("simulate lure.ode --duration 2000 -s alpha=.6 --start x=.5 -q -o settled.json");
+    let branch = folder.json("cycles --from settled.json:END --along alpha=-1.5:1.5 -q");
+    let mut special: Vec<&str> =
+        labels(&branch).into_iter().filter(|label| !label.starts_with("EP")).collect();
+    special.sort_unstable();
+    assert_eq!(special, ["LPC1", "LPC2", "PD1", "PD2", "PD3", "PD4"]);
+    for end in 0..2 {
+        assert!(branch["ends"][end]["cause"].as_str().unwrap().contains("doubled cycles end"));
+    }
 }
 
 #[test]
