@@ -286,12 +286,17 @@ impl<'a> Cycles<'a> {
             CycleStart::Branching(branching) => {
                 let forward = self.leave(&branching, 1.0, &request, &mut unlocated)?;
                 let degree = branching.orbit.degree;
-                if branching.doubled || matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+                if branching.doubled {
                     (points_of(&forward, degree), (None, forward.stop))
+                } else if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+                    let mut points = vec![self.branch_point(&branching)?];
+                    points.extend(points_of(&forward, degree));
+                    (points, (None, forward.stop))
                 } else {
                     let backward = self.leave(&branching, -1.0, &request, &mut unlocated)?;
                     let mut points = points_of(&backward, degree);
                     points.reverse();
+                    points.push(self.branch_point(&branching)?);
                     points.extend(points_of(&forward, degree));
                     (points, (Some(backward.stop), forward.stop))
                 }
@@ -364,14 +369,8 @@ impl<'a> Cycles<'a> {
         Err(failure.unwrap_or(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged }))
     }
 
-    /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.
-    fn leave(
-        &mut self,
-        branching: &Branching,
-        sign: f64,
-        request: &Request,
-        unlocated: &mut Vec<Unlocated>,
-    ) -> Result<Followed<CycleInspection>, Error> {
+    /// The bifurcation itself and the direction of the new branch.
+    fn departure(&self, branching: &Branching) -> Start {
         let Branching { orbit, direction, .. } = branching;
         let mut start = Start {
             unknown: orbit.states.clone(),
@@ -381,6 +380,35 @@ impl<'a> Cycles<'a> {
         };
         start.unknown.extend([orbit.period, self.parameters[self.active]]);
         start.tangent.extend([branching.period, branching.parameter]);
+        start
+    }
+
+    /// The branch point as a cycle of the branch that leaves there.
+    fn branch_point(&self, branching: &Branching) -> Result<CyclePoint, Error> {
+        let start = self.departure(branching);
+        let mut curve = self.curve(&start);
+        let mut border = vec![0.0; start.tangent.len()];
+        curve.apply_metric(&start.tangent, &mut border);
+        let mut residual = vec![0.0; start.tangent.len()];
+        curve.estimate_error(&start.unknown);
+        // Singular there, but the multipliers do not need the border.
+        curve.factorize(&start.unknown, &border, &mut residual);
+        let mut point = curve.inspect(&start.unknown, &start.tangent, 0.0)?;
+        point.special = Some(Special::BranchPoint);
+        point.branching = branching.known_branch();
+        let solution = Solution { unknown: start.unknown, tangent: start.tangent, orientation: 0.0, point };
+        Ok(point_of(&solution, Origin::Special, start.degree))
+    }
+
+    /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.
+    fn leave(
+        &mut self,
+        branching: &Branching,
+        sign: f64,
+        request: &Request,
+        unlocated: &mut Vec<Unlocated>,
+    ) -> Result<Followed<CycleInspection>, Error> {
+        let mut start = self.departure(branching);
         let mut curve = self.curve(&start);
         curve.count_resting_states_fully();
         let mut image = vec![0.0; start.tangent.len()];

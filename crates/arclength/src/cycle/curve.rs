@@ -164,6 +164,13 @@ impl<'a> CycleCurve<'a> {
         }
     }
 
+    /// Estimates the error of a cycle on the mesh as it is.
+    pub fn estimate_error(&mut self, unknown: &[f64]) {
+        self.rescale(unknown);
+        let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
+        self.error_estimate = errors.into_iter().fold(0.0, f64::max);
+    }
+
     /// Parameter value at which the two halves of a doubled cycle become equal between two solutions.
     fn single_again(&self, before: &[f64], after: &[f64]) -> Option<f64> {
         let n = self.collocation.problem.dimension();

@@ -25,4 +25,4 @@ pub use branch::{CycleBranch, CyclePoint, CycleStart, Cycles, Role};
 pub use curve::Resolution;
 pub use orbit::Orbit;
 pub use special::{Special, Unlocated};
-pub use switching::Branching;
+pub use switching::{BranchDirection, Branching};

@@ -40,6 +40,20 @@ pub struct Branching {
     pub parameter: f64,
     /// Whether the cycle is one traversed twice.
     pub doubled: bool,
+    /// The direction of the branch on which a branch point was found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<BranchDirection>,
+}
+
+/// The direction of a branch of cycles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BranchDirection {
+    /// Change of the states, in the layout of [`Orbit::states`].
+    pub states: Vec<f64>,
+    /// Change of the period.
+    pub period: f64,
+    /// Change of the parameter.
+    pub parameter: f64,
 }
 
 impl Branching {
@@ -49,15 +63,39 @@ impl Branching {
     /// [`Error::Invalid`] with what does not fit.
     pub fn check(&self, dimension: usize) -> Result<(), Error> {
         self.orbit.check(dimension)?;
-        let finite =
-            self.direction.iter().chain([&self.period, &self.parameter]).all(|value| value.is_finite());
-        if finite && self.direction.len() == self.orbit.states.len() {
+        let fits = |states: &[f64], period: f64, parameter: f64| {
+            states.len() == self.orbit.states.len()
+                && states.iter().chain([&period, &parameter]).all(|value| value.is_finite())
+        };
+        let known = self.known.as_ref();
+        if fits(&self.direction, self.period, self.parameter)
+            && known.is_none_or(|known| fits(&known.states, known.period, known.parameter))
+        {
             return Ok(());
         }
         Err(Error::Invalid {
             name: "direction of the new branch".into(),
             value: format!("{} numbers", self.direction.len()),
             allowed: format!("{} finite numbers", self.orbit.states.len()),
+        })
+    }
+}
+
+impl Branching {
+    /// The start, from the same branch point, of the branch on which it was found.
+    pub fn known_branch(&self) -> Option<Self> {
+        let known = self.known.clone()?;
+        Some(Self {
+            orbit: self.orbit.clone(),
+            direction: known.states,
+            period: known.period,
+            parameter: known.parameter,
+            doubled: false,
+            known: Some(BranchDirection {
+                states: self.direction.clone(),
+                period: self.period,
+                parameter: self.parameter,
+            }),
         })
     }
 }
@@ -73,6 +111,7 @@ pub(super) fn doubled(orbit: &Orbit, (functions, _): &Eigenfunctions) -> Option<
         period: 0.0,
         parameter: 0.0,
         doubled: true,
+        known: None,
     })
 }
 
@@ -162,15 +201,12 @@ pub(super) fn other_branch(
         let own = (&direction.0[..], direction.1, direction.2);
         product(&known, &own).abs() / (product(&known, &known) * product(&own, &own)).sqrt()
     };
-    let found =
-        directions.into_iter().map(assemble).min_by(|one, other| cosine(one).total_cmp(&cosine(other)))?;
-    Some(Branching {
-        orbit: orbit.clone(),
-        direction: found.0,
-        period: found.1,
-        parameter: found.2,
-        doubled: false,
-    })
+    let mut found: Vec<_> = directions.into_iter().map(assemble).collect();
+    found.sort_by(|one, other| cosine(one).total_cmp(&cosine(other)));
+    let mut found = found.into_iter();
+    let (direction, period, parameter) = found.next()?;
+    let known = found.next().map(|(states, period, parameter)| BranchDirection { states, period, parameter });
+    Some(Branching { orbit: orbit.clone(), direction, period, parameter, doubled: false, known })
 }
 
 /// A start on a mesh: unknowns, direction of the branch, mesh and degree.

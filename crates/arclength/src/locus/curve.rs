@@ -151,6 +151,6 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         }
         let perturbation = after.unknown[2 * self.states.len()];
         let limit = UNPERTURBED * self.system.scales[2 * self.states.len()];
-        (perturbation.abs() > limit).then(|| Ending::Between(Stop::Failed(Error::BranchPointBreaksUp)))
+        (perturbation.abs() > limit).then_some(Ending::Between(Stop::Failed(Error::BranchPointBreaksUp)))
     }
 }

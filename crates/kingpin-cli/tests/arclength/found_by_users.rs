@@ -12,7 +12,6 @@ init u1=1 u2=0 u3=0
 done
 ";
 
-/// Two coupled cells with substrate inhibition.
 /// The circuit of Freire and others (1993), AUTO's `tor`, with an asymmetry.
 const TORUS_CIRCUIT: &str = "\
 par nu=-0.9,gamma=-0.6,r=0.6,a3=0.328578,b3=0.933578,beta=0.5,e=0
@@ -34,6 +33,7 @@ init x=3,y=0,z=0
 done
 ";
 
+/// Two coupled cells with substrate inhibition.
 const TWO_CELLS: &str = "par s0=0,mu=0,rho=100,kappa=1
 f(s)=s/(1+s+kappa*s^2)
 s1'=(s0-s1)+(s2-s1)-rho*f(s1)
@@ -135,6 +135,17 @@ fn cycles_leave_a_branch_point_into_the_plane_without_the_third_species() {
     let other = folder.json("cycles --from po.json:BPC1 --along p1=0:1");
     assert!(points(&other).len() > 5);
     assert!(points(&other).iter().all(|point| number(&point["max"]["u3"]).abs() < 1e-12));
+    // There and back, and on along the branch on which the point was found.
+    folder.succeed("cycles --from po.json:BPC1 --along p1=0:1 -q -o other.json");
+    let back = folder.json("cycles --from other.json:BPC1 --along p1=0:1 -q");
+    let stay = folder.json("cycles --from po.json:BPC1 --stay --along p1=0:1 -q");
+    for branch in [&back, &stay] {
+        assert_eq!(labels(branch).iter().filter(|label| label.starts_with("BPC")).count(), 1);
+        assert!(points(branch).iter().any(|point| number(&point["max"]["u3"]) > 0.01));
+    }
+    assert!(
+        (number(&labelled(&back, "BPC1")["value"]) - number(&labelled(&stay, "BPC1")["value"])).abs() < 1e-10
+    );
 }
 
 #[test]

@@ -149,12 +149,13 @@ impl Cycles {
             reference.check(&orbit, states.len())?;
             // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
             let branching = branching
-                .filter(|(branching, key)| {
-                    !self.stay && (branching.doubled || *key == along.key().to_string())
-                })
-                .map(|(branching, _)| branching);
+                .filter(|(branching, key)| branching.doubled || *key == along.key().to_string())
+                .and_then(
+                    |(branching, _)| if self.stay { branching.known_branch() } else { Some(branching) },
+                );
             let origin = match &branching {
                 Some(branching) if branching.doubled => format!("{}, the doubled cycles", reference.label),
+                Some(_) if self.stay => format!("{}, the branch on which it was found", reference.label),
                 Some(_) => format!("{}, the other branch through it", reference.label),
                 None => reference.label.clone(),
             };

@@ -137,6 +137,13 @@ impl Cycles {
                         if branching.doubled { "the doubled cycles" } else { "the other branch through it" };
                     Ok((CycleStart::Branching(branching.clone()), origin(how)))
                 }
+                // At a branch point Newton's method alone could find either branch.
+                Some((branching, key))
+                    if *key == self.along.key
+                        && let Some(known) = branching.known_branch() =>
+                {
+                    Ok((CycleStart::Branching(known), origin("the branch on which it was found")))
+                }
                 _ => {
                     if !self.stay && matches!(kind(&point.label), "PD" | "BPC") {
                         output.warn(&format!(
