@@ -371,6 +371,40 @@ fn hopf_points_that_symmetry_makes_double_are_reported() {
     assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: 8 });
 }
 
+/// Three equal cells, each coupled with the others: eigenvalues `p` and twice `p - 3 k`.
+struct Triangle(f64);
+
+impl VectorField for Triangle {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], d: &mut [T]) {
+        for cell in 0..3 {
+            let others = x[(cell + 1) % 3] + x[(cell + 2) % 3] - x[cell] * 2.0;
+            d[cell] = x[cell] * p[0] - x[cell].powi(3) + others * self.0;
+        }
+    }
+}
+
+#[test]
+fn two_real_eigenvalues_that_vanish_together_are_no_hopf_point() {
+    for coupling in [0.05, 0.1, 0.2, 0.3, 0.4, 0.6] {
+        let field = Triangle(coupling);
+        let run = Equilibria::of(&field).start(&[0.0; 3]).parameters(&[-1.0]).along("p", -1.0..=2.0).run();
+        let branch = run.unwrap();
+        let labels = kinds(&branch);
+        assert!(labels.iter().all(|label| !label.starts_with("HB")), "{coupling}: {labels:?}");
+        let near = |value: f64| {
+            branch.special_points().filter(|point| (point.parameter() - value).abs() < 1e-9).count()
+        };
+        assert_eq!((near(0.0), near(3.0 * coupling)), (1, 1), "{coupling}: {labels:?}");
+        assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: 3 });
+    }
+}
+
 /// A random polynomial field of degree three.
 #[derive(Debug)]
 struct Polynomial {

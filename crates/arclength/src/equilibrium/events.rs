@@ -428,7 +428,14 @@ impl Scan<'_, '_> {
             self.found.push(locating::fold(self.curve, before, after, distance)?);
         }
         if changes.hopf {
-            self.found.push(locating::hopf(self.curve, before, after, distance)?);
+            let point = locating::hopf(self.curve, before, after, distance)?;
+            let bracketed = matches!(point.point.special.as_deref(), Some(SpecialPoint::Degenerate { .. }));
+            // Two real eigenvalues that symmetry takes through zero together change the test function too.
+            if bracketed && change(before, after).is_some_and(|change| change > 0) {
+                self.found.extend(crossings(self.curve, before, after, distance)?);
+            } else {
+                self.found.push(point);
+            }
         }
         Ok(())
     }
