@@ -7,6 +7,7 @@ use super::locating::doubling_near;
 use super::orbit::Orbit;
 use super::special::{Special, Unlocated};
 use super::switching::{Branching, HopfStart, Start};
+use crate::algebraic::scales::natural_scales;
 use crate::continuation::{
     Bound, CorrectionFailure, Curve, Followed, Origin, Request, Settings, Solution, Stop, follow,
 };
@@ -23,6 +24,8 @@ use std::ops::{ControlFlow, RangeInclusive};
 const FIRST_DISTANCE: f64 = 0.02;
 /// Part of the parameter's range, and of the states, within which a Hopf point may be the end that the last cycle points to.
 const NEAR_END: f64 = 0.05;
+/// Part of its natural size within which a state that rests on all cycles may be found there.
+const RESTING: f64 = 1e-6;
 /// The logarithm of its frequency differs from that of the last cycle by less than this.
 const SAME_FREQUENCY: f64 = 0.5;
 /// Times that this distance is reduced before a start is given up.
@@ -472,8 +475,12 @@ impl<'a> Cycles<'a> {
     fn may_end_at(&self, hopf: &HopfPoint, last: &CyclePoint, estimate: f64) -> bool {
         let width = self.range.1 - self.range.0;
         let distance = (last.value - estimate).abs().max(NEAR_END * width);
-        let inside = hopf.state.iter().zip(last.max.iter().zip(&last.min)).all(|(value, (max, min))| {
-            let margin = (max - min) + NEAR_END * max.abs().max(min.abs());
+        // A state that stays zero is so to rounding only.
+        let natural =
+            natural_scales(&self.field, &hopf.state, &hopf.parameters, &vec![0.0; hopf.state.len()]);
+        let ranges = last.max.iter().zip(&last.min).zip(natural);
+        let inside = hopf.state.iter().zip(ranges).all(|(value, ((max, min), natural))| {
+            let margin = (max - min) + NEAR_END * max.abs().max(min.abs()) + RESTING * natural;
             (min - margin..=max + margin).contains(value)
         });
         let frequencies = (hopf.frequency * last.period / (2.0 * PI)).ln().abs();

@@ -7,6 +7,7 @@ use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::{NeutralSaddle, SpecialPoint};
 use super::spectrum::critical_pairs;
+use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, finish, locate};
@@ -262,8 +263,8 @@ pub(crate) fn hopf_point_near(
     let mut matrix = vec![0.0; n * (n + 1)];
     let mut residual = vec![0.0; n];
     Differentiator::default().jacobian(&problem, &unknown, &mut residual, &mut matrix, n);
-    let scale = |value: &f64| if *value == 0.0 { 1.0 } else { value.abs() };
-    let scales: Vec<f64> = unknown.iter().map(scale).collect();
+    let mut scales = natural_scales(&problem.field, state, parameters, &vec![0.0; n]);
+    scales.push(if unknown[n] == 0.0 { 1.0 } else { unknown[n].abs() });
     let target = Complex64::new(0.0, frequency);
     let nearest = eigenvalues(&matrix[..n * n], n)
         .ok()?
