@@ -60,7 +60,8 @@ fn allot_registers(
             last_use[node] = Some(usize::MAX);
         }
     }
-    let mut registers = inputs + constants.len();
+    let fixed = inputs + constants.len();
+    let mut registers = fixed;
     let mut allotted = Vec::with_capacity(steps.len());
     for (index, step) in steps.iter().enumerate() {
         let reads: Vec<Register> = step.reads.iter().map(|&node| register_of[node as usize]).collect();
@@ -94,16 +95,11 @@ fn allot_registers(
             .into_iter()
             .map(|(kind, reads, writes)| instruction(kind, &short(reads), &short(writes)))
             .collect();
-        Program::OnStack(
-            Code { instructions, results: short(results.collect()) }
-                .check(inputs + constants.len(), registers),
-        )
+        Program::OnStack(Code { instructions, results: short(results.collect()) }.check(fixed, registers))
     } else {
         let instructions =
             allotted.into_iter().map(|(kind, reads, writes)| instruction(kind, &reads, &writes)).collect();
-        Program::OnHeap(
-            Code { instructions, results: results.collect() }.check(inputs + constants.len(), registers),
-        )
+        Program::OnHeap(Code { instructions, results: results.collect() }.check(fixed, registers))
     };
     Some(Tape { program, states, parameters, constants, registers })
 }

@@ -272,23 +272,16 @@ impl<'a> Selection<'a> {
                 };
                 (kind, vec![a, b, c, d])
             }
-            (Some((a, b)), None) => {
+            (Some((a, b)), None) | (None, Some((a, b))) => {
+                let first = products.0.is_some();
                 let kind = match signs {
                     (true, true) => Kind::MultiplyAddAddProduct,
                     (true, false) => Kind::MultiplyAddSubtractProduct,
-                    (false, false) => Kind::MultiplySubtractSubtractProduct,
-                    (false, true) => return None,
-                };
-                (kind, vec![a, b, other])
-            }
-            (None, Some((a, b))) => {
-                let kind = match signs {
-                    (true, true) => Kind::MultiplyAddAddProduct,
-                    (true, false) => Kind::MultiplyAddSubtractProduct,
+                    (false, false) if first => Kind::MultiplySubtractSubtractProduct,
                     (false, false) => Kind::SubtractTwoProducts,
                     (false, true) => return None,
                 };
-                (kind, vec![a, b, one])
+                (kind, vec![a, b, if first { other } else { one }])
             }
         };
         reads.extend([last.0, last.1]);

@@ -321,7 +321,8 @@ impl Curve for CycleCurve<'_> {
             return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
         }
         // Cycles that are not known to be doubled ones may be so; then they pass what looks like a branch point.
-        if before.orientation * after.orientation < 0.0
+        if !self.doubled
+            && before.orientation * after.orientation < 0.0
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
             return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));

@@ -79,9 +79,7 @@ impl Branching {
             allowed: format!("{} finite numbers", self.orbit.states.len()),
         })
     }
-}
 
-impl Branching {
     /// The start, from the same branch point, of the branch on which it was found.
     pub fn known_branch(&self) -> Option<Self> {
         let known = self.known.clone()?;

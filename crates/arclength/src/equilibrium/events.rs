@@ -208,12 +208,10 @@ pub(super) fn special_points(
         if first_step || undecided(before) > least { beyond(curve, before, least, reach) } else { None };
     let to = if undecided(after) > least { beyond(curve, after, least, reach) } else { None };
     let from = from.as_ref().unwrap_or(before);
-    if first_step {
-        curve.first_beyond = Some(from.clone());
-    }
     let found = search(curve, from, to.as_ref().unwrap_or(after));
-    if first_step && matches!(found, Err(Error::OtherBranch)) {
-        curve.first_beyond = None;
+    // A first step that led to another branch is made anew.
+    if first_step && !matches!(found, Err(Error::OtherBranch)) {
+        curve.first_beyond = Some(from.clone());
     }
     found
 }
