@@ -1,10 +1,24 @@
-//! The one error type of the crate.
+//! The one error type of the crate, and why Newton's method fails.
 
-use crate::continuation::CorrectionFailure;
 use crate::integration::IntegrationError;
+
+/// Why a correction failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CorrectionFailure {
+    /// The bordered Jacobian is singular.
+    #[error("the Jacobian is singular")]
+    Singular,
+    /// An update was not finite: the vector field was evaluated outside its domain.
+    #[error("the vector field is not finite there")]
+    NotFinite,
+    /// The updates did not become smaller.
+    #[error("Newton's method does not converge")]
+    Diverged,
+}
 
 /// What can go wrong in a computation of this crate.
 #[derive(Debug, Clone, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// Newton's method did not find the solution asked for.
     #[error("no {sought} found from the start given: {cause}; try a start closer to it")]

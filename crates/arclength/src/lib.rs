@@ -15,6 +15,7 @@ pub mod field;
 pub mod integration;
 pub mod linear;
 pub mod locus;
+pub mod numbers;
 
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;

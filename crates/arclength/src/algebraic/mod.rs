@@ -13,7 +13,7 @@ mod system;
 pub(crate) use jacobian::Differentiator;
 pub(crate) use newton::{Solved, solve_square};
 pub(crate) use scaled_lu::ScaledLu;
-pub(crate) use system::{DenseSystem, between, length, position};
+pub(crate) use system::{DenseSystem, length, position};
 
 use crate::differentiation::Scalar;
 

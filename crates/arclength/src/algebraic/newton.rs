@@ -1,7 +1,7 @@
 //! Newton's method on a square system, run until rounding stops it.
 
 use super::{AlgebraicProblem, Differentiator, ScaledLu};
-use crate::continuation::CorrectionFailure;
+use crate::error::CorrectionFailure;
 
 /// A solution and the size of the last update of every unknown, an estimate of its error.
 #[derive(Clone, Debug)]

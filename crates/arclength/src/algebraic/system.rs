@@ -1,7 +1,7 @@
 //! The linear algebra that a curve of solutions of an algebraic problem asks for.
 
 use super::{AlgebraicProblem, Differentiator, ScaledLu};
-use crate::continuation::{Curve, Settings, Solution, correct, finish};
+use crate::continuation::Solution;
 use crate::error::Error;
 
 /// A problem with one unknown more than equations, the scales of its unknowns, and memory.
@@ -111,7 +111,7 @@ impl<P: AlgebraicProblem> DenseSystem<P> {
 }
 
 fn singular() -> Error {
-    Error::NotFound { sought: "tangent", cause: crate::continuation::CorrectionFailure::Singular }
+    Error::NotFound { sought: "tangent", cause: crate::error::CorrectionFailure::Singular }
 }
 
 /// Euclidean length after division by the scales.
@@ -123,39 +123,4 @@ pub(crate) fn length(vector: &[f64], scales: &[f64]) -> f64 {
 pub(crate) fn position<P>(origin: &Solution<P>, unknown: &[f64], scales: &[f64]) -> f64 {
     let coordinates = origin.tangent.iter().zip(scales).zip(unknown.iter().zip(&origin.unknown));
     coordinates.map(|((tangent, scale), (there, here))| tangent / scale * ((there - here) / scale)).sum()
-}
-
-/// The cubic through two solutions with their tangents, at a fraction of the way; `distance` is that between them.
-pub(crate) fn interpolate<P>(
-    before: &Solution<P>,
-    after: &Solution<P>,
-    distance: f64,
-    fraction: f64,
-) -> Vec<f64> {
-    let s = fraction;
-    let step = s * s * (3.0 - 2.0 * s);
-    let (departure, arrival) = (s * (1.0 - s) * (1.0 - s) * distance, s * s * (s - 1.0) * distance);
-    let ends = before.unknown.iter().zip(&after.unknown);
-    let tangents = before.tangent.iter().zip(&after.tangent);
-    ends.zip(tangents).map(|((a, b), (u, v))| a + step * (b - a) + departure * u + arrival * v).collect()
-}
-
-/// A solution between two neighbours, at a fraction of the way.
-///
-/// # Errors
-/// When the corrector fails.
-pub(crate) fn between<C: Curve>(
-    curve: &mut C,
-    before: &Solution<C::Point>,
-    after: &Solution<C::Point>,
-    distance: f64,
-    fraction: f64,
-    settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
-    let mut unknown = interpolate(before, after, distance, fraction);
-    let mut border = vec![0.0; unknown.len()];
-    curve.apply_metric(&before.tangent, &mut border);
-    correct(curve, &mut unknown, &border, settings)
-        .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
-    finish(curve, unknown, &before.tangent)
 }

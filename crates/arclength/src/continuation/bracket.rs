@@ -1,8 +1,10 @@
 //! Zeros of test functions between two neighbouring solutions, by the Illinois variant of regula falsi with a correction at
 //! every trial point: starts for Newton's method on a defining system.
 
-use super::follow::{finish, interpolate, metric_image};
-use super::{Curve, Settings, Solution, correct};
+use super::corrector::correct;
+use super::curve::Curve;
+use super::settings::Settings;
+use super::solution::{Solution, along, finish, interpolate, metric_image};
 use crate::error::Error;
 
 /// Most trial points.
@@ -14,6 +16,8 @@ const DISTANCE_FROM_ENDS: f64 = 0.01;
 pub struct Bracket<'a, P> {
     ends: [&'a Solution<P>; 2],
     border: Vec<f64>,
+    /// Length of the way.
+    length: f64,
     /// The bracket in parts of the distance between the ends, with the values there.
     left: (f64, f64),
     right: (f64, f64),
@@ -34,6 +38,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
         (left * right <= 0.0).then(|| Self {
             ends: [before, after],
             border: metric_image(curve, &before.tangent),
+            length: along(curve, before, &after.unknown),
             left: (0.0, left),
             right: (1.0, right),
             best: if left.abs() < right.abs() { before.clone() } else { after.clone() },
@@ -61,7 +66,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
             let margin = DISTANCE_FROM_ENDS * (right - left);
             let secant = (left * right_value - right * left_value) / (right_value - left_value);
             let fraction = secant.clamp(left + margin, right - margin);
-            let mut unknown = interpolate(curve, before, after, fraction);
+            let mut unknown = interpolate(before, after, self.length, fraction);
             correct(curve, &mut unknown, &self.border, settings)
                 .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
             let trial = finish(curve, unknown, &before.tangent)?;

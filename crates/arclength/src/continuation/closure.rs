@@ -6,9 +6,9 @@
 //! the amplitude of a state that vanishes at the start has a kink there.
 
 use super::bracket::locate;
-use super::curve::{Curve, Solution};
-use super::follow::Bound;
+use super::curve::Curve;
 use super::settings::Settings;
+use super::solution::{Bound, Solution};
 
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;

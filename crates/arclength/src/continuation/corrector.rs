@@ -1,6 +1,8 @@
 //! Newton's method on the bordered system, with chord steps while they contract well.
 
-use super::{Curve, Settings};
+use super::curve::Curve;
+use super::settings::Settings;
+use crate::error::CorrectionFailure;
 
 /// How a correction went.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,20 +11,6 @@ pub struct Correction {
     pub iterations: usize,
     /// Distance from the start to the solution, in the curve's metric.
     pub distance: f64,
-}
-
-/// Why a correction failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CorrectionFailure {
-    /// The bordered Jacobian is singular.
-    #[error("the Jacobian is singular")]
-    Singular,
-    /// An update was not finite: the vector field was evaluated outside its domain.
-    #[error("the vector field is not finite there")]
-    NotFinite,
-    /// The updates did not become smaller.
-    #[error("Newton's method does not converge")]
-    Diverged,
 }
 
 /// A chord step that shrinks the update less than this asks for a new Jacobian.

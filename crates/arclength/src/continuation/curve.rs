@@ -1,11 +1,21 @@
 //! The contract between a problem and the continuation that follows its solutions.
 
+use super::events::{Event, Location, Reading, Spectrum, TestFunction};
+use super::solution::Solution;
+use super::stop::{Reason, Stop};
 use crate::error::Error;
+use num_complex::Complex64;
 
 /// A curve of solutions `F(z) = 0`, `F: R^N -> R^(N-1)`, that [`follow`](super::follow) can trace.
 pub trait Curve {
     /// What is known about a solution beyond its unknowns: test functions, stability.
     type Point: Clone;
+
+    /// Kinds of special points.
+    type Kind: Copy + PartialEq + std::fmt::Debug + 'static;
+
+    /// Reasons of the problem's own for which a curve ends.
+    type Reason: Reason;
 
     /// Number of unknowns `N`, one more than the equations. It may change in [`adapt`](Self::adapt).
     fn unknowns(&self) -> usize;
@@ -48,33 +58,92 @@ pub trait Curve {
         true
     }
 
-    /// Special points between two consecutive solutions, in any order.
+    /// The test functions. Where several change their signs at one place their points are located in this order.
+    fn test_functions(&self) -> &'static [TestFunction<Self::Kind>] {
+        &[]
+    }
+
+    /// The value of the test function for a kind at a solution; `None` where it is not defined.
+    fn test(&self, _kind: Self::Kind, _solution: &Solution<Self::Point>) -> Option<Reading> {
+        None
+    }
+
+    /// Growth exponents of a solution.
+    fn spectrum(&self, _solution: &Solution<Self::Point>) -> Spectrum {
+        Spectrum::default()
+    }
+
+    /// Rates of change of the growth exponents per length of the curve, in their order, where they are known without further
+    /// solutions; otherwise they are computed by differences where they matter.
+    fn exponent_rates(&self, _solution: &Solution<Self::Point>) -> Option<Vec<Complex64>> {
+        None
+    }
+
+    /// How many of the signs at a solution may be rounding error, as they are if it is a special point itself.
+    fn undecided(&self, _solution: &Solution<Self::Point>) -> usize {
+        0
+    }
+
+    /// Locates the point of a kind between two solutions at which its test function has different signs.
     ///
     /// # Errors
     /// As [`inspect`](Self::inspect); [`Error::OtherBranch`] has the step made anew and shorter.
-    fn special_points(
+    fn locate(
         &mut self,
-        before: &Solution<Self::Point>,
-        after: &Solution<Self::Point>,
-    ) -> Result<Vec<Solution<Self::Point>>, Error>;
+        _kind: Self::Kind,
+        _between: [&Solution<Self::Point>; 2],
+    ) -> Result<Location<Self::Point>, Error> {
+        Ok(Location::Missed)
+    }
+
+    /// Locates what crosses between two solutions that enclose one place, `near`, where the number of unstable directions
+    /// changes by `change`; `half` is half of the length of the bracket.
+    ///
+    /// # Errors
+    /// As [`locate`](Self::locate).
+    fn locate_crossing(
+        &mut self,
+        _between: [&Solution<Self::Point>; 2],
+        _near: Solution<Self::Point>,
+        _change: usize,
+        _half: f64,
+    ) -> Result<Vec<Event<Self::Kind, Self::Point>>, Error> {
+        Ok(Vec::new())
+    }
+
+    /// Whether two special points of one kind at one place are two, such as Hopf points of different frequencies.
+    fn are_distinct(&self, _one: &Self::Point, _other: &Self::Point) -> bool {
+        false
+    }
+
+    /// By how much the number of unstable directions may change at a located point, where more is known than its kind.
+    fn changes_at(&self, _point: &Self::Point) -> Option<&'static [usize]> {
+        None
+    }
 
     /// Quantities, each with its size on the curve so far, that tell whether two solutions with the same first bounded parameter
     /// are the same; independent of discretisation and phase.
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)>;
 
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
-    fn ending(&mut self, _before: &Solution<Self::Point>, _after: &Solution<Self::Point>) -> Option<Ending> {
+    fn ending(
+        &mut self,
+        _before: &Solution<Self::Point>,
+        _after: &Solution<Self::Point>,
+    ) -> Option<Ending<Self::Reason>> {
         None
     }
 }
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]
-pub enum Ending {
+pub enum Ending<R> {
     /// The curve ends between the two solutions; the second is not part of it.
-    Between(super::Stop),
+    Between(Stop<R>),
+    /// The same; the solution closest before the end becomes part of the curve.
+    Approached(Stop<R>),
     /// The second solution is the last.
-    After(super::Stop),
+    After(Stop<R>),
 }
 
 /// Whether [`Curve::adapt`] changed the discretisation, so that the solution has to be corrected again.
@@ -84,17 +153,4 @@ pub enum Adaptation {
     Unchanged,
     /// The discretisation is new and all vectors were carried over.
     Changed,
-}
-
-/// A converged solution on a curve.
-#[derive(Clone, Debug)]
-pub struct Solution<P> {
-    /// The unknowns.
-    pub unknown: Vec<f64>,
-    /// The unit tangent in the curve's metric, pointing in the direction of travel.
-    pub tangent: Vec<f64>,
-    /// Sign of the determinant of the Jacobian bordered by the tangent.
-    pub orientation: f64,
-    /// What is known about it.
-    pub point: P,
 }

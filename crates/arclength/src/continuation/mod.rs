@@ -1,25 +1,35 @@
 //! Pseudo-arclength continuation of curves of solutions: the same for every problem.
 //!
 //! A [`Curve`] supplies one equation fewer than it has unknowns, linear solves with its Jacobian
-//! bordered by one row, and what there is to know about a solution. [`follow`] supplies predictor,
-//! corrector, step control, requested parameter values, ends of ranges and the recognition of closed
-//! curves. Source: Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems"
+//! bordered by one row, test functions and what there is to know about a solution. [`follow`] supplies predictor,
+//! corrector, step control, the search for special points ([`events`]), requested values, ends of ranges and the recognition of
+//! closed curves. Source: Keller, "Numerical solution of bifurcation and nonlinear eigenvalue problems"
 //! (1977); Allgower and Georg, *Numerical Continuation Methods* (1990); Govaerts, *Numerical Methods
 //! for Bifurcations of Dynamical Equilibria* (2000).
 
+mod advance;
+mod both_ways;
 mod bracket;
 mod closure;
 mod corrector;
 mod curve;
+pub mod events;
 mod follow;
+mod requested;
 mod settings;
+mod solution;
 mod stop;
 
 pub(crate) use bracket::Bracket;
 pub use bracket::locate;
-pub use corrector::{Correction, CorrectionFailure, correct};
-pub use curve::{Adaptation, Curve, Ending, Solution};
-pub use follow::{Bound, Followed, Origin, Request, follow};
-pub(crate) use follow::{along, finish};
+pub(crate) use both_ways::{BothWays, BothWaysOf, both_ways};
+pub use corrector::{Correction, correct};
+pub use curve::{Adaptation, Curve, Ending};
+pub use follow::{Followed, FollowedCurve, Observer, Request, follow};
+pub(crate) use follow::exact_start;
+pub use requested::{Origin, Target};
 pub use settings::Settings;
-pub use stop::Stop;
+pub use solution::{Bound, Solution};
+pub(crate) use solution::{along, distance, finish};
+pub use stop::{Explanation, Reason, Stop};
+pub use crate::error::CorrectionFailure;

@@ -21,6 +21,14 @@ pub struct Settings {
     pub corrector_iterations: usize,
     /// Most steps in one direction.
     pub most_steps: usize,
+    /// Part of a step below which it is not divided any further in the search for special points.
+    pub smallest_part: f64,
+    /// Most solutions computed to sort out one step.
+    pub most_trials: usize,
+    /// A step longer than this that leads to another branch is made anew and shorter.
+    pub shortest_jump: f64,
+    /// Part of a step to which a place is bracketed where the number of unstable directions changes.
+    pub shortest_bracket: f64,
 }
 
 impl Default for Settings {
@@ -34,6 +42,10 @@ impl Default for Settings {
             corrector_tolerance: 1e-10,
             corrector_iterations: 12,
             most_steps: 10_000,
+            smallest_part: 1e-5,
+            most_trials: 100,
+            shortest_jump: 1e-4,
+            shortest_bracket: 1e-7,
         }
     }
 }

@@ -1,16 +1,26 @@
-//! Why a continuation run ended, what to try, in words.
+//! Why a continuation run ended, in words.
 
-use super::CorrectionFailure;
-use crate::error::Error;
+use crate::error::{CorrectionFailure, Error};
+use crate::numbers::readable;
+use std::convert::Infallible;
+use std::fmt;
 
-/// The reason for which a run ended in one direction.
-#[derive(Debug)]
-pub enum Stop {
+/// The reason for which a run ended in one direction; `R` are the reasons of the problem's own.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Stop<R = Infallible> {
     /// A parameter reached an end of its range.
     RangeEnd {
         /// Index of the parameter among the unknowns' bounds.
         bound: usize,
         /// The end that was reached.
+        value: f64,
+    },
+    /// A monitor reached the value at which the run was to end.
+    Monitor {
+        /// Index of the monitor.
+        index: usize,
+        /// The value.
         value: f64,
     },
     /// The curve came back to where it started.
@@ -22,96 +32,83 @@ pub enum Stop {
     },
     /// The most steps allowed were taken.
     MostSteps,
-    /// The amplitude went to zero: the branch of cycles ends at a Hopf point.
-    HopfPoint {
-        /// Parameter value there.
-        parameter: f64,
-        /// Angular frequency there.
-        frequency: f64,
-        /// Whether the point was located by Newton's method; otherwise both values are extrapolated from the last cycles.
-        located: bool,
-    },
-    /// The amplitude went to zero: the curve of folds of cycles ends at a generalised Hopf point.
-    GeneralizedHopfPoint {
-        /// Values of the two parameters there.
-        values: [f64; 2],
-        /// Angular frequency there.
-        frequency: f64,
-    },
-    /// The two halves of doubled cycles became equal: the branch ends at a period doubling.
-    PeriodDoubling {
-        /// Parameter value there.
-        parameter: f64,
-        /// Period of the single cycle there.
-        period: f64,
-    },
-    /// A curve of torus bifurcations ends at a strong resonance, where its multipliers meet.
-    StrongResonance {
-        /// 1 or 2: the power of the multipliers that is one.
-        order: u8,
-    },
-    /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit.
-    PeriodUnbounded {
-        /// Period of the last cycle.
-        period: f64,
-        /// Parameter value of the last cycle.
-        parameter: f64,
-    },
-    /// The state grows without bound while the parameter tends to a value.
-    StateUnbounded {
-        /// That value.
-        parameter: f64,
-    },
+    /// A reason special to the problem.
+    Problem(R),
     /// The observer asked for the end.
     Interrupted,
     /// The problem could not be resolved any further.
     Failed(Error),
 }
 
-impl std::fmt::Display for Stop {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+/// Why a run ended and what to try, in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Explanation {
+    /// The cause.
+    pub cause: String,
+    /// What to try, where anything is left to do.
+    pub remedy: Option<&'static str>,
+}
+
+impl Explanation {
+    /// A cause about which nothing is left to do.
+    pub fn of(cause: impl Into<String>) -> Self {
+        Self { cause: cause.into(), remedy: None }
+    }
+
+    /// The same with something to try.
+    pub fn try_this(self, remedy: &'static str) -> Self {
+        Self { remedy: Some(remedy), ..self }
+    }
+}
+
+/// A reason of a problem's own for which a curve ends.
+pub trait Reason: Clone + fmt::Debug {
+    /// The reason in words; `keys` are the names of the parameters that vary, in the order of the bounds.
+    fn explain(&self, keys: &[&str]) -> Explanation;
+}
+
+impl Reason for Infallible {
+    fn explain(&self, _keys: &[&str]) -> Explanation {
+        match *self {}
+    }
+}
+
+impl<R: Reason> Stop<R> {
+    /// The stop in words; `keys` are the names of the parameters that vary, in the order of the bounds.
+    pub fn explain(&self, keys: &[&str]) -> Explanation {
+        let key = |index: usize| keys.get(index).copied().unwrap_or("the parameter");
+        let shorter = "shorter steps from the start (--finer 10)";
         match self {
-            Self::RangeEnd { value, .. } => write!(formatter, "reached the end of the range at {value}"),
-            Self::Closed => write!(formatter, "the branch is closed: it came back to where it started"),
-            Self::StepTooSmall { cause } => write!(
-                formatter,
-                "the step became too small: {cause}; the field may not be smooth here, or a scale may be \
-                 extreme: try another parameter, or start from the last labelled point"
-            ),
-            Self::MostSteps => {
-                write!(formatter, "the most steps allowed were taken; allow more, or narrow the range")
+            Self::RangeEnd { bound, value } => Explanation::of(format!(
+                "reached the end of the interval, {} = {}",
+                key(*bound),
+                readable(*value)
+            )),
+            Self::Monitor { value, .. } => {
+                Explanation::of(format!("a monitor reached the value {} at which to stop", readable(*value)))
             }
-            Self::HopfPoint { parameter, frequency, located: true } => write!(
-                formatter,
-                "the cycles shrink to a Hopf point at {parameter} with angular frequency {frequency}"
-            ),
-            Self::HopfPoint { parameter, frequency, located: false } => write!(
-                formatter,
-                "the cycles shrink to a Hopf point near {parameter:.3e} with an angular frequency of about {frequency:.3e}"
-            ),
-            Self::GeneralizedHopfPoint { values: [first, second], frequency } => write!(
-                formatter,
-                "the cycles shrink to a generalised Hopf point at {first}, {second} with angular frequency {frequency}"
-            ),
-            Self::PeriodDoubling { parameter, period } => write!(
-                formatter,
-                "the halves of the doubled cycles become equal at a period doubling at {parameter}, where the single \
-                 cycle has the period {period}"
-            ),
-            Self::StrongResonance { order } => write!(
-                formatter,
-                "the two multipliers on the unit circle meet: the curve ends at a 1:{order} resonance"
-            ),
-            Self::PeriodUnbounded { period, parameter } => write!(
-                formatter,
-                "the period grows without bound ({period} at {parameter}): a homoclinic or heteroclinic \
-                 orbit is near"
-            ),
-            Self::StateUnbounded { parameter } => {
-                write!(formatter, "the state grows without bound while the parameter tends to {parameter}")
-            }
-            Self::Interrupted => write!(formatter, "interrupted"),
-            Self::Failed(error) => write!(formatter, "{error}"),
+            Self::Closed => Explanation::of("the branch is closed: it came back to where it started"),
+            Self::StepTooSmall { cause } => Explanation::of(format!("the step became too small: {cause}"))
+                .try_this(
+                    "shorter steps from the start (--finer 10); if they end here too, the field may not be smooth here, or \
+                     the curve turns more sharply than double precision tells",
+                ),
+            Self::MostSteps => Explanation::of("the most steps allowed were taken")
+                .try_this("allow more with --steps, or start again from this end"),
+            Self::Problem(reason) => reason.explain(keys),
+            Self::Interrupted => Explanation::of("interrupted").try_this("start again from this end"),
+            Self::Failed(Error::MeshLimit { limit, error_estimate }) => Explanation::of(format!(
+                "the cycle needs more than {limit} mesh intervals (error estimate {})",
+                readable(*error_estimate)
+            ))
+            .try_this("more with --intervals, or a larger --tolerance"),
+            Self::Failed(error) => Explanation::of(error.to_string()).try_this(shorter),
         }
+    }
+}
+
+impl<R: Reason> fmt::Display for Stop<R> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&self.explain(&[]).cause)
     }
 }

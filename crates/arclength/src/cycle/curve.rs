@@ -7,10 +7,13 @@ use super::limit_cycle::LimitCycle;
 use super::mesh::{error_profile, fit_mesh};
 use super::problem::PeriodicProblem;
 use super::sizes::{StateSizes, vanishing_point};
+use super::end::CycleEnd;
 use super::special;
 use super::switching::Branching;
-use crate::continuation::{Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop};
-use crate::error::Error;
+use crate::branch::{SpecialKind, invalid};
+use crate::continuation::events::{Event, Location, Reading, Spectrum, TestFunction};
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
+use crate::error::{CorrectionFailure, Error};
 use crate::linear::periodic_schur::PeriodicSchur;
 
 /// How finely cycles are resolved.
@@ -35,6 +38,25 @@ impl Resolution {
         let degree = (2.5 + 0.6 * digits).round().clamp(3.0, 11.0) as usize;
         Self { tolerance, degree, fewest_intervals: 4, most_intervals: 2000 }
     }
+
+    /// That all numbers make sense.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`]
+    pub(crate) fn validate(&self) -> Result<(), Error> {
+        if !(2..=16).contains(&self.degree) {
+            return Err(invalid("degree", &self.degree.to_string(), "2 to 16"));
+        }
+        let (fewest, most) = (self.fewest_intervals, self.most_intervals);
+        if !(1 < fewest && fewest <= most) {
+            let allowed = format!("2 to {most}, the most intervals");
+            return Err(invalid("fewest intervals", &fewest.to_string(), &allowed));
+        }
+        if !(self.tolerance > 1e-13 && self.tolerance < 0.1) {
+            return Err(invalid("tolerance", &self.tolerance.to_string(), "between 1e-13 and 0.1"));
+        }
+        Ok(())
+    }
 }
 
 impl Default for Resolution {
@@ -56,6 +78,22 @@ const REFINEMENT: (f64, f64) = (0.1, 0.5);
 /// point.
 const MUCH_LESS: f64 = 0.01;
 const RELAXATION: f64 = 1.5;
+/// On the branch that turns at a pitchfork the parameter turns too, and a multiplier touches one. Two real multipliers with the
+/// product one change the test of torus bifurcations as well.
+const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
+    TestFunction::new(SpecialKind::BranchPointOfCycles)
+        .changing(&[0, 1])
+        .absorbing(&[SpecialKind::FoldOfCycles])
+        .of_spectrum(),
+    TestFunction::new(SpecialKind::FoldOfCycles).changing(&[1]).turning(),
+    TestFunction::new(SpecialKind::PeriodDoubling).changing(&[1]).of_spectrum(),
+    TestFunction::new(SpecialKind::Torus).changing(&[0, 2]).of_spectrum(),
+];
+/// Rate of change of the parameter, as part of its range, that may be rounding, and one below which a cycle may be a fold.
+const PARAMETER_ROUNDING: f64 = 1e-13;
+const NEARLY_FOLD: f64 = 1e-8;
+/// Difference of the arguments of two pairs of multipliers.
+const DISTINCT: f64 = 1e-6;
 /// Samples for the difference of the halves of a doubled cycle.
 const HALF_SAMPLES: usize = 64;
 
@@ -70,10 +108,6 @@ pub struct CycleInspection {
     pub(super) ranges: Vec<Range>,
     /// Mesh of this solution.
     pub mesh: Vec<f64>,
-    /// Rate of change of the parameter along the curve: zero at a fold.
-    pub fold_test: f64,
-    /// What is special about the cycle.
-    pub special: Option<special::Special>,
     /// Coefficients of its normal form by name.
     pub normal_form: Vec<(&'static str, f64)>,
     /// The branch that leaves here.
@@ -103,8 +137,6 @@ pub struct CycleCurve<'a> {
     pub settings: Settings,
     /// Weight of the parameter in the metric: the length of its range.
     pub parameter_scale: f64,
-    /// Changes of test functions behind which nothing could be located.
-    pub unlocated: Vec<special::Unlocated>,
     period_scale: f64,
     /// Sizes that measure the error: amplitudes.
     amplitudes: Vec<f64>,
@@ -133,7 +165,6 @@ impl<'a> CycleCurve<'a> {
             resolution,
             settings: Settings::default(),
             parameter_scale,
-            unlocated: Vec::new(),
             period_scale: 1.0,
             amplitudes: vec![1.0; n],
             sizes,
@@ -162,6 +193,11 @@ impl<'a> CycleCurve<'a> {
         for (scale, natural) in self.collocation.problem.scales.iter_mut().zip(self.sizes.natural()) {
             *scale = scale.max(natural);
         }
+    }
+
+    /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
+    pub fn turn(&self, tangent: &[f64]) -> f64 {
+        tangent.last().map_or(0.0, |rate| rate / self.parameter_scale)
     }
 
     /// Estimates the error of a cycle on the mesh as it is.
@@ -199,6 +235,8 @@ impl<'a> CycleCurve<'a> {
 
 impl Curve for CycleCurve<'_> {
     type Point = CycleInspection;
+    type Kind = SpecialKind;
+    type Reason = CycleEnd;
 
     fn unknowns(&self) -> usize {
         self.collocation.unknowns()
@@ -245,7 +283,7 @@ impl Curve for CycleCurve<'_> {
     fn inspect(
         &mut self,
         unknown: &[f64],
-        tangent: &[f64],
+        _tangent: &[f64],
         _orientation: f64,
     ) -> Result<CycleInspection, Error> {
         let floquet = floquet(&self.collocation, unknown, &self.collocation.problem.scales, &mut self.schur)?;
@@ -255,8 +293,6 @@ impl Curve for CycleCurve<'_> {
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
-            fold_test: tangent[tangent.len() - 1] / self.parameter_scale,
-            special: None,
             normal_form: Vec::new(),
             branching: None,
         })
@@ -280,12 +316,59 @@ impl Curve for CycleCurve<'_> {
         finer < finest
     }
 
-    fn special_points(
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<CycleInspection>) -> Option<Reading> {
+        let floquet = &solution.point.floquet;
+        let reading = match kind {
+            // On the explosion of a canard the parameter may vary by its rounding only.
+            SpecialKind::FoldOfCycles => {
+                return Some(Reading::exact(self.turn(&solution.tangent)).with_noise(PARAMETER_ROUNDING));
+            }
+            SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
+            SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
+            SpecialKind::Torus => {
+                let (value, undecided) = floquet.torus_test();
+                Reading::exact(value).in_class(undecided)
+            }
+            _ => return None,
+        };
+        Some(Reading { resolved: !floquet.is_contradictory(), ..reading })
+    }
+
+    fn spectrum(&self, solution: &Solution<CycleInspection>) -> Spectrum {
+        solution.point.floquet.growth()
+    }
+
+    fn undecided(&self, solution: &Solution<CycleInspection>) -> usize {
+        let (_, certain) = solution.point.floquet.unstable();
+        usize::from(!certain) + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+    }
+
+    fn locate(
         &mut self,
-        before: &Solution<CycleInspection>,
-        after: &Solution<CycleInspection>,
-    ) -> Result<Vec<Solution<CycleInspection>>, Error> {
-        special::between(self, before, after)
+        kind: SpecialKind,
+        between: [&Solution<CycleInspection>; 2],
+    ) -> Result<Location<CycleInspection>, Error> {
+        special::locate(self, kind, between)
+    }
+
+    fn locate_crossing(
+        &mut self,
+        between: [&Solution<CycleInspection>; 2],
+        _near: Solution<CycleInspection>,
+        change: usize,
+        _half: f64,
+    ) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
+        special::crossing(self, between, change)
+    }
+
+    fn are_distinct(&self, one: &CycleInspection, other: &CycleInspection) -> bool {
+        // Torus bifurcations of pairs with different arguments.
+        let argument = |point: &CycleInspection| point.normal_form.iter().find(|(name, _)| *name == "argument").map(|entry| entry.1);
+        matches!((argument(one), argument(other)), (Some(one), Some(other)) if (one - other).abs() > DISTINCT)
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
@@ -299,18 +382,18 @@ impl Curve for CycleCurve<'_> {
         &mut self,
         before: &Solution<CycleInspection>,
         after: &Solution<CycleInspection>,
-    ) -> Option<Ending> {
+    ) -> Option<Ending<CycleEnd>> {
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let rate = after.tangent[end] / self.period_scale;
-        let sensitivity = (rate / after.point.fold_test).abs();
+        let sensitivity = (rate / self.turn(&after.tangent)).abs();
         if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
-            return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
+            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodUnbounded { period, parameter })));
         }
         if self.doubled
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
-            return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period })));
         }
         let parameter_before = before.unknown[end + 1];
         let (here, there) = (&before.unknown[..end], &after.unknown[..end]);
@@ -318,14 +401,14 @@ impl Curve for CycleCurve<'_> {
             self.sizes.amplitude_passes_zero((here, parameter_before), (there, parameter))
         {
             let frequency = 2.0 * std::f64::consts::PI / period;
-            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::HopfPoint { parameter, frequency, located: false })));
         }
         // Cycles that are not known to be doubled ones may be so; then they pass what looks like a branch point.
         if !self.doubled
             && before.orientation * after.orientation < 0.0
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
-            return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period })));
         }
         None
     }

@@ -9,10 +9,16 @@
 
 use super::collocation::Collocation;
 use super::problem::PeriodicProblem;
+use crate::continuation::events::Spectrum;
 use crate::error::Error;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
+
+/// Logarithms of multipliers are not followed below this.
+const SMALLEST_LOGARITHM: f64 = -700.0;
+/// Logarithm of the product of two multipliers above which the test of torus bifurcations saturates.
+const SATURATION: f64 = 0.1;
 
 /// Floquet multipliers of a cycle.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +48,48 @@ impl Floquet {
         let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
         let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
         (outside, certain && !self.is_contradictory())
+    }
+
+    /// What the search for special cycles compares from cycle to cycle: logarithms of the multipliers.
+    pub(crate) fn growth(&self) -> Spectrum {
+        let (unstable, decided) = self.unstable();
+        let exponent = |multiplier: &Multiplier| {
+            Complex64::new(multiplier.log_modulus.max(SMALLEST_LOGARITHM), multiplier.argument)
+        };
+        Spectrum {
+            exponents: self.nontrivial.iter().map(exponent).collect(),
+            unstable,
+            decided,
+            noise: self.margin(),
+            is_periodic: true,
+        }
+    }
+
+    /// Product over all pairs of multipliers that are complex conjugate or real of one sign of the logarithm of their product's
+    /// modulus, each saturating at +-1: changes sign where a pair is on the unit circle. Pairs that are so within the error do
+    /// not count; their number is the second result.
+    pub(crate) fn torus_test(&self) -> (f64, usize) {
+        let (mut product, mut undecided) = (1.0, 0);
+        for (index, one) in self.nontrivial.iter().enumerate() {
+            for other in &self.nontrivial[index + 1..] {
+                let together = if one.is_real() {
+                    one.argument == other.argument
+                } else {
+                    one.argument == -other.argument && one.log_modulus == other.log_modulus
+                };
+                if !together {
+                    continue;
+                }
+                let [a, b] = [one, other].map(|multiplier| multiplier.log_modulus.max(SMALLEST_LOGARITHM));
+                let sum = a + b;
+                if sum.abs() <= 2.0 * self.margin() {
+                    undecided += 1;
+                } else {
+                    product *= sum / sum.hypot(SATURATION);
+                }
+            }
+        }
+        (product, undecided)
     }
 
     fn margin(&self) -> f64 {

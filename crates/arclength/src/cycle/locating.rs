@@ -51,6 +51,8 @@ impl<'a> DefiningCurve<'a> {
 
 impl Curve for DefiningCurve<'_> {
     type Point = ();
+    type Kind = std::convert::Infallible;
+    type Reason = std::convert::Infallible;
 
     fn unknowns(&self) -> usize {
         self.collocation.unknowns()
@@ -91,13 +93,6 @@ impl Curve for DefiningCurve<'_> {
     }
     fn inspect(&mut self, _unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<(), Error> {
         Ok(())
-    }
-    fn special_points(
-        &mut self,
-        _before: &Solution<()>,
-        _after: &Solution<()>,
-    ) -> Result<Vec<Solution<()>>, Error> {
-        Ok(Vec::new())
     }
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         unknown.iter().map(|value| (*value, 1.0)).collect()

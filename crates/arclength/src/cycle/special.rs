@@ -1,5 +1,5 @@
-//! Special cycles between two points of a branch: folds, period doublings and torus bifurcations, detected by
-//! test functions and located by Newton's method on their defining systems.
+//! Special cycles between two points of a branch: folds, period doublings, torus bifurcations and branch points, bracketed by
+//! their test functions and located by Newton's method on their defining systems, with their normal forms.
 
 use super::curve::{CycleCurve, CycleInspection};
 use super::defining::Kind;
@@ -8,142 +8,135 @@ use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
+use crate::branch::SpecialKind;
+use crate::continuation::events::{Event, Location};
 use crate::continuation::{Bracket, Solution, along};
 use crate::error::Error;
 
-/// What is special about a cycle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Special {
-    /// Fold of cycles (LPC).
-    Fold,
-    /// Period doubling (PD).
-    Doubling,
-    /// Torus bifurcation (NS) with the argument of its multipliers.
-    Torus {
-        /// In radians, between 0 and pi.
-        argument: f64,
-    },
-    /// Branch point of cycles (BPC).
-    BranchPoint,
-}
-
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
 const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
-/// Part of the range of the parameter by which it has to vary in a step for a fold to be told from rounding.
-const PARAMETER_ROUNDING: f64 = 1e-13;
 /// Perturbation of the field at a branch point, relative to its size over one period, below which it is one of the field itself:
 /// a part of the tolerance of the cycles, whose mesh may break a symmetry by so much, and never less than this.
 const UNPERTURBED_PART: f64 = 0.1;
 const UNPERTURBED: f64 = 1e-10;
-/// A step longer than this, in the metric, over a branch point that is none of the field itself is shortened.
-const SHORTEST_JUMP: f64 = 1e-4;
 /// A special cycle may lie this part of the step outside it.
 const MARGIN: f64 = 0.1;
 
-/// All special cycles between two consecutive solutions.
+type Node = Solution<CycleInspection>;
+
+/// The defining system of a kind of special cycles.
+fn defining(kind: SpecialKind) -> Option<Kind> {
+    match kind {
+        SpecialKind::FoldOfCycles => Some(Kind::Fold),
+        SpecialKind::PeriodDoubling => Some(Kind::Doubling),
+        SpecialKind::Torus => Some(Kind::Torus),
+        SpecialKind::BranchPointOfCycles => Some(Kind::BranchPoint),
+        _ => None,
+    }
+}
+
+/// The special cycle of a kind between two solutions.
 ///
 /// # Errors
 /// [`Error::OtherBranch`] if the orientation changes where there is no branch point, or only one of a perturbed field: then the
 /// step has led to another branch.
-pub(super) fn between(
+pub(super) fn locate(
     curve: &mut CycleCurve<'_>,
-    before: &Solution<CycleInspection>,
-    after: &Solution<CycleInspection>,
-) -> Result<Vec<Solution<CycleInspection>>, Error> {
-    let changes = |a: f64, b: f64| a * b < 0.0;
-    let fold = changes(before.point.fold_test, after.point.fold_test);
-    let branch_point = changes(before.orientation, after.orientation);
-    let doubling = changes(before.point.doubling_test(), after.point.doubling_test());
-    let (outside_before, _) = before.point.floquet.unstable();
-    let (outside_after, _) = after.point.floquet.unstable();
-    let explained = usize::from(fold) + usize::from(branch_point) + usize::from(doubling);
-    let pairs = outside_before.abs_diff(outside_after).saturating_sub(explained) / 2;
+    kind: SpecialKind,
+    [before, after]: [&Node; 2],
+) -> Result<Location<CycleInspection>, Error> {
+    let Some(defining) = defining(kind) else { return Ok(Location::Nothing) };
+    // The pair that changes sides when the multipliers are counted from outside.
+    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
+    let rank = outside[0].min(outside[1]);
+    if kind == SpecialKind::Torus && !is_pair_between(before, after, rank) {
+        return Ok(Location::Nothing);
+    }
+    match newton(curve, defining, [before, after], rank)? {
+        Some(located) => Ok(Location::At(describe(curve, located, defining)?)),
+        None if defining == Kind::BranchPoint
+            && along(curve, before, &after.unknown) > curve.settings.shortest_jump =>
+        {
+            Err(Error::OtherBranch)
+        }
+        None => Ok(Location::Missed),
+    }
+}
+
+/// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.
+///
+/// # Errors
+/// When a solution nearby cannot be computed.
+pub(super) fn crossing(
+    curve: &mut CycleCurve<'_>,
+    [before, after]: [&Node; 2],
+    change: usize,
+) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
+    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
     let mut found = Vec::new();
-    let sign = before.orientation;
-    let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
-    // Each with its rank: pairs that cross together are told apart by it.
-    let single = [(branch_point, Kind::BranchPoint), (fold, Kind::Fold), (doubling, Kind::Doubling)];
-    let wanted = single.into_iter().filter(|(detected, _)| *detected).map(|(_, kind)| (kind, 0));
-    let tori = (0..pairs).map(|pair| (Kind::Torus, outside_before.min(outside_after) + 2 * pair));
-    let length = along(curve, before, &after.unknown);
-    // On the explosion of a canard the parameter may vary by its rounding only.
-    let variation = length * before.point.fold_test.abs().max(after.point.fold_test.abs());
-    let varies = variation > PARAMETER_ROUNDING;
-    let resolved = ![before, after].iter().any(|solution| solution.point.floquet.is_contradictory());
-    let unperturbed = (UNPERTURBED_PART * curve.resolution.tolerance).max(UNPERTURBED);
-    for (kind, rank) in wanted.chain(tori) {
-        let settings = curve.settings;
-        let mut located = None;
-        let test = |_: &mut CycleCurve<'_>, solution: &Solution<CycleInspection>| {
-            let point = &solution.point;
-            match kind {
-                Kind::Fold => Some(point.fold_test),
-                Kind::Doubling => Some(point.doubling_test()),
-                Kind::Torus => torus_test(point, rank),
-                Kind::BranchPoint => branch_point_test(solution, sign),
-            }
-        };
-        // The tests of all but folds are multipliers.
-        let decidable = if kind == Kind::Fold { varies } else { resolved };
-        let mut bracket = decidable.then(|| Bracket::new(curve, before, after, test)).flatten();
-        for tolerance in START_TOLERANCES {
-            let Some(bracket) = &mut bracket else { break };
-            let converged = match bracket.narrow(curve, &settings, tolerance, test) {
-                Ok(Some(start)) => converge(curve, &direction, start, kind)?,
-                // Next to a branch point the equations of the branch are singular, but its ends are good starts.
-                Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
-                    let ends = [before, after].into_iter();
-                    let distance = |end: &Solution<CycleInspection>| {
-                        branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs)
-                    };
-                    let nearest = ends.min_by(|one, other| distance(one).total_cmp(&distance(other)));
-                    nearest.map(|start| converge(curve, &direction, start, kind)).transpose()?.flatten()
-                }
-                Ok(None) | Err(Error::NotFound { .. }) => None,
-                Err(error) => return Err(error),
-            };
-            // Newton's method may have left for a special cycle elsewhere.
-            located = converged.filter(|located| {
-                let position = along(curve, before, &located.solution.unknown);
-                let perturbation = located.eigenfunctions.1.first().filter(|_| kind == Kind::BranchPoint);
-                (-MARGIN * length..=(1.0 + MARGIN) * length).contains(&position)
-                    && perturbation.is_none_or(|perturbation| perturbation.abs() < unperturbed)
-            });
-            if located.is_some() {
-                break;
-            }
-        }
-        match located {
-            Some(located) => found.push(describe(curve, located, kind)?),
-            // On the branch that turns at a pitchfork the parameter turns too, but that is no fold.
-            None if kind == Kind::Fold && at_branch_point(&found) => {}
-            None if kind == Kind::BranchPoint && resolved && length > SHORTEST_JUMP => {
-                return Err(Error::OtherBranch);
-            }
-            None => {
-                let [from, to] = [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]);
-                // Rounding may change a sign in step after step.
-                match curve.unlocated.last_mut() {
-                    Some(last) if last.test == name(kind) && last.between[1] == from => last.between[1] = to,
-                    _ => curve.unlocated.push(Unlocated { test: name(kind), between: [from, to] }),
-                }
-            }
-        }
+    for pair in 0..change / 2 {
+        let rank = outside[0].min(outside[1]) + 2 * pair;
+        let Some(located) = newton(curve, Kind::Torus, [before, after], rank)? else { return Ok(Vec::new()) };
+        let solution = describe(curve, located, Kind::Torus)?;
+        found.push(Event { kind: SpecialKind::Torus, is_located: true, solution });
     }
     Ok(found)
 }
 
-fn at_branch_point(found: &[Solution<CycleInspection>]) -> bool {
-    found.iter().any(|solution| solution.point.special == Some(Special::BranchPoint))
+/// Whether the two multipliers behind the `rank` largest ones are a complex pair on one side at least.
+fn is_pair_between(before: &Node, after: &Node, rank: usize) -> bool {
+    [before, after].iter().any(|node| {
+        node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real())
+    })
 }
 
-fn name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Fold => "fold of cycles",
-        Kind::Doubling => "period doubling",
-        Kind::Torus => "torus bifurcation",
-        Kind::BranchPoint => "branch point of cycles",
+/// Newton's method on the defining system from ever closer starts; for a torus bifurcation of the pair behind the `rank` largest
+/// multipliers.
+fn newton(
+    curve: &mut CycleCurve<'_>,
+    kind: Kind,
+    [before, after]: [&Node; 2],
+    rank: usize,
+) -> Result<Option<Located>, Error> {
+    let settings = curve.settings;
+    let sign = before.orientation;
+    let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
+    let length = along(curve, before, &after.unknown);
+    let unperturbed = (UNPERTURBED_PART * curve.resolution.tolerance).max(UNPERTURBED);
+    let test = |curve: &mut CycleCurve<'_>, solution: &Node| {
+        let point = &solution.point;
+        match kind {
+            Kind::Fold => Some(curve.turn(&solution.tangent)),
+            Kind::Doubling => Some(point.doubling_test()),
+            Kind::Torus => torus_test(point, rank),
+            Kind::BranchPoint => branch_point_test(solution, sign),
+        }
+    };
+    let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
+    for tolerance in START_TOLERANCES {
+        let converged = match bracket.narrow(curve, &settings, tolerance, test) {
+            Ok(Some(start)) => converge(curve, &direction, start, kind)?,
+            // Next to a branch point the equations of the branch are singular, but its ends are good starts.
+            Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
+                let distance = |end: &Node| branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs);
+                let nearest = if distance(before) <= distance(after) { before } else { after };
+                converge(curve, &direction, nearest, kind)?
+            }
+            Ok(None) | Err(Error::NotFound { .. }) => None,
+            Err(error) => return Err(error),
+        };
+        // Newton's method may have left for a special cycle elsewhere.
+        let located = converged.filter(|located| {
+            let position = along(curve, before, &located.solution.unknown);
+            let perturbation = located.eigenfunctions.1.first().filter(|_| kind == Kind::BranchPoint);
+            (-MARGIN * length..=(1.0 + MARGIN) * length).contains(&position)
+                && perturbation.is_none_or(|perturbation| perturbation.abs() < unperturbed)
+        });
+        if located.is_some() {
+            return Ok(located);
+        }
     }
+    Ok(None)
 }
 
 /// The located cycle with its normal form and the branch that leaves it.
@@ -165,19 +158,19 @@ fn describe(
         period: solution.unknown[end],
     };
     let point = &mut solution.point;
-    (point.special, point.normal_form, point.branching) = match kind {
+    (point.normal_form, point.branching) = match kind {
         Kind::Fold => {
             // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
             let named = critical.fold(&eigenfunctions).map(|(own, scaled)| match scaled {
                 Some(value) => ("quadratic_coefficient", value),
                 None => ("quadratic_coefficient_of_unit_function", own),
             });
-            (Some(Special::Fold), named.into_iter().collect(), None)
+            (named.into_iter().collect(), None)
         }
         Kind::Doubling => {
             let coefficient = critical.doubling(&eigenfunctions);
             let named = coefficient.map(|value| ("cubic_coefficient", value));
-            (Some(Special::Doubling), named.into_iter().collect(), doubled(&orbit, &eigenfunctions))
+            (named.into_iter().collect(), doubled(&orbit, &eigenfunctions))
         }
         Kind::Torus => {
             let argument = eigenfunctions.1[0].abs();
@@ -185,7 +178,7 @@ fn describe(
             if let Some([real, imaginary]) = critical.torus(&eigenfunctions) {
                 named.extend([("cubic_coefficient", real), ("cubic_coefficient_imaginary", imaginary)]);
             }
-            (Some(Special::Torus { argument }), named, None)
+            (named, None)
         }
         Kind::BranchPoint => {
             let other = other_branch(
@@ -195,19 +188,10 @@ fn describe(
                 (curve.collocation.problem.active, curve.parameter_scale),
                 &solution.tangent,
             );
-            (Some(Special::BranchPoint), Vec::new(), other)
+            (Vec::new(), other)
         }
     };
     Ok(solution)
-}
-
-/// A change of a test function behind which no special cycle could be located.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unlocated {
-    /// What the test function stands for.
-    pub test: &'static str,
-    /// Parameter values between which it changed.
-    pub between: [f64; 2],
 }
 
 /// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation.

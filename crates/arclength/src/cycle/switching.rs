@@ -208,7 +208,7 @@ pub(super) fn other_branch(
 }
 
 /// A start on a mesh: unknowns, direction of the branch, mesh and degree.
-pub(super) struct Start {
+pub(super) struct Departure {
     pub unknown: Vec<f64>,
     pub tangent: Vec<f64>,
     pub mesh: Vec<f64>,
@@ -242,7 +242,7 @@ impl HopfStart<'_> {
     }
 
     /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
-    pub fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Start {
+    pub fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Departure {
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
         let gauss = Gauss::new(degree);
@@ -260,6 +260,6 @@ impl HopfStart<'_> {
         }
         unknown.extend([2.0 * PI / self.frequency, parameter]);
         tangent.extend([0.0, 0.0]);
-        Start { unknown, tangent, mesh, degree }
+        Departure { unknown, tangent, mesh, degree }
     }
 }

@@ -28,7 +28,8 @@ pub struct BranchPoint {
     /// Index of the parameter along which it was found.
     pub active: usize,
     /// Value of that parameter.
-    pub parameter: f64,
+    #[serde(rename = "parameter")]
+    pub value: f64,
     /// Error estimate of that value.
     pub location_error: f64,
     /// The equilibrium.
@@ -143,7 +144,7 @@ impl BranchPoint {
             (project(&cubes) + 3.0 * project(&forms.real(&[&null_vector, &correction]))) / 6.0
         });
         Ok(Some(Self {
-            parameter: parameters[active],
+            value: parameters[active],
             parameters,
             active,
             location_error,

@@ -1,48 +1,46 @@
 //! The curve of equilibria of one parameter: metric, stability and test functions along the way.
 
 use super::branch_point::BranchPoint;
-use super::events;
+use super::end::EquilibriumEnd;
+use super::locating;
 use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
 use super::spectrum::Spectrum;
 use crate::algebraic::DenseSystem;
-use crate::continuation::{Adaptation, Bound, Curve, Ending, Settings, Solution, Stop};
+use crate::branch::{SpecialKind, Stability};
+use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
+use crate::continuation::{Adaptation, Bound, Curve, Ending, Settings, Solution, Stop, events};
 use crate::error::Error;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
+use num_complex::Complex64;
 
-/// Test functions of an equilibrium; each changes sign at one kind of special point.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Tests {
-    /// Rate of change of the parameter along the curve, as part of the whole: zero at a fold.
-    pub fold: f64,
-    /// Determinant of the scaled Jacobian bordered by the tangent: zero at a branch point.
-    pub branch_point: f64,
-    /// See [`Spectrum::hopf_test`].
-    pub hopf: f64,
-}
+/// On the branch that turns at a pitchfork the parameter turns too, and an eigenvalue touches zero. At a neutral saddle the
+/// Hopf test vanishes as well.
+const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
+    TestFunction::new(SpecialKind::BranchPoint)
+        .changing(&[0, 1])
+        .absorbing(&[SpecialKind::Fold])
+        .of_spectrum(),
+    TestFunction::new(SpecialKind::Fold).changing(&[1]).turning(),
+    TestFunction::new(SpecialKind::Hopf).changing(&[0, 2]).of_spectrum(),
+];
+/// A rate of change of the parameter along the curve that may be rounding error, and one below which a solution may be a fold
+/// itself.
+const UNDECIDED_FOLD: f64 = 1e-13;
+const NEARLY_FOLD: f64 = 1e-9;
 
 /// What is known about an equilibrium on a curve.
 #[derive(Clone, Debug)]
 pub(crate) struct Inspection {
     pub spectrum: Spectrum,
-    pub tests: Tests,
-    /// Derivative of the Hopf test along the curve.
-    pub hopf_slope: f64,
+    /// Rates of change of the eigenvalues along the curve.
+    pub rates: Vec<Complex64>,
+    /// Modulus of the determinant of the scaled Jacobian bordered by the tangent: zero at a branch point.
+    pub determinant: f64,
     pub special: Option<Box<SpecialPoint>>,
 }
 
-/// The same solution for travel in the opposite direction.
-pub(super) fn reversed(mut solution: Solution<Inspection>) -> Solution<Inspection> {
-    solution.tangent.iter_mut().for_each(|entry| *entry = -*entry);
-    solution.orientation = -solution.orientation;
-    let Inspection { tests, hopf_slope, .. } = &mut solution.point;
-    tests.fold = -tests.fold;
-    tests.branch_point = -tests.branch_point;
-    *hopf_slope = -*hopf_slope;
-    solution
-}
-
-/// Displacement along the tangent for the derivative of the Hopf test. Small enough that curvature does not matter,
+/// Displacement along the tangent for the rates of the eigenvalues. Small enough that curvature does not matter,
 /// large enough that rounding does not.
 const DISPLACEMENT: f64 = 1e-7;
 
@@ -63,8 +61,6 @@ pub(crate) struct EquilibriumCurve<'a> {
     first_scales: Vec<f64>,
     workspace: EigenvalueWorkspace,
     scratch: Vec<f64>,
-    /// Solution close to the start, from which on the direction followed was searched for special points.
-    pub first_beyond: Option<Solution<Inspection>>,
 }
 
 impl<'a> EquilibriumCurve<'a> {
@@ -79,14 +75,12 @@ impl<'a> EquilibriumCurve<'a> {
             first_scales: scales,
             workspace,
             scratch: Vec::new(),
-            first_beyond: None,
         }
     }
 
     /// Forgets the direction followed before.
     pub fn restart(&mut self) {
         self.idle_steps = 0;
-        self.first_beyond = None;
     }
 
     pub fn dimension(&self) -> usize {
@@ -111,12 +105,20 @@ impl<'a> EquilibriumCurve<'a> {
         let matrix = self.jacobian(&unknown);
         let spectrum = Spectrum::of(&matrix, &mut self.workspace)?;
         let tangent = point.tangents[0].clone();
-        let n = self.dimension();
-        let fold = tangent[n] / self.system.scales[n];
-        let tests = Tests { fold, branch_point: 0.0, hopf: spectrum.hopf_test };
         let special = Some(Box::new(SpecialPoint::BranchPoint(point)));
-        let point = Inspection { spectrum, tests, hopf_slope: 0.0, special };
+        let rates = vec![Complex64::ZERO; spectrum.eigenvalues.len()];
+        let point = Inspection { spectrum, rates, determinant: 0.0, special };
         Ok(Solution { unknown, tangent, orientation: 0.0, point })
+    }
+
+    /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
+    pub fn turn(&self, tangent: &[f64]) -> f64 {
+        Self::turn_of(tangent, self.system.scales[self.dimension()])
+    }
+
+    /// The same for a range of this length.
+    pub fn turn_of(tangent: &[f64], range: f64) -> f64 {
+        tangent.last().map_or(0.0, |rate| rate / range)
     }
 
     /// Eigenvalues and so on of the last factorised Jacobian.
@@ -132,6 +134,8 @@ impl<'a> EquilibriumCurve<'a> {
 
 impl Curve for EquilibriumCurve<'_> {
     type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = EquilibriumEnd;
 
     fn unknowns(&self) -> usize {
         self.dimension() + 1
@@ -159,34 +163,102 @@ impl Curve for EquilibriumCurve<'_> {
         Ok(Adaptation::Unchanged)
     }
 
-    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Inspection, Error> {
+    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
         let n = self.dimension();
-        let determinant = orientation * self.system.determinant_size();
+        let determinant = self.system.determinant_size();
         let spectrum = self.spectrum()?;
-        let fold = tangent[n] / self.system.scales[n];
-        let mut hopf_slope = 0.0;
-        if n > 1 {
-            let nearby: Vec<f64> =
-                unknown.iter().zip(tangent).map(|(value, slope)| value + DISPLACEMENT * slope).collect();
-            let mut residual = vec![0.0; n + 1];
-            self.system.linearize(&nearby, &mut residual);
-            if let Ok(there) = self.spectrum() {
-                hopf_slope = (there.hopf_test - spectrum.hopf_test) / DISPLACEMENT;
+        let nearby: Vec<f64> =
+            unknown.iter().zip(tangent).map(|(value, slope)| value + DISPLACEMENT * slope).collect();
+        let mut residual = vec![0.0; n + 1];
+        self.system.linearize(&nearby, &mut residual);
+        let rates = match self.spectrum() {
+            Ok(there) => {
+                let partners = partners(&spectrum.growth(), &there.growth());
+                let pairs = spectrum.eigenvalues.iter().zip(partners);
+                pairs.map(|(here, index)| (there.eigenvalues[index] - here) / DISPLACEMENT).collect()
             }
+            Err(_) => vec![Complex64::ZERO; n],
+        };
+        Ok(Inspection { spectrum, rates, determinant, special: None })
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+        let point = &solution.point;
+        match kind {
+            SpecialKind::Fold => {
+                Some(Reading::exact(self.turn(&solution.tangent)).with_noise(UNDECIDED_FOLD))
+            }
+            SpecialKind::BranchPoint => Some(Reading::exact(solution.orientation * point.determinant)),
+            SpecialKind::Hopf => {
+                Some(Reading::exact(point.spectrum.hopf_test).in_class(point.spectrum.hopf_undecided))
+            }
+            _ => None,
         }
-        let tests = Tests { fold, branch_point: determinant, hopf: spectrum.hopf_test };
-        Ok(Inspection { spectrum, tests, hopf_slope, special: None })
     }
 
-    fn special_points(
+    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+        solution.point.spectrum.growth()
+    }
+
+    fn exponent_rates(&self, solution: &Solution<Inspection>) -> Option<Vec<Complex64>> {
+        Some(solution.point.rates.clone())
+    }
+
+    fn undecided(&self, solution: &Solution<Inspection>) -> usize {
+        let spectrum = &solution.point.spectrum;
+        spectrum.hopf_undecided
+            + usize::from(spectrum.stability == Stability::Undecided)
+            + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+    }
+
+    fn locate(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Result<Vec<Solution<Inspection>>, Error> {
-        events::special_points(self, before, after)
+        kind: SpecialKind,
+        [before, after]: [&Solution<Inspection>; 2],
+    ) -> Result<Location<Inspection>, Error> {
+        let located = match kind {
+            SpecialKind::Fold => locating::fold(self, before, after)?,
+            SpecialKind::BranchPoint => locating::branch_point(self, before, after)?,
+            _ => locating::hopf(self, before, after)?,
+        };
+        Ok(match located.point.special.as_deref() {
+            Some(SpecialPoint::Degenerate { .. }) => Location::Bracketed(located),
+            _ => Location::At(located),
+        })
     }
 
-    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+    fn locate_crossing(
+        &mut self,
+        [before, _]: [&Solution<Inspection>; 2],
+        near: Solution<Inspection>,
+        change: usize,
+        half: f64,
+    ) -> Result<Vec<Event<SpecialKind, Inspection>>, Error> {
+        locating::crossing(self, before, near, change, half)
+    }
+
+    fn are_distinct(&self, one: &Inspection, other: &Inspection) -> bool {
+        match (one.special.as_deref(), other.special.as_deref()) {
+            (Some(SpecialPoint::Hopf(one)), Some(SpecialPoint::Hopf(other))) => {
+                locating::are_distinct(one.frequency, other.frequency)
+            }
+            _ => false,
+        }
+    }
+
+    fn changes_at(&self, point: &Inspection) -> Option<&'static [usize]> {
+        match point.special.as_deref()? {
+            SpecialPoint::Hopf(_) => Some(&[2]),
+            SpecialPoint::NeutralSaddle(_) => Some(&[0]),
+            _ => None,
+        }
+    }
+
+    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<EquilibriumEnd>> {
         let n = self.dimension();
         let range = self.system.scales[n];
         let parameter = after.unknown[n];
@@ -201,9 +273,9 @@ impl Curve for EquilibriumCurve<'_> {
             .iter()
             .zip(&self.first_scales)
             .any(|(now, first)| *now > UNBOUNDED_GROWTH * first);
-        let vertical = after.point.tests.fold.abs() < VERTICAL;
+        let vertical = self.turn(&after.tangent).abs() < VERTICAL;
         if self.idle_steps > MOST_IDLE_STEPS || (vertical && grown) {
-            return Some(Ending::After(Stop::StateUnbounded { parameter }));
+            return Some(Ending::After(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })));
         }
         // The parameter creeps up to the end of its range and never reaches it.
         let end = [self.bound.lower, self.bound.upper]

@@ -16,7 +16,8 @@ pub struct FoldPoint {
     /// Index of the parameter along which it was found.
     pub active: usize,
     /// Value of that parameter.
-    pub parameter: f64,
+    #[serde(rename = "parameter")]
+    pub value: f64,
     /// Error estimate of that value.
     pub location_error: f64,
     /// The equilibrium.
@@ -79,7 +80,7 @@ impl FoldPoint {
         Ok(Self {
             quadratic,
             unfolding,
-            parameter: parameters[active],
+            value: parameters[active],
             parameters,
             active,
             location_error,

@@ -21,7 +21,8 @@ pub struct HopfPoint {
     /// Index of the parameter along which it was found.
     pub active: usize,
     /// Value of that parameter.
-    pub parameter: f64,
+    #[serde(rename = "parameter")]
+    pub value: f64,
     /// Error estimate of that value.
     pub location_error: f64,
     /// The equilibrium.
@@ -68,7 +69,7 @@ impl HopfPoint {
             c1_real: first.map(|(value, _)| value * frequency),
             criticality,
             eigenvector: local.right,
-            parameter: parameters[active],
+            value: parameters[active],
             parameters,
             active,
             location_error,

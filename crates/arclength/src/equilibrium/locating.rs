@@ -10,7 +10,8 @@ use super::spectrum::critical_pairs;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
-use crate::continuation::{Solution, finish, locate};
+use crate::continuation::events::Event;
+use crate::continuation::{Solution, distance, finish, locate};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::linear::eigenvalues::eigenvalues;
@@ -20,17 +21,22 @@ use num_complex::Complex64;
 /// Lengths, as parts of a bracket, to which it is shortened before Newton's method is tried, and tried again.
 const BRACKETS: [f64; 2] = [1e-2, 1e-6];
 /// The same where Newton's method fails and the bracket is all there is.
-pub(super) const LAST_BRACKET: f64 = 1e-10;
+const LAST_BRACKET: f64 = 1e-10;
 /// Pairs of eigenvalues that are tried for a Hopf point.
 const CANDIDATES: usize = 3;
 /// A located point may lie this part of the bracket outside it.
 const MARGIN: f64 = 0.1;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
 const UNPERTURBED: f64 = 1e-12;
-/// A step longer than this, in the metric, that leads to another branch is shortened.
-pub(super) const SHORTEST_JUMP: f64 = 1e-6;
+/// Distance, in the metric, of a point located by Newton's method from the bracket of its crossing.
+const AGREEMENT: f64 = 1e-6;
+/// Relative difference of the frequencies of two pairs.
+const DISTINCT: f64 = 1e-6;
 
 type Node = Solution<Inspection>;
+
+/// A function whose zero is sought.
+type Test = fn(&EquilibriumCurve<'_>, &Node) -> f64;
 
 /// A solution close to the zero of a test function.
 fn near_zero(
@@ -38,13 +44,13 @@ fn near_zero(
     before: &Node,
     after: &Node,
     tolerance: f64,
-    test: fn(&Inspection) -> f64,
+    test: Test,
 ) -> Node {
     let settings = curve.settings;
-    match locate(curve, before, after, &settings, tolerance, |_, solution| Some(test(&solution.point))) {
+    match locate(curve, before, after, &settings, tolerance, |curve, solution| Some(test(curve, solution))) {
         Ok(Some(near)) => near,
         // Next to a branch point corrections fail, but the ends are good starts.
-        _ if test(&before.point).abs() < test(&after.point).abs() => before.clone(),
+        _ if test(curve, before).abs() < test(curve, after).abs() => before.clone(),
         _ => after.clone(),
     }
 }
@@ -70,13 +76,13 @@ fn degenerate(
     after: &Node,
     distance: f64,
     of: SpecialKind,
-    test: fn(&Inspection) -> f64,
+    test: Test,
 ) -> Node {
     let mut node = near_zero(curve, before, after, LAST_BRACKET, test);
     let n = curve.dimension();
-    let parameter = node.unknown[n];
+    let value = node.unknown[n];
     let location_error = LAST_BRACKET * distance * curve.system.scales[n];
-    node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, parameter, location_error }));
+    node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, value, location_error }));
     node
 }
 
@@ -97,10 +103,10 @@ pub(super) fn fold(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
-    distance: f64,
 ) -> Result<Node, Error> {
     let n = curve.dimension();
-    let test = |point: &Inspection| point.tests.fold;
+    let distance = distance(curve, &before.unknown, &after.unknown);
+    let test: Test = |curve, node| curve.turn(&node.tangent);
     for tolerance in BRACKETS {
         let near = near_zero(curve, before, after, tolerance, test);
         let scales = curve.system.scales.clone();
@@ -125,9 +131,9 @@ pub(super) fn hopf(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
-    distance: f64,
 ) -> Result<Node, Error> {
-    let test = |point: &Inspection| point.spectrum.hopf_closest;
+    let distance = distance(curve, &before.unknown, &after.unknown);
+    let test: Test = |_, node| node.point.spectrum.hopf_closest;
     // Pairs that stay on the axis are not what crosses it; of the others a weakly damped one may be closer to it.
     let neutral = before.point.spectrum.hopf_undecided;
     for (tolerance, candidate) in
@@ -146,7 +152,7 @@ pub(super) fn hopf(
 
 /// The Hopf point or neutral saddle to which Newton's method converges from a solution and the pair of its eigenvalues that
 /// is about to become critical; wherever it lies.
-pub(super) fn hopf_of_pair(
+fn hopf_of_pair(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     near: &Node,
@@ -176,7 +182,7 @@ pub(super) fn hopf_of_pair(
     } else {
         let parameters = problem.parameters_at(&unknown[n..]);
         SpecialPoint::NeutralSaddle(NeutralSaddle {
-            parameter: unknown[n],
+            value: unknown[n],
             parameters,
             active: problem.active[0],
             location_error: error,
@@ -292,10 +298,10 @@ pub(super) fn branch_point(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
     after: &Node,
-    distance: f64,
 ) -> Result<Node, Error> {
     let n = curve.dimension();
-    let test = |point: &Inspection| point.tests.branch_point;
+    let distance = distance(curve, &before.unknown, &after.unknown);
+    let test: Test = |_, node| node.orientation * node.point.determinant;
     let failed = |_| Error::Eigenvalues { quantity: "null vector of the branch point" };
     let mut perturbed = false;
     for tolerance in [1.0, BRACKETS[0], BRACKETS[1]] {
@@ -339,8 +345,57 @@ pub(super) fn branch_point(
         // The Jacobian bordered by the tangent is singular here: what is known comes from the normal form.
         return curve.at_branch_point(unknown, point);
     }
-    if perturbed && distance > SHORTEST_JUMP {
+    if perturbed && distance > curve.settings.shortest_jump {
         return Err(Error::OtherBranch);
     }
     Ok(degenerate(curve, before, after, distance, SpecialKind::BranchPoint, test))
+}
+
+/// What crosses at one place, `near`, where the number of unstable eigenvalues changes by `change`: pairs of different
+/// frequencies one by one, or what was bracketed. `half` is half of the length of the bracket.
+pub(super) fn crossing(
+    curve: &mut EquilibriumCurve<'_>,
+    before: &Node,
+    mut near: Node,
+    change: usize,
+    half: f64,
+) -> Result<Vec<Event<SpecialKind, Inspection>>, Error> {
+    let eigenvalues = &near.point.spectrum.eigenvalues;
+    let closest = eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
+    let oscillates = closest.is_some_and(|value| value.im != 0.0);
+    if oscillates && change > 0 && change.is_multiple_of(2) {
+        let pairs = critical_pairs(eigenvalues).into_iter().filter(|pair| pair[0].im != 0.0);
+        let mut hopf: Vec<Node> = Vec::new();
+        for pair in pairs.take(change / 2) {
+            let Some(node) = hopf_of_pair(curve, before, &near, pair)? else { break };
+            let Some(own) = frequency(&node) else { break };
+            let new = hopf.iter().filter_map(frequency).all(|other| are_distinct(own, other));
+            if !new || distance(curve, &node.unknown, &near.unknown) > AGREEMENT {
+                break;
+            }
+            hopf.push(node);
+        }
+        if hopf.len() == change / 2 {
+            let located = |solution| Event { kind: SpecialKind::Hopf, is_located: true, solution };
+            return Ok(hopf.into_iter().map(located).collect());
+        }
+    }
+    let of = if oscillates { SpecialKind::Hopf } else { SpecialKind::BranchPoint };
+    let n = curve.dimension();
+    let value = near.unknown[n];
+    let location_error = half * curve.system.scales[n];
+    near.point.special = Some(Box::new(SpecialPoint::Degenerate { of, value, location_error }));
+    Ok(vec![Event { kind: of, is_located: false, solution: near }])
+}
+
+fn frequency(node: &Node) -> Option<f64> {
+    match node.point.special.as_deref() {
+        Some(SpecialPoint::Hopf(hopf)) => Some(hopf.frequency),
+        _ => None,
+    }
+}
+
+/// Whether two frequencies are those of two pairs.
+pub(super) fn are_distinct(one: f64, other: f64) -> bool {
+    (one - other).abs() > DISTINCT * one
 }

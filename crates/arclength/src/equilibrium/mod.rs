@@ -6,11 +6,10 @@
 
 mod branch;
 mod branch_point;
-mod crossings;
 mod curve;
 pub(crate) mod defining;
 mod departure;
-mod events;
+mod end;
 mod fold;
 pub(crate) mod hopf;
 pub(crate) mod locating;
@@ -23,10 +22,10 @@ mod special;
 pub(crate) mod spectrum;
 
 pub use branch::{EquilibriumBranch, EquilibriumPoint};
+pub use end::EquilibriumEnd;
 pub use branch_point::{BranchPoint, Crossing};
 pub use fold::FoldPoint;
 pub use hopf::HopfPoint;
 pub use newton::find_equilibrium;
-pub use run::{Equilibria, equilibrium_settings};
+pub use run::{Equilibria, EquilibriumStart, equilibrium_settings};
 pub use special::{NeutralSaddle, SpecialPoint};
-pub(crate) use {newton::check_length, run::check_range};

@@ -8,9 +8,9 @@
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{AlgebraicProblem, Differentiator, ScaledLu};
-use crate::continuation::CorrectionFailure;
 use crate::erased::ErasedField;
-use crate::error::Error;
+use crate::branch::check_length;
+use crate::error::{CorrectionFailure, Error};
 use crate::field::VectorField;
 
 /// Newton updates, each with any number of dampings.
@@ -67,25 +67,6 @@ pub(crate) fn find_erased(
             .pseudo_transient(start)
             .and_then(|near| search.damped_newton(&near))
             .map_err(|_| Error::NotFound { sought: "equilibrium", cause }),
-    }
-}
-
-/// Checks that `values` are finite and as many as there should be.
-pub(crate) fn check_length(name: &str, values: &[f64], expected: usize, meaning: &str) -> Result<(), Error> {
-    if values.len() != expected {
-        return Err(Error::Invalid {
-            name: name.into(),
-            value: format!("{} numbers", values.len()),
-            allowed: format!("{expected} numbers, {meaning}"),
-        });
-    }
-    match values.iter().find(|value| !value.is_finite()) {
-        None => Ok(()),
-        Some(value) => Err(Error::Invalid {
-            name: name.into(),
-            value: value.to_string(),
-            allowed: "finite numbers".into(),
-        }),
     }
 }
 

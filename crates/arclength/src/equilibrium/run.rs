@@ -1,21 +1,28 @@
 //! Asking for a branch of equilibria.
 
-use super::branch::{BetweenDirections, BranchDirection, EquilibriumBranch};
+use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
 use super::curve::{EquilibriumCurve, Inspection};
-use super::departure::{at_start, branch_point_along, is_branching};
-use super::newton::{check_length, find_erased};
+use super::departure::{branch_point_along, is_branching};
+use super::newton::find_erased;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, length};
-use crate::continuation::{Bound, Followed, Origin, Request, Settings, Solution, Stop, follow};
+use crate::branch::{Branch, SpecialKind, Continuation, Label, check_length, invalid, observer, request};
+use crate::continuation::events::around_start;
+use crate::continuation::{
+    BothWays, BothWaysOf, Bound, Followed, FollowedCurve, Origin, Request, Settings, Solution, Stop,
+    both_ways, follow,
+};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
-use std::ops::{ControlFlow, RangeInclusive};
 
 /// Distance from a branch point, in the metric, of the first point on the other branch.
 const DEPARTURE: f64 = 1e-3;
+
+/// Rate of change of the parameter along the branch, as part of its range, below which it stands still at the start.
+const VERTICAL_START: f64 = 1e-6;
 
 /// The settings that suit equilibria, where steps cost little: short ones, so that nothing is jumped over.
 pub fn equilibrium_settings() -> Settings {
@@ -24,16 +31,34 @@ pub fn equilibrium_settings() -> Settings {
         largest_step: 0.1,
         predictor_error: 1e-3,
         corrector_tolerance: 1e-12,
+        smallest_part: 1e-7,
+        most_trials: 400,
+        shortest_jump: 1e-6,
+        shortest_bracket: 1e-10,
         ..Settings::default()
     }
 }
 
-/// Where a branch starts.
-#[derive(Clone, Debug)]
-enum Start {
+/// Where a branch of equilibria starts.
+#[derive(Clone, Debug, Default)]
+pub enum EquilibriumStart {
+    /// The origin, from which the first equilibrium is sought.
+    #[default]
+    Origin,
+    /// A state from which the first equilibrium is sought.
     State(Vec<f64>),
+    /// A state that is an equilibrium.
     Equilibrium(Vec<f64>),
-    OtherBranch { branch_point: Box<BranchPoint>, tangent: Vec<f64> },
+    /// A branch point, on the other branch through it.
+    OtherBranch(Box<BranchPoint>),
+}
+
+impl crate::branch::Problem for EquilibriumStart {
+    type Point = EquilibriumPoint;
+
+    fn settings() -> Settings {
+        equilibrium_settings()
+    }
 }
 
 /// A branch of equilibria to be followed both ways from a start, over a range of one parameter.
@@ -50,78 +75,46 @@ enum Start {
 /// }
 /// let branch = Equilibria::of(&Fold).start(&[1.0]).parameters(&[1.0]).along("p", -1.0..=2.0).run()?;
 /// let folds: Vec<_> = branch.folds().collect();
-/// assert!(folds.len() == 1 && folds[0].parameter.abs() < 1e-15);
+/// assert!(folds.len() == 1 && folds[0].value.abs() < 1e-15);
 /// # Ok::<(), arclength::Error>(())
 /// ```
-#[derive(Debug)]
-pub struct Equilibria<'a> {
-    field: ErasedField<'a>,
-    start: Start,
-    parameters: Option<Vec<f64>>,
-    along: Option<(String, RangeInclusive<f64>)>,
-    at: Vec<f64>,
-    settings: Settings,
+pub type Equilibria<'a> = Continuation<'a, EquilibriumStart>;
+
+/// A start in the space of the states and the parameter, with the directions in which the branch leaves it.
+struct Departure {
+    unknown: Vec<f64>,
+    /// Points forward.
+    tangent: Vec<f64>,
+    /// Whether the parameter stands still there.
+    is_vertical: bool,
+    /// The branch point from which the branch leaves, with its own branch second.
+    branch_point: Option<BranchPoint>,
 }
 
 impl<'a> Equilibria<'a> {
-    /// Equilibria of `field`, by default from the start zero.
+    /// Equilibria of `field`, by default from the start zero. The value of the parameter to vary says where to start; outside its
+    /// range the nearer end does.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        let field = ErasedField::of(field);
-        Self {
-            field,
-            start: Start::State(vec![0.0; field.dimension()]),
-            parameters: None,
-            along: None,
-            at: Vec::new(),
-            settings: equilibrium_settings(),
-        }
+        Self::of_erased(ErasedField::of(field), EquilibriumStart::default())
     }
 
     /// State from which the first equilibrium is sought; it need not be one.
     pub fn start(mut self, state: &[f64]) -> Self {
-        self.start = Start::State(state.to_vec());
+        self.start = EquilibriumStart::State(state.to_vec());
         self
     }
 
     /// Starts at a state that is an equilibrium, perhaps a singular one such as a fold, to which Newton's method would not
     /// converge.
     pub fn through(mut self, equilibrium: &[f64]) -> Self {
-        self.start = Start::Equilibrium(equilibrium.to_vec());
-        self
-    }
-
-    /// Values of all parameters, in the field's order. That of the parameter to vary says where to start; outside its
-    /// range the nearer end does.
-    pub fn parameters(mut self, values: &[f64]) -> Self {
-        self.parameters = Some(values.to_vec());
+        self.start = EquilibriumStart::Equilibrium(equilibrium.to_vec());
         self
     }
 
     /// Starts on the other branch through a branch point, with its parameters.
     pub fn from_branch_point(mut self, branch_point: &BranchPoint) -> Self {
         self.parameters = Some(branch_point.parameters.clone());
-        self.start = Start::OtherBranch {
-            branch_point: Box::new(branch_point.clone()),
-            tangent: branch_point.tangents[1].clone(),
-        };
-        self
-    }
-
-    /// The parameter to vary and its range.
-    pub fn along(mut self, parameter: &str, range: RangeInclusive<f64>) -> Self {
-        self.along = Some((parameter.to_owned(), range));
-        self
-    }
-
-    /// Values of the parameter at which equilibria are wanted exactly.
-    pub fn at(mut self, values: &[f64]) -> Self {
-        self.at = values.to_vec();
-        self
-    }
-
-    /// Step control and tolerances.
-    pub fn settings(mut self, settings: Settings) -> Self {
-        self.settings = settings;
+        self.start = EquilibriumStart::OtherBranch(Box::new(branch_point.clone()));
         self
     }
 
@@ -130,144 +123,176 @@ impl<'a> Equilibria<'a> {
     /// # Errors
     /// [`Error::Invalid`] when what was asked for makes no sense, [`Error::NotFound`] when there is no equilibrium near
     /// the start. What goes wrong later ends the branch with a [`Stop`].
-    pub fn run(self) -> Result<EquilibriumBranch, Error> {
-        self.observed(&mut |_, _| ControlFlow::Continue(()))
+    pub fn run(mut self) -> Result<EquilibriumBranch, Error> {
+        let (active, bounds) = self.active(1)?;
+        let (index, bound) = (active[0], bounds[0]);
+        let parameters = self.checked_parameters()?;
+        let n = self.field.dimension();
+        let problem = EquilibriumProblem::new(self.field, &parameters, &active);
+        let (unknown, leaving) = self.first_equilibrium(&problem, (index, bound))?;
+        let scales = scales(&problem, &unknown, bound.width());
+        let departure = self.departure(&problem, unknown, leaving, (&scales, index))?;
+        let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
+        let departure = departure.directed(&mut curve)?;
+
+        let Continuation { field, at, monitors, observer: told, settings, .. } = &mut self;
+        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+            let mut point = EquilibriumPoint::new(solution, label, bound.width());
+            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point
+        };
+        let request = request(&bounds, at, monitors, *settings, &point);
+        let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
+        let directions = both_ways(|sign| departure.follow(&mut curve, sign, &request, &mut *observe))?;
+        drop(observe);
+        let mut followed = departure.join(&mut curve, directions, (bound, settings))?;
+        followed.mark_requested(at, |solution| solution.unknown[n]);
+        let point = |solution: Solution<Inspection>, label| point(&solution, label);
+        Ok(Branch::assemble(field, (&parameters, &active), followed, point))
     }
 
-    /// As [`run`](Self::run); `observer` is told the parameter value and the state of every solution and may end a
-    /// direction.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn observed(
-        mut self,
-        observer: &mut dyn FnMut(f64, &[f64]) -> ControlFlow<()>,
-    ) -> Result<EquilibriumBranch, Error> {
-        let names = self.field.parameter_names();
-        let (name, range) =
-            self.along.clone().ok_or_else(|| missing("along", "a parameter and its range"))?;
-        let parameters =
-            self.parameters.clone().ok_or_else(|| missing("parameters", "a value for each parameter"))?;
-        check_length("parameters", &parameters, names.len(), "the number of parameters")?;
-        let active = names.iter().position(|candidate| *candidate == name).ok_or_else(|| Error::Invalid {
-            name: "along".into(),
-            value: name.clone(),
-            allowed: format!("one of {}", names.join(", ")),
-        })?;
-        let bound = check_range(&name, &range)?;
-        if let Some(value) = self.at.iter().find(|value| !range.contains(value)) {
-            return Err(Error::Invalid {
-                name: "at".into(),
-                value: value.to_string(),
-                allowed: format!("{} to {}", bound.lower, bound.upper),
-            });
-        }
+    /// The first equilibrium with the value of the parameter, and the branch point that it is.
+    fn first_equilibrium(
+        &self,
+        problem: &EquilibriumProblem<'_>,
+        (index, bound): (usize, Bound),
+    ) -> Result<(Vec<f64>, Option<BranchPoint>), Error> {
         let n = self.field.dimension();
-        let problem = EquilibriumProblem::new(self.field, &parameters, &[active]);
-        let request = Request { bounds: vec![bound], values: self.at.clone(), settings: self.settings };
-
-        let (unknown, tangent, departure) = match &self.start {
-            Start::State(state) => {
-                check_length("start", state, n, "the dimension of the field")?;
-                let value = parameters[active].clamp(bound.lower, bound.upper);
-                let mut unknown = find_erased(self.field, state, &problem.parameters_at(&[value]))?;
-                unknown.push(value);
-                (unknown, None, 0.0)
-            }
-            Start::Equilibrium(state) => {
-                check_length("start", state, n, "the dimension of the field")?;
-                let value = parameters[active];
-                if !range.contains(&value) {
-                    return Err(Error::Invalid {
-                        name: format!("{name} at the start"),
-                        value: value.to_string(),
-                        allowed: format!("{} to {}", bound.lower, bound.upper),
-                    });
-                }
-                ([&state[..], &[value]].concat(), None, 0.0)
-            }
-            Start::OtherBranch { branch_point, tangent } => {
-                check_length("branch point", &branch_point.state, n, "the dimension of the field")?;
-                let mut unknown = branch_point.state.clone();
-                unknown.push(parameters[active]);
-                let same = branch_point.active == active;
-                (unknown, same.then(|| tangent.clone()), if same { DEPARTURE } else { 0.0 })
-            }
+        let value = problem.parameters[index];
+        let sought = |state: &[f64]| -> Result<Vec<f64>, Error> {
+            let value = value.clamp(bound.lower, bound.upper);
+            let mut unknown = find_erased(self.field, state, &problem.parameters_at(&[value]))?;
+            unknown.push(value);
+            Ok(unknown)
         };
-        let scales = scales(&problem, &unknown, bound.upper - bound.lower);
-        let (mut tangent, mut departure) = (tangent, departure);
-        if tangent.is_none() && is_branching(&problem, &unknown, &scales)? {
-            // From a branch point found along another parameter the other branch is followed here too.
-            let point = match &self.start {
-                Start::OtherBranch { branch_point, .. } => {
-                    branch_point_along(&problem, &unknown, branch_point, &scales)?
+        match &self.start {
+            EquilibriumStart::Origin => Ok((sought(&vec![0.0; n])?, None)),
+            EquilibriumStart::State(state) => {
+                check_length("start", state, n, "the dimension of the field")?;
+                Ok((sought(state)?, None))
+            }
+            EquilibriumStart::Equilibrium(state) => {
+                check_length("start", state, n, "the dimension of the field")?;
+                if !(bound.lower..=bound.upper).contains(&value) {
+                    let name = &self.field.parameter_names()[index];
+                    let allowed = format!("{} to {}", bound.lower, bound.upper);
+                    return Err(invalid(&format!("{name} at the start"), &value.to_string(), &allowed));
                 }
-                _ => None,
-            };
-            let Some(point) = point else {
-                return Err(Error::Invalid {
-                    name: format!("start at {name}"),
-                    value: unknown[n].to_string(),
-                    allowed: format!(
-                        "the equilibrium there is a branch point, or degenerate, and no single branch passes through \
-                         it; start beside it, at a slightly different {name}"
-                    ),
-                });
-            };
-            let tangent_there = point.tangents[1].clone();
-            self.start = Start::OtherBranch { branch_point: Box::new(point), tangent: tangent_there.clone() };
-            (tangent, departure) = (Some(tangent_there), DEPARTURE);
+                Ok(([&state[..], &[value]].concat(), None))
+            }
+            EquilibriumStart::OtherBranch(point) => {
+                check_length("branch point", &point.state, n, "the dimension of the field")?;
+                Ok(([&point.state[..], &[value]].concat(), Some((**point).clone())))
+            }
         }
-        let mut curve = EquilibriumCurve::new(problem, scales, bound, self.settings);
-        let mut tangent = match tangent {
-            Some(tangent) => tangent,
-            None => curve.system.tangent(&unknown)?,
-        };
-        let size = length(&tangent, &curve.system.scales);
-        // The forward direction is that of a growing parameter; of two vertical ones it is that of a growing state.
-        let vertical = (tangent[n] / curve.system.scales[n]).abs() < 1e-6 * size;
-        let lead = if vertical { tangent.iter().find(|entry| **entry != 0.0) } else { tangent.last() };
-        let sign = if lead.is_some_and(|entry| *entry < 0.0) { -1.0 } else { 1.0 } / size;
-        tangent.iter_mut().for_each(|entry| *entry *= sign);
+    }
 
-        let mut observe =
-            |solution: &Solution<Inspection>| observer(solution.unknown[n], &solution.unknown[..n]);
-        let mut run = |curve: &mut EquilibriumCurve<'_>, sign: f64| -> Result<Followed<Inspection>, Error> {
-            let tangent: Vec<f64> = tangent.iter().map(|entry| sign * entry).collect();
-            let leaves = |end: f64| (unknown[n] - end).abs() <= f64::EPSILON * end.abs() && departure == 0.0;
-            if !vertical && leaves(if sign > 0.0 { bound.upper } else { bound.lower }) {
-                let value = unknown[n];
-                return Ok(Followed { solutions: Vec::new(), stop: Stop::RangeEnd { bound: 0, value } });
+    /// How the branch leaves its start, where more than one branch passes through it.
+    fn departure(
+        &self,
+        problem: &EquilibriumProblem<'_>,
+        unknown: Vec<f64>,
+        known: Option<BranchPoint>,
+        (scales, index): (&[f64], usize),
+    ) -> Result<Departure, Error> {
+        let n = problem.dimension;
+        let leaves = |unknown: Vec<f64>, point: BranchPoint| Departure {
+            tangent: point.tangents[1].clone(),
+            unknown,
+            is_vertical: false,
+            branch_point: Some(point),
+        };
+        let known = match known {
+            Some(point) if point.active == index => return Ok(leaves(unknown, point)),
+            known => known,
+        };
+        if !is_branching(problem, &unknown, scales)? {
+            return Ok(Departure { unknown, tangent: Vec::new(), is_vertical: false, branch_point: None });
+        }
+        // From a branch point found along another parameter the other branch is followed here too.
+        let point = match &known {
+            Some(point) => branch_point_along(problem, &unknown, point, scales)?,
+            None => None,
+        };
+        match point {
+            Some(point) => Ok(leaves(unknown, point)),
+            None => {
+                let name = &self.field.parameter_names()[index];
+                let allowed = format!(
+                    "the equilibrium there is a branch point, or degenerate, and no single branch passes through it; \
+                     start beside it, at a slightly different {name}"
+                );
+                Err(invalid(&format!("start at {name}"), &unknown[n].to_string(), &allowed))
             }
-            let start =
-                unknown.iter().zip(&tangent).map(|(value, slope)| value + departure * slope).collect();
-            curve.restart();
-            follow(curve, start, tangent, &request, &mut observe)
+        }
+    }
+}
+
+impl Departure {
+    /// With a unit tangent that points forward: the parameter grows, or where it stands still the first state that moves.
+    fn directed(mut self, curve: &mut EquilibriumCurve<'_>) -> Result<Self, Error> {
+        if self.branch_point.is_none() {
+            self.tangent = curve.system.tangent(&self.unknown)?;
+        }
+        let size = length(&self.tangent, &curve.system.scales);
+        self.is_vertical = curve.turn(&self.tangent).abs() < VERTICAL_START * size;
+        let lead =
+            if self.is_vertical { self.tangent.iter().find(|entry| **entry != 0.0) } else { self.tangent.last() };
+        let sign = if lead.is_some_and(|entry| *entry < 0.0) { -1.0 } else { 1.0 } / size;
+        self.tangent.iter_mut().for_each(|entry| *entry *= sign);
+        Ok(self)
+    }
+
+    /// Distance from the start of the first point.
+    fn distance(&self) -> f64 {
+        if self.branch_point.is_some() { DEPARTURE } else { 0.0 }
+    }
+
+    /// Follows the branch in one direction.
+    fn follow(
+        &self,
+        curve: &mut EquilibriumCurve<'_>,
+        sign: f64,
+        request: &Request<'_, Inspection>,
+        observer: &mut crate::continuation::Observer<'_, Inspection, SpecialKind>,
+    ) -> Result<FollowedCurve<EquilibriumCurve<'static>>, Error> {
+        let bound = request.bounds[0];
+        let value = bound.value(&self.unknown);
+        let end = if sign > 0.0 { bound.upper } else { bound.lower };
+        let is_at_end = (value - end).abs() <= f64::EPSILON * end.abs() && self.branch_point.is_none();
+        if !self.is_vertical && is_at_end {
+            return Ok(Followed::nothing(Stop::RangeEnd { bound: 0, value }));
+        }
+        let tangent: Vec<f64> = self.tangent.iter().map(|entry| sign * entry).collect();
+        let start = self.unknown.iter().zip(&tangent).map(|(value, slope)| value + self.distance() * slope);
+        curve.restart();
+        follow(curve, start.collect(), tangent, request, observer)
+    }
+
+    /// Both directions with the branch point between them, or the special points at and around the start.
+    fn join(
+        self,
+        curve: &mut EquilibriumCurve<'_>,
+        directions: [FollowedCurve<EquilibriumCurve<'static>>; 2],
+        (bound, settings): (Bound, &Settings),
+    ) -> Result<BothWaysOf<EquilibriumCurve<'static>>, Error> {
+        let distance = self.distance();
+        let [backward, mut forward] = directions;
+        let Some(mut point) = self.branch_point else {
+            let first = [backward.first, forward.first];
+            let mut followed = BothWays::join([backward, forward], None);
+            let Some((start, _)) = followed.solutions.get(followed.start).cloned() else { return Ok(followed) };
+            let events = around_start(curve, &start, first, &[bound], settings)?;
+            followed.insert_at_start(curve, events);
+            return Ok(followed);
         };
-        let mut forward = run(&mut curve, 1.0)?;
-        let forward_beyond = curve.first_beyond.take();
-        let backward = if matches!(forward.stop, Stop::Closed) {
-            Followed { solutions: Vec::new(), stop: Stop::Closed }
-        } else {
-            run(&mut curve, -1.0)?
-        };
-        let backward_beyond = curve.first_beyond.take();
-        let middle = match self.start {
-            Start::OtherBranch { mut branch_point, .. } if departure > 0.0 => {
-                branch_point.tangents.swap(0, 1);
-                let middle = curve.at_branch_point(unknown, *branch_point)?;
-                if matches!(forward.stop, Stop::Closed) {
-                    end_at(&middle, &mut forward.solutions, 2.0 * departure, &curve.system.scales);
-                }
-                Some((middle, Origin::Special))
-            }
-            _ => None,
-        };
-        let directions = [backward, forward]
-            .map(|followed| BranchDirection { solutions: followed.solutions, stop: followed.stop });
-        let special = at_start(&mut curve, &directions, [backward_beyond, forward_beyond])?;
-        let between = BetweenDirections { middle, special, scales: &curve.system.scales };
-        Ok(EquilibriumBranch::assemble(self.field, active, parameters, &self.at, directions, between))
+        point.tangents.swap(0, 1);
+        let middle = curve.at_branch_point(self.unknown, point)?;
+        if matches!(forward.stop, Stop::Closed) {
+            end_at(&middle, &mut forward.solutions, 2.0 * distance, &curve.system.scales);
+        }
+        let middle = (middle, Origin::Special(SpecialKind::BranchPoint));
+        Ok(BothWays::join([backward, forward], Some(middle)))
     }
 }
 
@@ -275,14 +300,14 @@ impl<'a> Equilibria<'a> {
 /// departure behind it.
 fn end_at(
     branch_point: &Solution<Inspection>,
-    solutions: &mut Vec<(Solution<Inspection>, Origin)>,
+    solutions: &mut Vec<(Solution<Inspection>, Origin<SpecialKind>)>,
     reach: f64,
     scales: &[f64],
 ) {
     solutions.pop();
     solutions.pop_if(|(last, origin)| {
         let difference = last.unknown.iter().zip(&branch_point.unknown).map(|(a, b)| a - b);
-        *origin == Origin::Special && length(&difference.collect::<Vec<_>>(), scales) < reach
+        matches!(origin, Origin::Special(_)) && length(&difference.collect::<Vec<_>>(), scales) < reach
     });
     let mut end = branch_point.clone();
     end.point.special = None;
@@ -300,22 +325,4 @@ fn scales(problem: &EquilibriumProblem<'_>, unknown: &[f64], range: f64) -> Vec<
         natural_scales(&problem.field, &unknown[..n], &problem.parameters_at(&unknown[n..]), &speed);
     scales.push(range);
     scales
-}
-
-fn missing(name: &str, allowed: &str) -> Error {
-    Error::Invalid { name: name.into(), value: "nothing".into(), allowed: allowed.into() }
-}
-
-/// The range of a parameter as a bound of the last unknown.
-pub(crate) fn check_range(name: &str, range: &RangeInclusive<f64>) -> Result<Bound, Error> {
-    let (lower, upper) = (*range.start(), *range.end());
-    if lower < upper && (upper - lower).is_finite() {
-        Ok(Bound { from_end: 1, lower, upper })
-    } else {
-        Err(Error::Invalid {
-            name: format!("range of {name}"),
-            value: format!("{lower} to {upper}"),
-            allowed: "two finite numbers, the smaller one first".into(),
-        })
-    }
 }

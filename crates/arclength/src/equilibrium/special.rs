@@ -14,7 +14,8 @@ pub struct NeutralSaddle {
     /// Index of the parameter along which it was found.
     pub active: usize,
     /// Value of that parameter.
-    pub parameter: f64,
+    #[serde(rename = "parameter")]
+    pub value: f64,
     /// Error estimate of that value.
     pub location_error: f64,
     /// The equilibrium.
@@ -41,7 +42,8 @@ pub enum SpecialPoint {
         /// What changes sign there.
         of: SpecialKind,
         /// Value of the parameter.
-        parameter: f64,
+        #[serde(rename = "parameter")]
+        value: f64,
         /// Half of the length of the bracket.
         location_error: f64,
     },
@@ -60,13 +62,13 @@ impl SpecialPoint {
     }
 
     /// Value of the parameter.
-    pub fn parameter(&self) -> f64 {
+    pub fn value(&self) -> f64 {
         match self {
-            Self::Fold(point) => point.parameter,
-            Self::BranchPoint(point) => point.parameter,
-            Self::Hopf(point) => point.parameter,
-            Self::NeutralSaddle(point) => point.parameter,
-            Self::Degenerate { parameter, .. } => *parameter,
+            Self::Fold(point) => point.value,
+            Self::BranchPoint(point) => point.value,
+            Self::Hopf(point) => point.value,
+            Self::NeutralSaddle(point) => point.value,
+            Self::Degenerate { value, .. } => *value,
         }
     }
 

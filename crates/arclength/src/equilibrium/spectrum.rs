@@ -1,6 +1,7 @@
 //! What the eigenvalues of an equilibrium say: stability and the test function of Hopf points.
 
 use crate::branch::Stability;
+use crate::continuation::events;
 use crate::error::Error;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
 use num_complex::Complex64;
@@ -51,6 +52,18 @@ impl Spectrum {
         let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } = HopfTest::of(&eigenvalues);
         let hopf_closest = closest.copysign(hopf_test);
         Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_closest, hopf_undecided })
+    }
+
+    /// What the search for special points compares from solution to solution.
+    pub fn growth(&self) -> events::Spectrum {
+        let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        events::Spectrum {
+            exponents: self.eigenvalues.clone(),
+            unstable: self.unstable,
+            decided: self.stability != Stability::Undecided,
+            noise: UNDECIDED * largest,
+            is_periodic: false,
+        }
     }
 
     /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has

@@ -1,18 +1,23 @@
 //! A curve of special equilibria as continuation sees it.
 
 use super::codimension_two::CodimensionTwoPoint;
-use super::events;
 use super::kind::{Linearized, LocusKind, Monitor};
+use super::locating;
 use crate::algebraic::{DenseSystem, Differentiator};
 use crate::branch::SpecialKind;
-use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
-use crate::equilibrium::spectrum::Spectrum;
+use crate::continuation::events::{self, Location, Reading, TestFunction};
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, distance};
+use crate::equilibrium::spectrum::{Spectrum, without};
 use crate::error::Error;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
+use std::convert::Infallible;
 use std::marker::PhantomData;
 
 /// Perturbation of the field, relative to its fastest rate, beyond which a branch point does not persist.
 const UNPERTURBED: f64 = 1e-8;
+/// A real part, relative to the largest modulus, of an eigenvalue that is not critical below which its sign is not decided: next
+/// to another bifurcation eigenvalues are known to the root of rounding only.
+const UNDECIDED: f64 = 1e-7;
 
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
@@ -92,6 +97,8 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
 
 impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
     type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = Infallible;
 
     fn unknowns(&self) -> usize {
         self.system.problem.unknowns()
@@ -131,12 +138,35 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         Ok(Inspection { spectrum, monitor, special: None })
     }
 
-    fn special_points(
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        K::TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+        solution.point.monitor.test(kind).map(Reading::exact)
+    }
+
+    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+        let all = &solution.point.spectrum.eigenvalues;
+        let rest = without(all, &self.system.problem.critical_eigenvalues(&solution.unknown));
+        let noise = UNDECIDED * all.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        events::Spectrum {
+            unstable: rest.iter().filter(|value| value.re > 0.0).count(),
+            decided: rest.iter().all(|value| value.re.abs() > noise),
+            exponents: rest,
+            noise,
+            is_periodic: false,
+        }
+    }
+
+    fn locate(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Result<Vec<Solution<Inspection>>, Error> {
-        events::special_points(self, before, after)
+        kind: SpecialKind,
+        [before, after]: [&Solution<Inspection>; 2],
+    ) -> Result<Location<Inspection>, Error> {
+        let distance = distance(self, &before.unknown, &after.unknown);
+        let found = locating::codimension_two(self, before, after, distance, kind)?;
+        Ok(found.map_or(Location::Nothing, Location::At))
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
@@ -145,7 +175,7 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         states.chain(last).collect()
     }
 
-    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<Infallible>> {
         if K::KIND != SpecialKind::BranchPoint {
             return None;
         }

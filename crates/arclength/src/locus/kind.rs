@@ -3,6 +3,7 @@
 use super::gauge::{PlaneGauge, combine, rewrite_vector};
 use crate::algebraic::{AlgebraicProblem, length};
 use crate::branch::SpecialKind;
+use crate::continuation::events::TestFunction;
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::locating::normals;
@@ -40,10 +41,21 @@ pub(super) struct Monitor {
     pub first_lyapunov: Option<f64>,
 }
 
+impl Monitor {
+    /// The value of a test function, where it is defined.
+    pub fn test(&self, kind: SpecialKind) -> Option<f64> {
+        self.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
+    }
+}
+
 /// A kind of special equilibria of which there are curves in two parameters.
 pub(super) trait LocusKind<'a>: AlgebraicProblem {
     /// What the curve consists of.
     const KIND: SpecialKind;
+
+    /// Test functions of the points of codimension two on the curve; the directions counted are those of the eigenvalues that
+    /// are not critical.
+    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>];
 
     /// The equilibrium problem in two parameters.
     fn equilibria(&self) -> &EquilibriumProblem<'a>;
@@ -96,6 +108,11 @@ fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
 
 impl<'a> LocusKind<'a> for FoldSystem<'a> {
     const KIND: SpecialKind = SpecialKind::Fold;
+    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::Cusp).changing(&[0]),
+        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
+    ];
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
@@ -172,6 +189,12 @@ fn products(one: &[f64], other: &[f64], scales: &[f64]) -> f64 {
 
 impl<'a> LocusKind<'a> for HopfSystem<'a> {
     const KIND: SpecialKind = SpecialKind::Hopf;
+    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[0]),
+        TestFunction::new(SpecialKind::ZeroHopf).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::HopfHopf).changing(&[0, 2]).of_spectrum(),
+        TestFunction::new(SpecialKind::GeneralizedHopf).changing(&[0]),
+    ];
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
@@ -275,6 +298,10 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
 
 impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
     const KIND: SpecialKind = SpecialKind::BranchPoint;
+    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
+    ];
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria

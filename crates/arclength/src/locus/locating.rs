@@ -4,7 +4,6 @@ use super::codimension_two::{
     BogdanovTakensSystem, CodimensionTwoPoint, CuspSystem, HopfHopfSystem, ZeroHopfSystem,
 };
 use super::curve::{Inspection, LocusCurve};
-use super::events::test_value;
 use super::kind::LocusKind;
 use super::normal_form;
 use crate::algebraic::{AlgebraicProblem, ScaledLu, Solved, length, solve_square};
@@ -61,7 +60,7 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
                         let own = &mut here.point.monitor.frequency;
                         *own = own.and(frequencies.first().copied());
                         // Where eigenvalues are on the axis their test function may be undefined; its limit is zero.
-                        if test_value(&here, kind).is_none() {
+                        if here.point.monitor.test(kind).is_none() {
                             here.point.monitor.tests.push((kind, 0.0));
                         }
                         return Ok(Some(complete(curve, here, unknown, error, kind, true)?));
@@ -73,9 +72,9 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
         }
     }
     let near = near_zero(curve, before, after, LAST_BRACKET, kind);
-    let smallest = test_value(&near, kind).map_or(f64::INFINITY, f64::abs);
+    let smallest = near.point.monitor.test(kind).map_or(f64::INFINITY, f64::abs);
     let ends =
-        [before, after].iter().filter_map(|node| test_value(node, kind)).map(f64::abs).fold(0.0, f64::max);
+        [before, after].iter().filter_map(|node| node.point.monitor.test(kind)).map(f64::abs).fold(0.0, f64::max);
     if smallest > POLE * ends.max(POLE) {
         return Ok(None);
     }
@@ -106,10 +105,10 @@ fn near_zero<'a, K: LocusKind<'a>>(
     kind: SpecialKind,
 ) -> Node {
     let settings = curve.settings;
-    match locate(curve, before, after, &settings, tolerance, |_, solution| test_value(solution, kind)) {
+    match locate(curve, before, after, &settings, tolerance, |_, solution| solution.point.monitor.test(kind)) {
         Ok(Some(near)) => near,
         _ => {
-            let value = |node: &Node| test_value(node, kind).map_or(f64::INFINITY, f64::abs);
+            let value = |node: &Node| node.point.monitor.test(kind).map_or(f64::INFINITY, f64::abs);
             if value(before) < value(after) { before.clone() } else { after.clone() }
         }
     }

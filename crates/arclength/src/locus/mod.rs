@@ -11,7 +11,6 @@ mod branch;
 mod codimension_two;
 mod curve;
 mod cycles;
-mod events;
 mod gauge;
 mod kind;
 mod locating;
@@ -21,5 +20,5 @@ mod run;
 
 pub use branch::{EquilibriumLocusBranch, LocusPoint};
 pub use codimension_two::CodimensionTwoPoint;
-pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusPoint, UnlocatedChange};
-pub use run::{EquilibriumLocus, LocusObserver};
+pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusEnd, CycleLocusPoint, CycleLocusProblem};
+pub use run::{EquilibriumLocus, EquilibriumLocusStart};

@@ -1,8 +1,9 @@
 //! Curves of special cycles as plain data.
 
 use super::curve::Inspection;
-use crate::branch::{Label, LabelCounter, SpecialKind};
-use crate::continuation::{Followed, Origin, Solution, Stop};
+use super::end::CycleLocusEnd;
+use crate::branch::{Branch, Label, LabelCounter, Labelled};
+use crate::continuation::Solution;
 use crate::cycle::Orbit;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -38,68 +39,32 @@ pub struct CycleLocusPoint {
     pub location_error: Option<[f64; 2]>,
     /// Values of the test functions by the label of the point at which each changes sign.
     pub tests: Vec<(Cow<'static, str>, f64)>,
+    /// Values of the monitors, in the order in which they were asked for; not a number where one does not exist.
+    #[serde(default)]
+    pub monitors: Vec<f64>,
     /// The cycle itself.
     pub orbit: Orbit,
 }
 
-/// A change of sign of a test function behind which no point of codimension two could be located.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct UnlocatedChange {
-    /// What lies where the test function vanishes.
-    pub kind: SpecialKind,
-    /// Values of the two parameters between which it changed.
-    pub between: [[f64; 2]; 2],
-}
-
 /// A curve of special cycles in two parameters.
-#[derive(Debug)]
-pub struct CycleLocusBranch {
-    /// What the curve consists of: folds, period doublings or torus bifurcations of cycles.
-    pub kind: SpecialKind,
-    /// Indices of the two parameters that vary.
-    pub active: [usize; 2],
-    /// The points in the order of the curve.
-    pub points: Vec<CycleLocusPoint>,
-    /// What was detected but not located.
-    pub unlocated: Vec<UnlocatedChange>,
-    /// Why the curve ends at its first point.
-    pub backward_stop: Stop,
-    /// Why the curve ends at its last point.
-    pub forward_stop: Stop,
+pub type CycleLocusBranch = Branch<CycleLocusPoint, CycleLocusEnd>;
+
+impl Labelled for CycleLocusPoint {
+    fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.values.to_vec()
+    }
 }
 
 impl CycleLocusBranch {
-    pub(super) fn assemble(
-        kind: SpecialKind,
-        active: [usize; 2],
-        degree: usize,
-        [mut backward, forward]: [Followed<Inspection>; 2],
-        unlocated: Vec<UnlocatedChange>,
-    ) -> Self {
-        if !backward.solutions.is_empty() {
-            backward.solutions.remove(0);
-        }
-        backward.solutions.reverse();
-        let solutions = backward.solutions.into_iter().chain(forward.solutions);
-        let mut labels = LabelCounter::default();
-        let points = solutions
-            .map(|(solution, origin)| {
-                let kind = match (solution.point.special, origin) {
-                    (Some((kind, _)), _) => Some(kind),
-                    (None, Origin::Requested) => Some(SpecialKind::Requested),
-                    _ => None,
-                };
-                let label = kind.map(|kind| labels.next(kind));
-                CycleLocusPoint::new(solution, degree, label)
-            })
-            .collect();
-        Self { kind, active, points, unlocated, backward_stop: backward.stop, forward_stop: forward.stop }
-    }
-
     /// Adds the points in which the curve ends.
     pub(super) fn extend(&mut self, first: Option<CycleLocusPoint>, last: Option<CycleLocusPoint>) {
         if let Some(point) = first {
             self.points.insert(0, point);
+            self.start += 1;
         }
         self.points.extend(last);
         // Ends are labelled by the curve on which they were located: counted anew along this one.
@@ -108,21 +73,22 @@ impl CycleLocusBranch {
             *label = labels.next(label.kind);
         }
     }
-
-    /// Points of codimension two in the order of the curve.
-    pub fn special_points(&self) -> impl Iterator<Item = (SpecialKind, &CycleLocusPoint)> {
-        self.points.iter().filter_map(|point| match point.label {
-            Some(label) if label.kind != SpecialKind::Requested => Some((label.kind, point)),
-            _ => None,
-        })
-    }
 }
 
 impl CycleLocusPoint {
-    fn new(solution: Solution<Inspection>, degree: usize, label: Option<Label>) -> Self {
+    /// A solution of the curve as plain data; `degree` is that of the polynomials.
+    pub(super) fn new(solution: &Solution<Inspection>, label: Option<Label>, degree: usize) -> Self {
         let Inspection {
-            error_estimate, floquet, ranges, mesh, tests, coefficient, argument, special, ..
-        } = solution.point;
+            error_estimate,
+            floquet,
+            ranges,
+            mesh,
+            tests,
+            coefficient,
+            argument,
+            location_error,
+            ..
+        } = &solution.point;
         let n = ranges.len();
         let nodes = (mesh.len() - 1) * (degree + 1);
         let length = solution.unknown.len();
@@ -142,13 +108,14 @@ impl CycleLocusPoint {
             min: ranges.iter().map(|range| range.smallest).collect(),
             multipliers: floquet.multipliers(),
             trivial_multiplier_error: floquet.trivial_error,
-            error_estimate,
-            argument,
-            coefficient,
+            error_estimate: *error_estimate,
+            argument: *argument,
+            coefficient: *coefficient,
             label,
-            location_error: special.map(|(_, error)| error),
+            location_error: *location_error,
             tests: tests.iter().map(|(kind, value)| (kind.label().into(), *value)).collect(),
-            orbit: Orbit { mesh, degree, dimension: n, states, period },
+            monitors: Vec::new(),
+            orbit: Orbit { mesh: mesh.clone(), degree, dimension: n, states, period },
         }
     }
 }

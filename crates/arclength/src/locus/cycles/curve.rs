@@ -1,13 +1,11 @@
 //! A curve of special cycles as continuation sees it.
 
-use super::branch::UnlocatedChange;
+use super::end::CycleLocusEnd;
 use super::monitor;
-use crate::algebraic::between;
 use crate::branch::SpecialKind;
-use crate::continuation::{
-    Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, along, locate,
-};
-use crate::cycle::Resolution;
+use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
+use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use crate::cycle::{CycleEnd, Resolution};
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
@@ -19,7 +17,7 @@ use crate::cycle::mesh::{error_profile, fit_mesh};
 use crate::cycle::normal_form::CriticalCycle;
 use crate::cycle::problem::PeriodicProblem;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
-use crate::error::Error;
+use crate::error::{CorrectionFailure, Error};
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -40,9 +38,6 @@ const RESTING: f64 = 1e-4;
 const TURN: f64 = 1e-2;
 /// A coefficient this many times what it is at the ends of a bracket has a pole between them.
 const POLE_GROWTH: f64 = 30.0;
-/// Part by which the distance from a resonance shrinks with every trial on the way to it, and the trials.
-const APPROACH: f64 = 0.1;
-const APPROACHES: usize = 4;
 
 /// What a change of sign of a test function turned out to be.
 enum Zero {
@@ -75,8 +70,8 @@ pub(super) struct Inspection {
     pub natural_coefficient: f64,
     /// Argument of the multipliers of a torus bifurcation.
     pub argument: Option<f64>,
-    /// A point of codimension two, with error estimates of the two parameters.
-    pub special: Option<(SpecialKind, [f64; 2])>,
+    /// Error estimates of the two parameters at a point of codimension two.
+    pub location_error: Option<[f64; 2]>,
 }
 
 /// The curve of one kind of special cycles in two parameters.
@@ -94,10 +89,6 @@ pub(super) struct CycleLocusCurve<'a> {
     least: Vec<f64>,
     /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
     sign: Option<f64>,
-    /// Sign changes of test functions behind which nothing was located.
-    pub unlocated: Vec<UnlocatedChange>,
-    /// Solutions next to the resonance in which the curve ends, behind its last step.
-    pub last: Vec<Solution<Inspection>>,
     schur: Option<(usize, PeriodicSchur)>,
 }
 
@@ -124,8 +115,6 @@ impl<'a> CycleLocusCurve<'a> {
             error_estimate: f64::INFINITY,
             least,
             sign: None,
-            unlocated: Vec::new(),
-            last: Vec::new(),
             schur: None,
         }
     }
@@ -255,31 +244,6 @@ impl<'a> CycleLocusCurve<'a> {
         (self.kind() == Kind::Torus).then(|| solution.unknown[end + 1])
     }
 
-    /// Collects what lies between the last solution and a resonance, with a solution close to it.
-    fn approach(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>, resonance: f64) {
-        let settings = self.settings;
-        let mut nearest: Option<Solution<Inspection>> = None;
-        for _ in 0..APPROACHES {
-            let start = nearest.as_ref().unwrap_or(before);
-            let (Some(from), Some(to)) = (self.angle(start), self.angle(after)) else { return };
-            let distance = along(self, start, &after.unknown);
-            let fraction = (1.0 - APPROACH) * (resonance - from) / (to - from);
-            let start = start.clone();
-            let Ok(trial) = between(self, &start, after, distance, fraction, &settings) else { break };
-            let Some(angle) = self.angle(&trial) else { return };
-            // Behind the resonance the curve comes back on itself; at it others cross.
-            let part = (angle - resonance) / (from - resonance);
-            if part <= 0.0 || part >= 1.0 || (angle - resonance).abs() < AT_RESONANCE {
-                break;
-            }
-            nearest = Some(trial);
-        }
-        if let Some(nearest) = nearest {
-            self.last = self.special_points(before, &nearest).unwrap_or_default();
-            self.last.push(nearest);
-        }
-    }
-
     /// Parameter value at which the two halves of doubled cycles become equal between two solutions; behind it a curve goes on
     /// to the same cycles, the halves exchanged.
     fn halves_become_equal(
@@ -311,19 +275,6 @@ impl<'a> CycleLocusCurve<'a> {
         let exchanged = product(&one, &other) < 0.0 && first > rounding && second > rounding;
         exchanged.then(|| vanishing_point((a, first), (b, second)))
     }
-
-    /// Notes that a test function changed its sign and no point was located.
-    fn missed(&mut self, kind: SpecialKind, before: &Solution<Inspection>, after: &Solution<Inspection>) {
-        let [from, to] = [before, after].map(|solution| {
-            let last = solution.unknown.len() - 2;
-            [solution.unknown[last], solution.unknown[last + 1]]
-        });
-        // Rounding may change a sign in step after step.
-        match self.unlocated.iter_mut().rev().find(|change| change.kind == kind) {
-            Some(last) if last.between[1] == from => last.between[1] = to,
-            _ => self.unlocated.push(UnlocatedChange { kind, between: [from, to] }),
-        }
-    }
 }
 
 /// The sizes that the nonlinearity of the field gives to those states of a cycle, given on its nodes, that rest; zero for the
@@ -348,6 +299,8 @@ fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64>
 
 impl Curve for CycleLocusCurve<'_> {
     type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = CycleLocusEnd;
 
     fn unknowns(&self) -> usize {
         self.system.unknowns()
@@ -414,47 +367,49 @@ impl Curve for CycleLocusCurve<'_> {
             coefficient,
             natural_coefficient,
             argument: (kind == Kind::Torus).then_some(angle),
-            special: None,
+            location_error: None,
             floquet,
         })
     }
 
-    fn special_points(
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        monitor::test_functions(self.kind())
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+        let reading = Reading::exact(test_value(solution, kind)?);
+        // A coefficient that is zero all along, by symmetry for instance, changes its sign at random.
+        let noise = self.resolution.tolerance * solution.point.natural_coefficient;
+        Some(if monitor::is_coefficient(kind) { reading.with_noise(noise) } else { reading })
+    }
+
+    fn spectrum(&self, solution: &Solution<Inspection>) -> Spectrum {
+        let point = &solution.point;
+        monitor::growth(self.kind(), &point.floquet, point.argument.unwrap_or(0.0))
+    }
+
+    fn locate(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-    ) -> Result<Vec<Solution<Inspection>>, Error> {
-        let mut found = Vec::new();
-        for (kind, value) in before.point.tests.clone() {
-            let Some(other) = test_value(after, kind).filter(|other| (value > 0.0) != (*other > 0.0)) else {
-                continue;
-            };
-            // A coefficient that is zero all along, by symmetry for instance, changes its sign at random.
-            let noise = self.resolution.tolerance * after.point.natural_coefficient;
-            if monitor::is_coefficient(kind) && value.abs().max(other.abs()) < noise {
-                continue;
-            }
-            let (mut solution, error) = match self.zero(before, after, kind)? {
-                Zero::At(solution, error) => (*solution, error),
-                Zero::Pole => continue,
-                Zero::Missed => {
-                    self.missed(kind, before, after);
-                    continue;
-                }
-            };
-            let multipliers: Vec<Complex64> =
-                solution.point.floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
-            if monitor::is_genuine(kind, self.kind(), &multipliers) {
-                // At a point where the coefficient has a pole, rounding is all that is left of it.
-                let size = |solution: &Solution<Inspection>| solution.point.coefficient.map(f64::abs);
-                let ends = size(before).into_iter().chain(size(after)).fold(0.0, f64::max);
-                solution.point.coefficient =
-                    solution.point.coefficient.filter(|value| value.abs() <= POLE_GROWTH * ends);
-                solution.point.special = Some((kind, error));
-                found.push(solution);
-            }
+        kind: SpecialKind,
+        [before, after]: [&Solution<Inspection>; 2],
+    ) -> Result<Location<Inspection>, Error> {
+        let (mut solution, error) = match self.zero(before, after, kind)? {
+            Zero::At(solution, error) => (*solution, error),
+            Zero::Pole => return Ok(Location::Nothing),
+            Zero::Missed => return Ok(Location::Missed),
+        };
+        let multipliers: Vec<Complex64> =
+            solution.point.floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
+        if !monitor::is_genuine(kind, self.kind(), &multipliers) {
+            return Ok(Location::Nothing);
         }
-        Ok(found)
+        // At a point where the coefficient has a pole, rounding is all that is left of it.
+        let size = |solution: &Solution<Inspection>| solution.point.coefficient.map(f64::abs);
+        let ends = size(before).into_iter().chain(size(after)).fold(0.0, f64::max);
+        solution.point.coefficient =
+            solution.point.coefficient.filter(|value| value.abs() <= POLE_GROWTH * ends);
+        solution.point.location_error = Some(error);
+        Ok(Location::At(solution))
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
@@ -465,7 +420,7 @@ impl Curve for CycleLocusCurve<'_> {
         signature
     }
 
-    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending> {
+    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<CycleLocusEnd>> {
         let end = after.unknown.len() - self.system.collocation.problem.scalars();
         let period = after.unknown[end];
         let last = after.tangent.len() - 2;
@@ -474,7 +429,7 @@ impl Curve for CycleLocusCurve<'_> {
         let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
         if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
             let parameter = after.unknown[last];
-            return Some(Ending::After(Stop::PeriodUnbounded { period, parameter }));
+            return Some(Ending::After(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodUnbounded { period, parameter }))));
         }
         // Next to the end both parameters depend on the amplitude through its square.
         let [(here, a), (there, b)] = [before, after].map(|solution| {
@@ -485,10 +440,10 @@ impl Curve for CycleLocusCurve<'_> {
         });
         if let Some(parameter) = self.sizes.amplitude_passes_zero((&here, a), (&there, b)) {
             let frequency = 2.0 * PI / period;
-            return Some(Ending::Between(Stop::HopfPoint { parameter, frequency, located: false }));
+            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { parameter, frequency, located: false }))));
         }
         if let Some(parameter) = self.halves_become_equal(before, after) {
-            return Some(Ending::Between(Stop::PeriodDoubling { parameter, period: 0.5 * period }));
+            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period }))));
         }
         let (from, to) = (self.angle(before)?, self.angle(after)?);
         // Folds with the angle 0 and period doublings with the angle pi solve the defining system as well and cross its curve
@@ -496,16 +451,14 @@ impl Curve for CycleLocusCurve<'_> {
         let nearest = (to / PI).round();
         let order = |multiple: f64| if multiple.rem_euclid(2.0) == 0.0 { 1 } else { 2 };
         if (to - nearest * PI).abs() < AT_RESONANCE {
-            self.approach(before, after, nearest * PI);
-            return Some(Ending::Between(Stop::StrongResonance { order: order(nearest) }));
+            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance { order: order(nearest) })));
         }
         let multiple = (from.max(to) / PI).floor();
         let crosses = from.min(to) < multiple * PI;
         // Cycles that a symmetry maps onto themselves half a period later have the squares of other multipliers: theirs go
         // through -1 together, and the curve goes on. At a resonance it comes back on itself.
         if crosses && self.turns_back(before, after) {
-            self.approach(before, after, multiple * PI);
-            return Some(Ending::Between(Stop::StrongResonance { order: order(multiple) }));
+            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance { order: order(multiple) })));
         }
         None
     }

@@ -2,10 +2,12 @@
 //! generalised Hopf points and, of doubled cycles, in generalised period doublings. The continuation cannot reach them; other curves on which they are regular points pass them.
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
-use super::run::CycleLocus;
+use super::end::CycleLocusEnd;
+use super::run::{Asked, CycleLocus, CycleLocusProblem};
 use crate::branch::{Label, SpecialKind};
-use crate::continuation::{CorrectionFailure, Settings, Stop};
-use crate::cycle::Orbit;
+use crate::continuation::{Settings, Stop};
+use crate::cycle::{CycleEnd, Orbit};
+use crate::error::CorrectionFailure;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::equilibrium::locating::hopf_point_near;
@@ -22,9 +24,11 @@ const VANISHING: f64 = 0.3;
 /// Distance of the argument from that of a resonance within which the last point counts as the resonance.
 const NEXT_TO: f64 = 1e-2;
 
-impl CycleLocus<'_> {
-    /// Adds the ends of the curve that other curves lead to. `parameters` are those of the start.
-    pub(super) fn solve_for_ends(&self, branch: &mut CycleLocusBranch, parameters: &[f64], ranges: [f64; 2]) {
+impl Asked<'_> {
+    /// Adds the ends of the curve that other curves lead to.
+    pub(super) fn solve_for_ends(&self, branch: &mut CycleLocusBranch) {
+        let ranges = self.two.ranges();
+        let (kind, active) = (branch.kind, self.two.active);
         let mut largest: Vec<f64> = Vec::new();
         for point in &branch.points {
             largest.resize(point.max.len(), 0.0);
@@ -33,25 +37,29 @@ impl CycleLocus<'_> {
                 .zip(amplitudes(point))
                 .for_each(|(largest, size)| *largest = largest.max(size));
         }
-        let solve = |stop: &mut Stop, last: Option<&CycleLocusPoint>| -> Option<CycleLocusPoint> {
-            let last = last?;
-            let mut parameters = parameters.to_vec();
-            branch.active.iter().zip(last.values).for_each(|(&index, value)| parameters[index] = value);
+        let is_fold = kind == Some(SpecialKind::FoldOfCycles);
+        let solve = |stop: &mut Stop<CycleLocusEnd>, last: &CycleLocusPoint| -> Option<CycleLocusPoint> {
+            let mut parameters = self.parameters.clone();
+            active.iter().zip(last.values).for_each(|(&index, value)| parameters[index] = value);
             match stop {
-                Stop::StrongResonance { order } => self.resonance(*order, last, parameters, ranges),
-                Stop::StepTooSmall { .. } | Stop::HopfPoint { .. }
-                    if branch.kind == SpecialKind::FoldOfCycles =>
+                Stop::Problem(CycleLocusEnd::StrongResonance { order }) => {
+                    self.resonance(*order, last, parameters, ranges)
+                }
+                Stop::StepTooSmall { .. } | Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { .. }))
+                    if is_fold =>
                 {
                     let vanishing =
                         amplitudes(last).zip(&largest).all(|(size, largest)| size <= VANISHING * largest);
                     let found = vanishing
-                        .then(|| self.generalized_hopf(last, &parameters, branch.active, ranges))
+                        .then(|| self.generalized_hopf(last, &parameters, active, ranges))
                         .flatten()?;
-                    *stop =
-                        Stop::GeneralizedHopfPoint { values: found.values, frequency: TAU / found.period };
+                    let (values, frequency) = (found.values, TAU / found.period);
+                    *stop = Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { values, frequency });
                     Some(found)
                 }
-                Stop::PeriodDoubling { parameter, period } if branch.kind == SpecialKind::FoldOfCycles => {
+                Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { parameter, period }))
+                    if is_fold =>
+                {
                     let found = self.generalized_period_doubling(last, parameters, ranges)?;
                     (*parameter, *period) = (found.values[0], 0.5 * found.period);
                     Some(found)
@@ -59,14 +67,21 @@ impl CycleLocus<'_> {
                 _ => None,
             }
         };
-        let first = solve(&mut branch.backward_stop, branch.points.first());
-        let last = solve(&mut branch.forward_stop, branch.points.last());
-        if first.is_none() {
-            label_resonance(&mut branch.backward_stop, branch.points.iter_mut());
+        let mut ends = [None, None];
+        let [backward, forward] = &mut branch.stops;
+        if let (Some(stop), Some(point)) = (backward.as_mut(), branch.points.first()) {
+            ends[0] = solve(stop, point);
         }
-        if last.is_none() {
-            label_resonance(&mut branch.forward_stop, branch.points.iter_mut().rev());
+        if let (Some(stop), Some(point)) = (forward.as_mut(), branch.points.last()) {
+            ends[1] = solve(stop, point);
         }
+        if let (None, Some(stop)) = (&ends[0], backward) {
+            label_resonance(stop, branch.points.iter_mut());
+        }
+        if let (None, Some(stop)) = (&ends[1], forward) {
+            label_resonance(stop, branch.points.iter_mut().rev());
+        }
+        let [first, last] = ends;
         branch.extend(first, last);
     }
 
@@ -98,14 +113,13 @@ impl CycleLocus<'_> {
         (from, ranges): ([f64; 2], [f64; 2]),
     ) -> Option<CycleLocusPoint> {
         let period = orbit.period;
-        let curve = CycleLocus {
-            field: self.field,
-            start: Some((kind, orbit, parameters)),
-            along: self.along.clone(),
-            at: Vec::new(),
-            resolution: self.resolution,
-            settings: Settings { most_steps: STEPS, ..self.settings },
-        };
+        let problem = CycleLocusProblem { start: Some((kind, orbit)), resolution: self.resolution };
+        let [first, second] = &self.along[..] else { return None };
+        let curve = CycleLocus::of_erased(self.field, problem)
+            .parameters(&parameters)
+            .along(&first.0, first.1.clone())
+            .and(&second.0, second.1.clone())
+            .settings(Settings { most_steps: STEPS, ..self.settings });
         let distance = |point: &CycleLocusPoint| distance(point.values, from, ranges);
         let found = curve.run().ok()?.points.into_iter();
         let nearest = found
@@ -177,8 +191,8 @@ impl CycleLocus<'_> {
             .iter()
             .filter_map(|&index| hopf_point_near(self.field, &mean, parameters, index, frequency));
         let hopf = near.next()?;
-        let [Some(first), Some(second)] = &self.along else { return None };
-        let curve = EquilibriumLocus::of_erased(self.field)
+        let [first, second] = &self.along[..] else { return None };
+        let curve = EquilibriumLocus::of_erased(self.field, None)
             .from_hopf(&hopf)
             .along(&first.0, first.1.clone())
             .and(&second.0, second.1.clone())
@@ -215,6 +229,7 @@ impl CycleLocus<'_> {
             label: Some(Label { kind: SpecialKind::GeneralizedHopf, number: 1 }),
             location_error: Some(found.location_error),
             tests: Vec::new(),
+            monitors: Vec::new(),
             orbit: Orbit {
                 states: found.state.iter().copied().cycle().take(last.orbit.states.len()).collect(),
                 period,
@@ -227,8 +242,8 @@ impl CycleLocus<'_> {
 /// Labels the first of `points` where it is next to a resonance that no other curve leads to. The parameters depend on the square
 /// of the distance of the argument from that of the resonance: what is left of it gives the errors. A point that is not next to it
 /// is no reason to call the end a resonance.
-fn label_resonance<'p>(stop: &mut Stop, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
-    let Stop::StrongResonance { order } = stop else { return };
+fn label_resonance<'p>(stop: &mut Stop<CycleLocusEnd>, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
+    let Stop::Problem(CycleLocusEnd::StrongResonance { order }) = stop else { return };
     let (kind, resonance) =
         if *order == 1 { (SpecialKind::Resonance1, 0.0) } else { (SpecialKind::Resonance2, PI) };
     let (Some(end), Some(before)) = (points.next(), points.next()) else { return };

@@ -6,9 +6,11 @@
 
 mod branch;
 mod curve;
+mod end;
 mod ends;
 mod monitor;
 mod run;
 
-pub use branch::{CycleLocusBranch, CycleLocusPoint, UnlocatedChange};
-pub use run::CycleLocus;
+pub use branch::{CycleLocusBranch, CycleLocusPoint};
+pub use end::CycleLocusEnd;
+pub use run::{CycleLocus, CycleLocusProblem};

@@ -4,7 +4,9 @@
 //! Bifurcation Theory*, 3rd edition (2004), chapter 9.
 
 use crate::branch::SpecialKind;
+use crate::continuation::events::{Spectrum, TestFunction};
 use crate::cycle::defining::Kind;
+use crate::cycle::floquet::Floquet;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -107,6 +109,53 @@ pub(super) fn tests(
     tests
 }
 
+/// The test functions on a curve of a kind; the directions counted are those of the multipliers that are not critical.
+pub(super) fn test_functions(kind: Kind) -> &'static [TestFunction<SpecialKind>] {
+    const FOLD: &[TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::CuspOfCycles).changing(&[0]),
+        TestFunction::new(SpecialKind::Resonance1).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::FoldFlip).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::FoldTorus).changing(&[0, 2]).of_spectrum(),
+    ];
+    const DOUBLING: &[TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::GeneralizedPeriodDoubling).changing(&[0]),
+        TestFunction::new(SpecialKind::Resonance2).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::FoldFlip).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::PeriodDoublingTorus).changing(&[0, 2]).of_spectrum(),
+    ];
+    const TORUS: &[TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::Chenciner).changing(&[0]),
+        TestFunction::new(SpecialKind::Resonance3).changing(&[0]),
+        TestFunction::new(SpecialKind::Resonance4).changing(&[0]),
+        TestFunction::new(SpecialKind::FoldTorus).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::PeriodDoublingTorus).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::DoubleTorus).changing(&[0, 2]).of_spectrum(),
+    ];
+    match kind {
+        Kind::Fold => FOLD,
+        Kind::Doubling => DOUBLING,
+        Kind::Torus => TORUS,
+        Kind::BranchPoint => &[],
+    }
+}
+
+/// Growth exponents of the multipliers that are not critical; `angle` is that of a torus bifurcation.
+pub(super) fn growth(kind: Kind, floquet: &Floquet, angle: f64) -> Spectrum {
+    let critical: &[Complex64] = match kind {
+        Kind::Fold => &[Complex64::ZERO],
+        Kind::Doubling => &[Complex64::new(0.0, PI)],
+        Kind::Torus => &[Complex64::new(0.0, angle), Complex64::new(0.0, -angle)],
+        Kind::BranchPoint => &[],
+    };
+    let mut spectrum = floquet.growth();
+    spectrum.exponents = without(&spectrum.exponents, critical);
+    spectrum.noise = UNDECIDED.max(spectrum.noise);
+    spectrum.unstable = spectrum.exponents.iter().filter(|exponent| exponent.re > 0.0).count();
+    spectrum.decided = !floquet.is_contradictory()
+        && spectrum.exponents.iter().all(|exponent| exponent.re.abs() > spectrum.noise);
+    spectrum
+}
+
 /// Whether the test function is a coefficient of the normal form, of any size, and not one made of multipliers.
 pub(super) fn is_coefficient(kind: SpecialKind) -> bool {
     matches!(
@@ -130,6 +179,9 @@ pub(super) fn is_genuine(sought: SpecialKind, kind: Kind, multipliers: &[Complex
     on_circle.count() > usize::from(kind == Kind::Torus)
 }
 
+/// Logarithm of the modulus of a multiplier below which it is not decided on which side of the unit circle it is: next to another
+/// bifurcation multipliers are known to the root of their error only.
+const UNDECIDED: f64 = 1e-6;
 /// Distance from the unit circle within which a located pair counts as on it.
 const NEAR_CIRCLE: f64 = 1e-5;
 

@@ -1,9 +1,14 @@
 //! Asking for a curve of special cycles.
 
-use super::branch::{CycleLocusBranch, UnlocatedChange};
+use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
-use crate::branch::SpecialKind;
-use crate::continuation::{Followed, Origin, Request, Settings, Solution, Stop, correct, finish, follow};
+use super::end::CycleLocusEnd;
+use crate::branch::{
+    Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
+};
+use crate::continuation::{
+    BothWays, Observer, Request, Settings, Solution, both_ways, correct, finish, follow,
+};
 use crate::cycle::collocation::Collocation;
 use crate::cycle::curve::CycleCurve;
 use crate::cycle::defining::Kind;
@@ -16,16 +21,30 @@ use crate::cycle::{Orbit, Resolution};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
-use crate::locus::LocusObserver;
-use crate::locus::request::{Range, TwoParameters, invalid, point_forward};
-use std::ops::{ControlFlow, RangeInclusive};
+use crate::locus::request::{TwoParameters, point_forward};
+use std::ops::RangeInclusive;
+
+/// What a curve of special cycles starts from and how finely the cycles are resolved.
+#[derive(Clone, Debug, Default)]
+pub struct CycleLocusProblem {
+    pub(super) start: Option<(SpecialKind, Orbit)>,
+    pub(super) resolution: Resolution,
+}
+
+impl Problem for CycleLocusProblem {
+    type Point = CycleLocusPoint;
+
+    fn settings() -> Settings {
+        Settings::default()
+    }
+}
 
 /// A curve of folds, period doublings or torus bifurcations of cycles, followed both ways from one of them while two
 /// parameters vary over ranges.
 ///
 /// ```
 /// use arclength::branch::SpecialKind;
-/// use arclength::cycle::{CycleStart, Cycles, Special};
+/// use arclength::cycle::{CycleStart, Cycles};
 /// use arclength::locus::CycleLocus;
 /// use arclength::{Scalar, VectorField};
 /// use num_complex::Complex64;
@@ -51,8 +70,8 @@ use std::ops::{ControlFlow, RangeInclusive};
 ///     crossing_speed: 1.0,
 ///     cubic_coefficient: 1.0,
 /// };
-/// let branch = Cycles::of(&Bautin, start).parameters(&[0.0, 1.0]).along(0, -1.0..=1.0).run()?;
-/// let (_, fold) = branch.special_points().find(|(special, _)| *special == Special::Fold).unwrap();
+/// let branch = Cycles::of(&Bautin, start).parameters(&[0.0, 1.0]).along("a", -1.0..=1.0).run()?;
+/// let fold = branch.of_kind(SpecialKind::FoldOfCycles).next().unwrap();
 /// let folds = CycleLocus::of(&Bautin)
 ///     .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 1.0])
 ///     .along("a", -1.0..=1.0)
@@ -61,62 +80,23 @@ use std::ops::{ControlFlow, RangeInclusive};
 /// assert!(folds.points.iter().all(|point| (point.values[0] + 0.25 * point.values[1].powi(2)).abs() < 1e-8));
 /// # Ok::<(), arclength::Error>(())
 /// ```
-#[derive(Debug, Clone)]
-pub struct CycleLocus<'a> {
-    pub(super) field: ErasedField<'a>,
-    pub(super) start: Option<(SpecialKind, Orbit, Vec<f64>)>,
-    pub(super) along: [Option<Range>; 2],
-    pub(super) at: Vec<f64>,
-    pub(super) resolution: Resolution,
-    pub(super) settings: Settings,
-}
+pub type CycleLocus<'a> = Continuation<'a, CycleLocusProblem>;
 
 impl<'a> CycleLocus<'a> {
     /// A curve of special cycles of `field`.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        Self {
-            field: ErasedField::of(field),
-            start: None,
-            along: [None, None],
-            at: Vec::new(),
-            resolution: Resolution::default(),
-            settings: Settings::default(),
-        }
+        Self::of_erased(ErasedField::of(field), CycleLocusProblem::default())
     }
 
     /// Starts at a special cycle: a fold (`FoldOfCycles`), a period doubling or a torus bifurcation, with all parameters there.
     pub fn from_cycle(mut self, kind: SpecialKind, orbit: &Orbit, parameters: &[f64]) -> Self {
-        self.start = Some((kind, orbit.clone(), parameters.to_vec()));
-        self
-    }
-
-    /// The first parameter and its range.
-    pub fn along(mut self, parameter: &str, range: RangeInclusive<f64>) -> Self {
-        self.along[0] = Some((parameter.to_owned(), range));
-        self
-    }
-
-    /// The second parameter and its range.
-    pub fn and(mut self, parameter: &str, range: RangeInclusive<f64>) -> Self {
-        self.along[1] = Some((parameter.to_owned(), range));
-        self
-    }
-
-    /// Values of the first parameter at which cycles are wanted exactly.
-    pub fn at(mut self, values: &[f64]) -> Self {
-        self.at = values.to_vec();
-        self
+        self.start.start = Some((kind, orbit.clone()));
+        self.parameters(parameters)
     }
 
     /// Resolution of the cycles and their eigenfunctions.
     pub fn resolution(mut self, resolution: Resolution) -> Self {
-        self.resolution = resolution;
-        self
-    }
-
-    /// Step control and tolerances.
-    pub fn settings(mut self, settings: Settings) -> Self {
-        self.settings = settings;
+        self.start.resolution = resolution;
         self
     }
 
@@ -124,18 +104,9 @@ impl<'a> CycleLocus<'a> {
     ///
     /// # Errors
     /// [`Error::Invalid`] when what was asked for makes no sense, [`Error::NotFound`] when there is no special cycle of that
-    /// kind near the start. What goes wrong later ends the curve with a [`Stop`].
-    pub fn run(self) -> Result<CycleLocusBranch, Error> {
-        self.observed(&mut |_, _| ControlFlow::Continue(()))
-    }
-
-    /// As [`run`](Self::run); `observer` is told the two parameter values and the period of every cycle and may end a
-    /// direction.
-    ///
-    /// # Errors
-    /// As [`run`](Self::run).
-    pub fn observed(self, observer: &mut LocusObserver<'_>) -> Result<CycleLocusBranch, Error> {
-        let Some((special, orbit, parameters)) = &self.start else {
+    /// kind near the start. What goes wrong later ends the curve with a [`Stop`](crate::continuation::Stop).
+    pub fn run(mut self) -> Result<CycleLocusBranch, Error> {
+        let Some((special, orbit)) = self.start.start.clone() else {
             return Err(invalid("start", "nothing", "a special cycle"));
         };
         let kind = match special {
@@ -143,64 +114,86 @@ impl<'a> CycleLocus<'a> {
             SpecialKind::PeriodDoubling => Kind::Doubling,
             SpecialKind::Torus => Kind::Torus,
             other => {
-                return Err(invalid(
-                    "start",
-                    other.name(),
-                    "fold of cycles, period doubling, torus bifurcation",
-                ));
+                let allowed = "fold of cycles, period doubling, torus bifurcation";
+                return Err(invalid("start", other.name(), allowed));
             }
         };
+        let (active, bounds) = self.active(2)?;
+        let names = self.field.parameter_names();
+        let parameters = self.parameters.clone().unwrap_or_default();
+        check_length("parameters of the start", &parameters, names.len(), "the number of parameters")?;
         orbit.check(self.field.dimension())?;
-        let asked = TwoParameters::checked(&self.field, &self.along, parameters)?;
-        let TwoParameters { active, bounds } = asked;
-        let ranges = asked.ranges();
-        let request = Request { bounds: bounds.to_vec(), values: self.at.clone(), settings: self.settings };
-        let (mut curve, unknown) = self.start(kind, orbit, parameters, active, ranges)?;
-        let (unknown, mut tangent) = self.first(&mut curve, unknown)?;
-        point_forward(&mut tangent, ranges);
-        let scalars = 3 + kind.own_scalars();
-        let mut observe = |solution: &Solution<Inspection>| {
-            let end = solution.unknown.len();
-            let values = [solution.unknown[end - 2], solution.unknown[end - 1]];
-            observer(values, &solution.unknown[end - scalars..=end - scalars])
+        self.start.resolution.validate()?;
+        let asked = Asked {
+            field: self.field,
+            two: TwoParameters::checked(&active, &bounds, &names, &parameters)?,
+            parameters,
+            along: self.ranges.clone(),
+            resolution: self.start.resolution,
+            settings: self.settings,
         };
-        let degree = orbit.degree;
-        let mut unlocated = Vec::new();
-        let mut forward = follow(&mut curve, unknown.clone(), tangent.clone(), &request, &mut observe)?;
-        close(&mut forward, &mut curve, &mut unlocated);
-        let backward = if matches!(forward.stop, Stop::Closed) {
-            Followed { solutions: Vec::new(), stop: Stop::Closed }
-        } else {
-            // Mesh and sizes have moved on: back to those of the start.
-            let (mut curve, start) = self.start(kind, orbit, parameters, active, ranges)?;
-            let (unknown, mut backward) = self.first(&mut curve, start)?;
-            let product: f64 = backward.iter().zip(&tangent).map(|(a, b)| a * b).sum();
-            if product > 0.0 {
-                backward.iter_mut().for_each(|entry| *entry = -*entry);
-            }
-            let mut followed = follow(&mut curve, unknown, backward, &request, &mut observe)?;
-            close(&mut followed, &mut curve, &mut unlocated);
-            followed
+        let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
+        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+            let mut point = CycleLocusPoint::new(solution, label, orbit.degree);
+            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point
         };
-        let mut branch = CycleLocusBranch::assemble(*special, active, degree, [backward, forward], unlocated);
-        self.solve_for_ends(&mut branch, parameters, ranges);
+        let request = request(&bounds, at, monitors, *settings, &point);
+        let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
+        let mut followed = asked.follow(kind, &orbit, &request, &mut *observe)?;
+        drop(observe);
+        followed.mark_requested(at, |solution| bounds[0].value(&solution.unknown));
+        let place = (&asked.parameters[..], &active[..]);
+        let branch = Branch::assemble(&asked.field, place, followed, |solution, label| point(&solution, label));
+        let mut branch = Branch { kind: Some(special), ..branch };
+        asked.solve_for_ends(&mut branch);
         Ok(branch)
     }
+}
 
-    /// The curve and an approximate first solution.
-    fn start(
+/// A checked request.
+pub(super) struct Asked<'a> {
+    pub field: ErasedField<'a>,
+    pub parameters: Vec<f64>,
+    pub two: TwoParameters,
+    /// Names and ranges of the two parameters.
+    pub along: Vec<(String, RangeInclusive<f64>)>,
+    pub resolution: Resolution,
+    pub settings: Settings,
+}
+
+impl<'a> Asked<'a> {
+    fn follow(
         &self,
         kind: Kind,
         orbit: &Orbit,
-        parameters: &[f64],
-        active: [usize; 2],
-        ranges: [f64; 2],
-    ) -> Result<(CycleLocusCurve<'a>, Vec<f64>), Error> {
+        request: &Request<'_, Inspection>,
+        observer: &mut Observer<'_, Inspection, SpecialKind>,
+    ) -> Result<BothWays<Inspection, SpecialKind, CycleLocusEnd>, Error> {
+        let mut forward: Vec<f64> = Vec::new();
+        let directions = both_ways(|sign| {
+            // Mesh and sizes move on along the way: every direction begins with those of the start.
+            let (mut curve, unknown) = self.start(kind, orbit)?;
+            let (unknown, mut tangent) = self.first(&mut curve, unknown)?;
+            if sign > 0.0 {
+                point_forward(&mut tangent, self.two.ranges());
+                forward.clone_from(&tangent);
+            } else if tangent.iter().zip(&forward).map(|(a, b)| a * b).sum::<f64>() > 0.0 {
+                tangent.iter_mut().for_each(|entry| *entry = -*entry);
+            }
+            follow(&mut curve, unknown, tangent, request, observer)
+        })?;
+        Ok(BothWays::join(directions, None))
+    }
+
+    /// The curve and an approximate first solution.
+    fn start(&self, kind: Kind, orbit: &Orbit) -> Result<(CycleLocusCurve<'a>, Vec<f64>), Error> {
+        let (active, ranges, parameters) = (self.two.active, self.two.ranges(), &self.parameters);
         let mut cycle = orbit.states.clone();
         cycle.extend([orbit.period, parameters[active[0]]]);
         let problem = LimitCycle {
             field: self.field,
-            parameters: parameters.to_vec(),
+            parameters: parameters.clone(),
             active: active[0],
             scales: vec![1.0; orbit.dimension],
         };
@@ -250,18 +243,4 @@ impl<'a> CycleLocus<'a> {
         }
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "Floquet multipliers" }))
     }
-}
-
-/// Adds what the curve itself has noted to a run: solutions behind the last step, and what was not located.
-fn close(
-    followed: &mut Followed<Inspection>,
-    curve: &mut CycleLocusCurve<'_>,
-    unlocated: &mut Vec<UnlocatedChange>,
-) {
-    let last = std::mem::take(&mut curve.last);
-    followed.solutions.extend(last.into_iter().map(|solution| {
-        let origin = if solution.point.special.is_some() { Origin::Special } else { Origin::Step };
-        (solution, origin)
-    }));
-    unlocated.append(&mut curve.unlocated);
 }

@@ -1,4 +1,4 @@
-//! What points on every kind of branch have in common: stability, kinds of special points, labels.
+//! Kinds of special points and their labels.
 //!
 //! Plain data that can be written to a file and read back, so that a computation can start from any
 //! labelled point of an earlier one.
@@ -7,53 +7,6 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
-
-/// Whether perturbations die out, as far as the computed eigenvalues or multipliers can tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Stability {
-    /// All perturbations decay.
-    Stable,
-    /// Perturbations grow in some directions.
-    Unstable {
-        /// Number of unstable eigenvalues or multipliers, the dimension of the unstable manifold.
-        dimension: usize,
-    },
-    /// An eigenvalue or multiplier is closer to the boundary of stability than it is accurate.
-    Undecided,
-}
-
-impl Stability {
-    /// `None` when undecided.
-    pub fn is_stable(self) -> Option<bool> {
-        match self {
-            Self::Stable => Some(true),
-            Self::Unstable { .. } => Some(false),
-            Self::Undecided => None,
-        }
-    }
-
-    /// Number of unstable directions; `None` when undecided.
-    pub fn unstable_dimension(self) -> Option<usize> {
-        match self {
-            Self::Stable => Some(0),
-            Self::Unstable { dimension } => Some(dimension),
-            Self::Undecided => None,
-        }
-    }
-}
-
-/// The sense of a bifurcation to cycles, to doubled cycles or to tori: on which side the new solutions lie.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Criticality {
-    /// The normal-form coefficient is negative: the new solutions are stable within the centre manifold.
-    Supercritical,
-    /// The normal-form coefficient is positive: the new solutions are unstable.
-    Subcritical,
-    /// The coefficient is too close to zero to tell.
-    Degenerate,
-}
 
 macro_rules! special_kinds {
     ($($(#[$documentation:meta])* $variant:ident = $label:literal, $name:literal;)*) => {

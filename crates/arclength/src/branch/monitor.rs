@@ -1,0 +1,59 @@
+//! Quantities that are recorded along a branch, and values of theirs at which a point is wanted or the branch is to end.
+
+use std::fmt;
+
+/// A function of the points of a branch.
+///
+/// ```
+/// use arclength::branch::Monitor;
+/// use arclength::cycle::CyclePoint;
+/// let period = Monitor::new("period", |cycle: &CyclePoint| Some(cycle.period)).at(&[10.0]).until(&[50.0]);
+/// assert_eq!(period.name(), "period");
+/// ```
+pub struct Monitor<'a, P> {
+    name: String,
+    #[allow(clippy::type_complexity)]
+    function: Box<dyn Fn(&P) -> Option<f64> + 'a>,
+    /// Values, and whether the branch ends there.
+    values: Vec<(f64, bool)>,
+}
+
+impl<'a, P> Monitor<'a, P> {
+    /// A quantity with a name; `None` where it does not exist.
+    pub fn new(name: &str, function: impl Fn(&P) -> Option<f64> + 'a) -> Self {
+        Self { name: name.to_owned(), function: Box::new(function), values: Vec::new() }
+    }
+
+    /// Values at which a point is wanted.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.values.extend(values.iter().map(|value| (*value, false)));
+        self
+    }
+
+    /// Values at which the branch ends.
+    pub fn until(mut self, values: &[f64]) -> Self {
+        self.values.extend(values.iter().map(|value| (*value, true)));
+        self
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its value at a point.
+    pub fn value(&self, point: &P) -> Option<f64> {
+        (self.function)(point).filter(|value| value.is_finite())
+    }
+
+    /// Values at which a point is wanted, and whether the branch ends there.
+    pub(crate) fn values(&self) -> &[(f64, bool)] {
+        &self.values
+    }
+}
+
+impl<P> fmt::Debug for Monitor<'_, P> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.debug_struct("Monitor").field("name", &self.name).field("values", &self.values).finish()
+    }
+}

@@ -1,0 +1,103 @@
+//! A solution as the event engine sees it: values of the test functions, growth exponents and their rates along the curve.
+
+use super::test_function::Reading;
+use crate::continuation::solution::{across, distance};
+use crate::continuation::{Curve, Settings, Solution};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Growth exponents of a solution: eigenvalues of an equilibrium, logarithms of the multipliers of a cycle.
+#[derive(Clone, Debug, Default)]
+pub struct Spectrum {
+    /// The exponents; those with a positive real part are unstable.
+    pub exponents: Vec<Complex64>,
+    /// Number of unstable ones, decided or not.
+    pub unstable: usize,
+    /// Whether that number is beyond doubt.
+    pub decided: bool,
+    /// Real parts below this may be rounding.
+    pub noise: f64,
+    /// Whether imaginary parts are known up to multiples of 2 pi only.
+    pub is_periodic: bool,
+}
+
+impl Spectrum {
+    /// Distance of two exponents.
+    pub(super) fn separation(&self, one: Complex64, other: Complex64) -> f64 {
+        let difference = one - other;
+        if self.is_periodic {
+            let turns = (difference.im / TAU).round();
+            difference.re.hypot(difference.im - turns * TAU)
+        } else {
+            difference.norm()
+        }
+    }
+}
+
+/// A solution with what is known of it.
+#[derive(Debug)]
+pub(super) struct Node<C: Curve + ?Sized> {
+    pub solution: Solution<C::Point>,
+    /// Values in the order of the curve's test functions.
+    pub readings: Vec<Option<Reading>>,
+    pub spectrum: Spectrum,
+    /// Number of signs that may be rounding error.
+    pub undecided: usize,
+    rates: Option<Option<Rates>>,
+}
+
+/// Rates of change per length of the curve.
+#[derive(Clone, Debug)]
+pub(super) struct Rates {
+    pub exponents: Vec<Complex64>,
+    pub readings: Vec<Option<f64>>,
+}
+
+/// Displacement along the tangent, as part of a step, from which rates are computed.
+const DISPLACEMENT: f64 = 1e-3;
+
+impl<C: Curve> Node<C> {
+    pub fn new(curve: &C, solution: Solution<C::Point>) -> Self {
+        let readings =
+            curve.test_functions().iter().map(|test| curve.test(test.kind, &solution)).collect();
+        Self {
+            readings,
+            spectrum: curve.spectrum(&solution),
+            undecided: curve.undecided(&solution),
+            rates: None,
+            solution,
+        }
+    }
+
+    /// Rates along the curve, computed once; `step` is a length on which the solution is resolved.
+    pub fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
+        if self.rates.is_none() {
+            self.rates = Some(match curve.exponent_rates(&self.solution) {
+                Some(exponents) => Some(Rates { exponents, readings: vec![None; self.readings.len()] }),
+                None => self.differences(curve, step, settings),
+            });
+        }
+        self.rates.as_ref().and_then(Option::as_ref)
+    }
+
+    fn differences(&self, curve: &mut C, step: f64, settings: &Settings) -> Option<Rates> {
+        let there = across(curve, &self.solution, self.solution.ahead(DISPLACEMENT * step), settings).ok()?;
+        let length = distance(curve, &self.solution.unknown, &there.unknown);
+        let there = Node::new(curve, there);
+        let partners = super::path::partners(&self.spectrum, &there.spectrum, None);
+        let exponents = self.spectrum.exponents.iter().zip(partners).map(|(here, partner)| {
+            let mut change = there.spectrum.exponents[partner] - here;
+            if self.spectrum.is_periodic {
+                change.im -= (change.im / TAU).round() * TAU;
+            }
+            change / length
+        });
+        let readings = self.readings.iter().zip(&there.readings).map(|(here, there)| match (here, there) {
+            (Some(here), Some(there)) if here.class == there.class => {
+                Some((there.value - here.value) / length)
+            }
+            _ => None,
+        });
+        Some(Rates { exponents: exponents.collect(), readings: readings.collect() })
+    }
+}

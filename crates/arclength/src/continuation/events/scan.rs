@@ -1,0 +1,199 @@
+//! The division of a step until it holds one special point at most.
+
+use super::crossings::crossings;
+use super::node::Node;
+use super::search::{Event, Memory, Unlocated};
+use super::suspicion::suspicious;
+use super::test_function::Location;
+use super::verification::reachable;
+use crate::continuation::solution::{Bound, between, cosine, distance};
+use crate::continuation::{Curve, Settings, Solution};
+use crate::error::Error;
+
+/// A step is divided at these parts of the fraction where the fraction itself gives a special point.
+const ASIDE: [f64; 3] = [0.8, 0.9, 0.7];
+/// Part of a step below which it is not divided any further while two kinds that may be one point are not separated.
+const COINCIDENT_PART: f64 = 0.02;
+/// Smallest cosine of the angle between a part of a step and the tangents at its ends: shorter parts are straighter.
+const LEAST_COSINE: f64 = 0.5;
+/// Value of a test function at a point of another kind, relative to its values around, below which it vanishes there too: on
+/// the branch that turns at a pitchfork the parameter turns, but that is no fold.
+const VANISHING: f64 = 1e-3;
+
+/// The search in one step.
+pub(super) struct Scan<'s, C: Curve> {
+    pub curve: &'s mut C,
+    pub memory: &'s Memory,
+    pub bounds: &'s [Bound],
+    pub settings: &'s Settings,
+    pub unlocated: Vec<Unlocated<C::Kind>>,
+    /// Solutions that may still be computed.
+    pub trials: usize,
+    pub found: Vec<Event<C::Kind, C::Point>>,
+}
+
+impl<'s, C: Curve> Scan<'s, C> {
+    pub fn new(curve: &'s mut C, memory: &'s Memory, bounds: &'s [Bound], settings: &'s Settings) -> Self {
+        Self { curve, memory, bounds, settings, unlocated: Vec::new(), trials: 0, found: Vec::new() }
+    }
+
+    /// Places in the list of test functions of those that change their signs.
+    fn changed(before: &Node<C>, after: &Node<C>) -> Vec<usize> {
+        let pairs = before.readings.iter().zip(&after.readings).enumerate();
+        pairs
+            .filter(|(_, pair)| matches!(pair, (Some(one), Some(other)) if one.changes_to(*other)))
+            .map(|(index, _)| index)
+            .collect()
+    }
+
+    /// The change of the number of unstable directions; `None` where it is not decided.
+    pub fn change_of_count(before: &Node<C>, after: &Node<C>) -> Option<usize> {
+        let decided = before.spectrum.decided && after.spectrum.decided;
+        decided.then(|| before.spectrum.unstable.abs_diff(after.spectrum.unstable))
+    }
+
+    fn is_explained(&self, changed: &[usize], before: &Node<C>, after: &Node<C>) -> bool {
+        let Some(change) = Self::change_of_count(before, after) else { return true };
+        let tests = self.curve.test_functions();
+        reachable(change, changed.iter().map(|&index| tests[index].changes))
+    }
+
+    /// Whether every change but the first is of a kind that the first absorbs: most likely they are one point.
+    fn is_one_point(&self, changed: &[usize]) -> bool {
+        let tests = self.curve.test_functions();
+        match changed {
+            [] | [_] => false,
+            [first, rest @ ..] => rest.iter().all(|&index| tests[*first].absorbs.contains(&tests[index].kind)),
+        }
+    }
+
+    /// Special points in a part of the step.
+    ///
+    /// # Errors
+    /// [`Error::OtherBranch`] if the ends lie beside each other and not behind each other.
+    pub fn part(&mut self, [before, after]: [&mut Node<C>; 2], share: f64) -> Result<(), Error> {
+        let changed = Self::changed(before, after);
+        let (one, other) = (&before.solution, &after.solution);
+        let length = distance(self.curve, &one.unknown, &other.unknown);
+        let straightness = cosine(self.curve, one, &other.unknown, length)
+            .min(cosine(self.curve, other, &one.unknown, length));
+        if length > self.settings.shortest_jump && straightness < LEAST_COSINE {
+            return Err(Error::OtherBranch);
+        }
+        let divide = if changed.len() > 1 || !self.is_explained(&changed, before, after) {
+            Some(0.5)
+        } else {
+            suspicious(self.curve, [before, after], length, self.memory, self.settings)
+        };
+        let smallest = if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
+        if let Some(fraction) = divide.filter(|_| share > smallest && self.trials > 0) {
+            self.trials -= 1;
+            // Where all trials fail (next to a branch point, where the equations are singular) the division ends: the point
+            // is located from the ends.
+            if let Some((fraction, mut middle)) = self.divided(before, after, fraction) {
+                self.part([before, &mut middle], share * fraction)?;
+                return self.part([&mut middle, after], share * (1.0 - fraction));
+            }
+        }
+        if changed.is_empty() && !self.is_explained(&changed, before, after) {
+            // Symmetry makes several exponents cross at once.
+            return self.locate_by_count(before, after);
+        }
+        for index in changed {
+            self.locate(index, before, after)?;
+        }
+        Ok(())
+    }
+
+    /// A solution between two others, near a fraction of the way, that is no special point itself.
+    fn divided(&mut self, before: &Node<C>, after: &Node<C>, fraction: f64) -> Option<(f64, Node<C>)> {
+        let least = before.undecided.max(after.undecided);
+        let mut middle = None;
+        for fraction in std::iter::once(1.0).chain(ASIDE).map(|part| part * fraction) {
+            let trial = between(self.curve, &before.solution, &after.solution, fraction, self.settings);
+            let Ok(trial) = trial else { continue };
+            let trial = Node::new(self.curve, trial);
+            let decided = trial.undecided <= least;
+            middle = Some((fraction, trial));
+            // A trial that happens to be a special point itself explains nothing.
+            if decided {
+                break;
+            }
+        }
+        middle
+    }
+
+    /// Locates the point at which a test function changes its sign.
+    fn locate(&mut self, index: usize, before: &Node<C>, after: &Node<C>) -> Result<(), Error> {
+        let test = self.curve.test_functions()[index];
+        let (Some(here), Some(there)) = (before.readings[index], after.readings[index]) else { return Ok(()) };
+        if !here.resolved || !there.resolved {
+            self.miss(Some(test.kind), &before.solution, &after.solution);
+            return Ok(());
+        }
+        let around = here.value.abs().max(there.value.abs());
+        let absorbing = self.absorbing(test.kind, &before.solution, &after.solution);
+        let vanishes = absorbing.as_ref().is_some_and(|solution| {
+            self.curve.test(test.kind, solution).is_some_and(|reading| reading.value.abs() < VANISHING * around)
+        });
+        if vanishes {
+            return Ok(());
+        }
+        match self.curve.locate(test.kind, [&before.solution, &after.solution])? {
+            Location::At(solution) => {
+                self.found.push(Event { kind: test.kind, is_located: true, solution });
+            }
+            Location::Bracketed(solution) => {
+                // Exponents that symmetry takes through zero together change the test function too.
+                let crosses = Self::change_of_count(before, after).is_some_and(|change| change > 0);
+                if crosses && test.changes.contains(&2) {
+                    self.locate_by_count(before, after)?;
+                } else {
+                    self.found.push(Event { kind: test.kind, is_located: false, solution });
+                }
+            }
+            Location::Nothing => {}
+            Location::Missed if absorbing.is_some() => {}
+            Location::Missed => self.miss(Some(test.kind), &before.solution, &after.solution),
+        }
+        Ok(())
+    }
+
+    /// A point between two solutions that has been found and at which the test function of `kind` may vanish too.
+    fn absorbing(
+        &self,
+        kind: C::Kind,
+        before: &Solution<C::Point>,
+        after: &Solution<C::Point>,
+    ) -> Option<Solution<C::Point>> {
+        let tests = self.curve.test_functions();
+        let absorbs = |found: C::Kind| {
+            tests.iter().any(|test| test.kind == found && test.absorbs.contains(&kind))
+        };
+        let inside = |solution: &Solution<C::Point>| {
+            let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
+            let length = distance(self.curve, &before.unknown, &after.unknown);
+            ends[0].max(ends[1]) <= 1.5 * length
+        };
+        let event = self.found.iter().rev().find(|event| absorbs(event.kind) && inside(&event.solution))?;
+        Some(event.solution.clone())
+    }
+
+    /// Locates what crosses between two solutions by the number of unstable directions alone.
+    pub fn locate_by_count(&mut self, before: &Node<C>, after: &Node<C>) -> Result<(), Error> {
+        let crossings = crossings(self.curve, before, after, self.settings)?;
+        for [from, to] in crossings.unlocated {
+            self.miss(None, &from, &to);
+        }
+        self.found.extend(crossings.found);
+        Ok(())
+    }
+
+    /// Notes that no point was located behind a change.
+    pub fn miss(&mut self, kind: Option<C::Kind>, from: &Solution<C::Point>, to: &Solution<C::Point>) {
+        let values = |solution: &Solution<C::Point>| {
+            self.bounds.iter().map(|bound| bound.value(&solution.unknown)).collect()
+        };
+        self.unlocated.push(Unlocated { kind, between: [values(from), values(to)] });
+    }
+}

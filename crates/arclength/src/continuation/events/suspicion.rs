@@ -1,0 +1,134 @@
+//! Whether something may hide between two solutions whose test functions have the signs that they should have: two points of one
+//! kind in one step leave no trace in signs and counts.
+//!
+//! Every growth exponent is followed from one solution to the other by values and rates, and so are the parameter, which may turn
+//! twice, and test functions that are not made of exponents. Where rates cost a solution of their own they are computed only if
+//! a quantity comes close to zero compared with its changes from step to step.
+
+use super::node::Node;
+use super::path::{Path, partners};
+use super::search::Memory;
+use crate::continuation::solution::along;
+use crate::continuation::{Curve, Settings};
+use num_complex::Complex64;
+
+/// Exponents of multipliers below this at both ends are those of directions that die out in one period.
+const DEAD: f64 = -20.0;
+/// A quantity that changes by less than this part of itself in a step does not pass zero unseen.
+const PLAUSIBLE: f64 = 0.5;
+
+/// The part of the step at which to look, if any.
+pub(super) fn suspicious<C: Curve>(
+    curve: &mut C,
+    [before, after]: [&mut Node<C>; 2],
+    length: f64,
+    memory: &Memory,
+    settings: &Settings,
+) -> Option<f64> {
+    turns_twice(curve, before, after, length).or_else(|| {
+        let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
+        let own = before.readings.len() > 0 && curve.test_functions().iter().any(|test| !test.of_spectrum && !test.is_turn);
+        if !rates_cost_nothing && !plausible(before, after, memory) {
+            return None;
+        }
+        if !rates_cost_nothing || own {
+            // Both are computed before either is used, so that what is found does not depend on which is looked at first.
+            before.rates(curve, length, settings)?;
+            after.rates(curve, length, settings)?;
+        }
+        exponents_hide(curve, before, after, length, settings)
+            .or_else(|| tests_hide(curve, before, after, length, settings))
+    })
+}
+
+/// Whether an exponent or a test function comes close to zero compared with its changes.
+fn plausible<C: Curve>(before: &Node<C>, after: &Node<C>, memory: &Memory) -> bool {
+    let indices = partners(&before.spectrum, &after.spectrum, None);
+    let exponents = before.spectrum.exponents.iter().zip(indices).enumerate().map(|(index, (here, partner))| {
+        let change = memory.change_of_exponent(&before.spectrum, index);
+        (here.re, after.spectrum.exponents[partner].re, change)
+    });
+    let readings = before.readings.iter().zip(&after.readings).enumerate().filter_map(|(index, pair)| {
+        let (Some(here), Some(there)) = pair else { return None };
+        Some((here.value, there.value, memory.change_of_reading(index, here.value)))
+    });
+    exponents
+        .filter(|(here, there, _)| *here > DEAD || *there > DEAD)
+        .chain(readings)
+        .any(|(here, there, change)| {
+            PLAUSIBLE * here.abs().min(there.abs()) < change.max((there - here).abs())
+        })
+}
+
+fn exponents_hide<C: Curve>(
+    curve: &mut C,
+    before: &mut Node<C>,
+    after: &mut Node<C>,
+    length: f64,
+    settings: &Settings,
+) -> Option<f64> {
+    let noise = before.spectrum.noise.max(after.spectrum.noise);
+    let per_step = |rates: &[Complex64]| -> Vec<Complex64> { rates.iter().map(|rate| rate * length).collect() };
+    let ahead = per_step(&before.rates(curve, length, settings)?.exponents);
+    let behind = per_step(&after.rates(curve, length, settings)?.exponents);
+    let (one, other) = (&before.spectrum, &after.spectrum);
+    let indices = partners(one, other, Some((&ahead, &behind)));
+    indices.into_iter().enumerate().find_map(|(index, partner)| {
+        let (here, there) = (one.exponents[index], *other.exponents.get(partner)?);
+        // Those of complex pairs say the same.
+        if here.im < 0.0 && there.im < 0.0 || here.re.max(there.re) < DEAD && one.is_periodic {
+            return None;
+        }
+        if here.re.abs() <= noise || there.re.abs() <= noise {
+            return None;
+        }
+        Path::new([here.re, there.re], [ahead[index].re, behind[partner].re]).suspicious()
+    })
+}
+
+fn tests_hide<C: Curve>(
+    curve: &mut C,
+    before: &mut Node<C>,
+    after: &mut Node<C>,
+    length: f64,
+    settings: &Settings,
+) -> Option<f64> {
+    let tests = curve.test_functions();
+    let own: Vec<usize> =
+        (0..tests.len()).filter(|&index| !tests[index].of_spectrum && !tests[index].is_turn).collect();
+    own.into_iter().find_map(|index| {
+        let (here, there) = (before.readings[index]?, after.readings[index]?);
+        let noise = here.noise.max(there.noise);
+        if here.class != there.class || here.value.abs() <= noise || there.value.abs() <= noise {
+            return None;
+        }
+        let ahead = length * before.rates(curve, length, settings)?.readings[index]?;
+        let behind = length * after.rates(curve, length, settings)?.readings[index]?;
+        Path::new([here.value, there.value], [ahead, behind]).suspicious()
+    })
+}
+
+/// Where the parameter, a cubic of the arc length, may turn twice. Its rates at both ends are known.
+fn turns_twice<C: Curve>(curve: &C, before: &Node<C>, after: &Node<C>, length: f64) -> Option<f64> {
+    let index = curve.test_functions().iter().position(|test| test.is_turn)?;
+    let (here, there) = (before.readings[index]?, after.readings[index]?);
+    if (here.value > 0.0) != (there.value > 0.0) {
+        return None;
+    }
+    let parameter = before.solution.unknown.len() - 1;
+    // The parameter in the unit of its rate.
+    let unit = before.solution.tangent[parameter] / here.value;
+    let change = (after.solution.unknown[parameter] - before.solution.unknown[parameter]) / unit;
+    let forward = along(curve, &before.solution, &after.solution.unknown);
+    let mean = change / if forward > 0.0 { forward } else { length };
+    if !mean.is_finite() {
+        return None;
+    }
+    // Derivative of the cubic: one + s (6 mean - 4 one - 2 other) + s^2 (3 one + 3 other - 6 mean).
+    let (one, other) = (here.value, there.value);
+    let (linear, quadratic) = (6.0 * mean - 4.0 * one - 2.0 * other, 3.0 * (one + other) - 6.0 * mean);
+    let s = -0.5 * linear / quadratic;
+    let extreme = one + s * (linear + s * quadratic);
+    let near = extreme * one.signum() < super::path::SUSPICIOUS * one.abs().min(other.abs());
+    (s > 0.0 && s < 1.0 && near).then(|| super::path::inside(s))
+}

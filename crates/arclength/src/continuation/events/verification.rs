@@ -1,0 +1,204 @@
+//! Whether the points that were found explain how the number of unstable directions changes; where they do not, the surroundings
+//! are searched again.
+
+use super::node::Node;
+use super::scan::Scan;
+use super::search::Event;
+use crate::continuation::Curve;
+use crate::continuation::solution::{across, along};
+use crate::error::Error;
+
+/// Times that the surroundings of a located point are searched again, and the part of them that is set aside around the
+/// point itself.
+const MOST_SEARCHES: usize = 4;
+const SURROUNDINGS: f64 = 0.02;
+/// Distance, in the metric, from one located point to the next between which there is nothing to count.
+const COINCIDENT: f64 = 1e-8;
+
+/// Whether a change of the number of unstable directions is a sum of changes, each with either sign, one of each list. An empty
+/// list explains nothing and forbids nothing.
+pub(super) fn reachable<'a>(change: usize, lists: impl Iterator<Item = &'a [usize]>) -> bool {
+    let mut sums = vec![0_isize];
+    for list in lists.filter(|list| !list.is_empty()) {
+        let next = sums.iter().flat_map(|sum| {
+            list.iter().flat_map(move |&part| [sum + part as isize, sum - part as isize])
+        });
+        let mut next: Vec<isize> = next.collect();
+        next.sort_unstable();
+        next.dedup();
+        sums = next;
+    }
+    sums.contains(&(change as isize))
+}
+
+impl<C: Curve> Scan<'_, C> {
+    /// Special points between two solutions, each with the change in the number of unstable directions that belongs to it.
+    ///
+    /// # Errors
+    /// As [`part`](Self::part).
+    pub fn verified(&mut self, ends: [&mut Node<C>; 2]) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+        self.search(ends, MOST_SEARCHES)
+    }
+
+    fn search(
+        &mut self,
+        [before, after]: [&mut Node<C>; 2],
+        searches: usize,
+    ) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+        self.trials = self.settings.most_trials;
+        self.part([before, after], 1.0)?;
+        let found = std::mem::take(&mut self.found);
+        let origin = before.solution.clone();
+        let mut placed: Vec<(f64, Event<C::Kind, C::Point>)> = found
+            .into_iter()
+            .map(|event| (along(self.curve, &origin, &event.solution.unknown), event))
+            .collect();
+        placed.sort_by(|one, other| one.0.total_cmp(&other.0));
+        placed.dedup_by(|next, previous| self.is_repeated(next, previous));
+        let mut checked = Vec::new();
+        let mut group = Vec::new();
+        let mut left = Node::new(self.curve, origin);
+        let mut rest = placed.into_iter().peekable();
+        while let Some((place, event)) = rest.next() {
+            let right = match rest.peek() {
+                None => Some(after.solution.clone()),
+                Some((next_place, next)) if next_place - place > COINCIDENT => {
+                    let ends = event.solution.unknown.iter().zip(&next.solution.unknown);
+                    let middle = ends.map(|(one, other)| 0.5 * (one + other)).collect();
+                    across(self.curve, &before.solution, middle, self.settings).ok()
+                }
+                Some(_) => None,
+            };
+            group.push(event);
+            if let Some(right) = right {
+                let right = Node::new(self.curve, right);
+                checked.extend(self.checked(std::mem::take(&mut group), &left, &right, before, searches)?);
+                left = right;
+            }
+        }
+        // What follows a last middle that could not be computed is taken as it is.
+        checked.extend(group);
+        Ok(checked)
+    }
+
+    /// Whether two neighbours are one point found twice.
+    fn is_repeated(
+        &self,
+        (next_place, next): &(f64, Event<C::Kind, C::Point>),
+        (place, event): &(f64, Event<C::Kind, C::Point>),
+    ) -> bool {
+        next.kind == event.kind
+            && next_place - place <= COINCIDENT
+            && next.is_located == event.is_located
+            && !(next.is_located && self.curve.are_distinct(&event.solution.point, &next.solution.point))
+    }
+
+    /// Whether the change of the number of unstable directions is one that the points between explain; where it is not, whether
+    /// it is larger.
+    fn surplus(
+        &self,
+        points: &[Event<C::Kind, C::Point>],
+        before: &Node<C>,
+        after: &Node<C>,
+    ) -> Option<bool> {
+        let change = Self::change_of_count(before, after)?;
+        let tests = self.curve.test_functions();
+        let lists: Option<Vec<&[usize]>> = points
+            .iter()
+            .map(|event| {
+                let test = tests.iter().find(|test| test.kind == event.kind)?;
+                event.is_located.then(|| self.curve.changes_at(&event.solution.point).unwrap_or(test.changes))
+            })
+            .collect();
+        let lists = lists?;
+        let most: usize = lists.iter().filter_map(|list| list.iter().max()).sum();
+        (!reachable(change, lists.into_iter())).then_some(change > most)
+    }
+
+    /// The points between two solutions, or what a closer search finds where they do not explain the change in the number of
+    /// unstable directions.
+    fn checked(
+        &mut self,
+        mut group: Vec<Event<C::Kind, C::Point>>,
+        left: &Node<C>,
+        right: &Node<C>,
+        origin: &Node<C>,
+        searches: usize,
+    ) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+        if let [event] = &group[..]
+            && !event.is_located
+            && Self::change_of_count(left, right) == Some(0)
+            && self.curve.test_functions().iter().any(|test| test.kind == event.kind && test.changes.contains(&2))
+        {
+            // Where symmetry makes exponents equal, the signs of test functions are rounding.
+            group.clear();
+        }
+        let Some(larger) = self.surplus(&group, left, right) else { return Ok(group) };
+        if searches > 0
+            && let Some((mut low, mut high)) = self.surroundings(&group, left, right, origin)
+        {
+            let mut left = Node::new(self.curve, left.solution.clone());
+            let mut right = Node::new(self.curve, right.solution.clone());
+            let mut found = self.search([&mut left, &mut low], searches - 1)?;
+            match self.surplus(&group, &low, &high) {
+                None => found.extend(group),
+                Some(_) => found.extend(self.search([&mut low, &mut high], searches - 1)?),
+            }
+            found.extend(self.search([&mut high, &mut right], searches - 1)?);
+            return Ok(found);
+        }
+        if larger {
+            self.locate_by_count(left, right)?;
+            return Ok(std::mem::take(&mut self.found));
+        }
+        self.miss(None, &left.solution, &right.solution);
+        Ok(group)
+    }
+
+    /// Solutions close to the first and the last point of a group, on both sides of it.
+    fn surroundings(
+        &mut self,
+        group: &[Event<C::Kind, C::Point>],
+        left: &Node<C>,
+        right: &Node<C>,
+        origin: &Node<C>,
+    ) -> Option<(Node<C>, Node<C>)> {
+        let origin = &origin.solution;
+        let places = [left, right].map(|node| along(self.curve, origin, &node.solution.unknown));
+        let aside = SURROUNDINGS * (places[1] - places[0]);
+        let shifted = |event: &Event<C::Kind, C::Point>, shift: f64| -> Vec<f64> {
+            let entries = event.solution.unknown.iter().zip(&origin.tangent);
+            entries.map(|(value, slope)| value + shift * slope).collect()
+        };
+        let (low, high) = (shifted(group.first()?, -aside), shifted(group.last()?, aside));
+        let inside = |unknown: &[f64]| {
+            let place = along(self.curve, origin, unknown);
+            place > places[0] && place < places[1]
+        };
+        if !inside(&low) || !inside(&high) {
+            return None;
+        }
+        let low = across(self.curve, origin, low, self.settings).ok()?;
+        let high = across(self.curve, origin, high, self.settings).ok()?;
+        Some((Node::new(self.curve, low), Node::new(self.curve, high)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reachable;
+
+    #[test]
+    fn changes_of_the_count_are_sums_with_either_sign() {
+        let pair: &[usize] = &[0, 2];
+        let one: &[usize] = &[1];
+        assert!(reachable(0, [].into_iter()));
+        assert!(!reachable(1, [].into_iter()));
+        assert!(reachable(1, [one].into_iter()));
+        assert!(!reachable(0, [one].into_iter()));
+        assert!(reachable(3, [one, pair].into_iter()));
+        assert!(reachable(0, [one, one].into_iter()));
+        assert!(!reachable(2, [one].into_iter()));
+        assert!(reachable(2, [pair, &[]].into_iter()));
+    }
+}

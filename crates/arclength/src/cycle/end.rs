@@ -1,0 +1,76 @@
+//! Why a branch of cycles ends, apart from the reasons that all curves share.
+
+use crate::continuation::{Explanation, Reason};
+use crate::numbers::{readable, significant};
+use serde::{Deserialize, Serialize};
+
+/// The reason of its own for which a branch of cycles ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum CycleEnd {
+    /// The amplitude went to zero: the branch ends at a Hopf point.
+    HopfPoint {
+        /// Parameter value there.
+        parameter: f64,
+        /// Angular frequency there.
+        frequency: f64,
+        /// Whether the point was located by Newton's method; otherwise both values are extrapolated from the last cycles.
+        located: bool,
+    },
+    /// The two halves of doubled cycles became equal: the branch ends at a period doubling.
+    PeriodDoubling {
+        /// Parameter value there.
+        parameter: f64,
+        /// Period of the single cycle there.
+        period: f64,
+    },
+    /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit.
+    PeriodUnbounded {
+        /// Period of the last cycle.
+        period: f64,
+        /// Parameter value of the last cycle.
+        parameter: f64,
+    },
+}
+
+impl CycleEnd {
+    /// The same end with the parameter told in another unit, such as a radius for a curvature.
+    pub fn with_parameter(mut self, convert: impl Fn(f64) -> f64) -> Self {
+        match &mut self {
+            Self::HopfPoint { parameter, .. }
+            | Self::PeriodDoubling { parameter, .. }
+            | Self::PeriodUnbounded { parameter, .. } => *parameter = convert(*parameter),
+        }
+        self
+    }
+}
+
+impl Reason for CycleEnd {
+    fn explain(&self, keys: &[&str]) -> Explanation {
+        let key = keys.first().copied().unwrap_or("the parameter");
+        match self {
+            Self::HopfPoint { parameter, frequency, located: false } => Explanation::of(format!(
+                "the cycles shrink to a Hopf point near {key} = {} with an angular frequency of about {}; it was not located",
+                significant(*parameter, 3),
+                significant(*frequency, 3)
+            ))
+            .try_this("shorter steps (--finer 10)"),
+            Self::HopfPoint { parameter, frequency, .. } => Explanation::of(format!(
+                "the cycles shrink to a Hopf point at {key} = {} with angular frequency {}",
+                readable(*parameter),
+                readable(*frequency)
+            )),
+            Self::PeriodDoubling { parameter, period } => Explanation::of(format!(
+                "the doubled cycles end at a period doubling at {key} = {}, where the single cycle has the period {}",
+                readable(*parameter),
+                readable(*period)
+            )),
+            Self::PeriodUnbounded { period, parameter } => Explanation::of(format!(
+                "the period grows without bound ({} at {key} = {}): a homoclinic or heteroclinic orbit is near",
+                readable(*period),
+                readable(*parameter)
+            )),
+        }
+    }
+}

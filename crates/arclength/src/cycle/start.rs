@@ -1,0 +1,389 @@
+//! Asking for a branch of limit cycles: where it starts, how it is followed.
+
+use super::branch::{CycleBranch, CyclePoint};
+use super::collocation::Collocation;
+use super::curve::{CycleCurve, CycleInspection, Resolution};
+use super::end::CycleEnd;
+use super::limit_cycle::LimitCycle;
+use super::orbit::Orbit;
+use super::switching::{Branching, Departure, HopfStart};
+use crate::branch::{Branch, Continuation, Label, Problem, SpecialKind, invalid, observer, request};
+use crate::continuation::events::around_start;
+use crate::continuation::{
+    BothWays, Bound, Curve, Followed, Observer, Origin, Request, Settings, Solution, Stop, both_ways,
+    exact_start, follow,
+};
+use crate::equilibrium::HopfPoint;
+use crate::erased::ErasedField;
+use crate::error::{CorrectionFailure, Error};
+use crate::field::VectorField;
+use num_complex::Complex64;
+
+/// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there.
+const FIRST_DISTANCE: f64 = 0.02;
+/// Times that this distance is reduced before a start is given up.
+const MOST_REDUCTIONS: usize = 6;
+/// Reductions of the first amplitude next to a Hopf point, and of that distance.
+const AMPLITUDE_REDUCTION: f64 = 0.25;
+const DISTANCE_REDUCTION: f64 = 0.5;
+
+/// What a branch of cycles starts from.
+#[derive(Clone, Debug)]
+pub enum CycleStart {
+    /// A Hopf point.
+    Hopf {
+        /// Equilibrium.
+        state: Vec<f64>,
+        /// Angular frequency.
+        frequency: f64,
+        /// Critical right eigenvector.
+        eigenvector: Vec<Complex64>,
+        /// Rate at which the real part of the critical eigenvalue changes with the parameter.
+        crossing_speed: f64,
+        /// Real part of the cubic coefficient of the normal form, `first_lyapunov * frequency`.
+        cubic_coefficient: f64,
+    },
+    /// A cycle.
+    Orbit(Orbit),
+    /// The branch that leaves another one at a bifurcation.
+    Branching(Branching),
+}
+
+impl From<&HopfPoint> for CycleStart {
+    fn from(point: &HopfPoint) -> Self {
+        Self::Hopf {
+            state: point.state.clone(),
+            frequency: point.frequency,
+            eigenvector: point.eigenvector.clone(),
+            // They only set the size of the first cycle.
+            crossing_speed: point.crossing_speed.unwrap_or(0.0),
+            cubic_coefficient: point.c1_real.unwrap_or(0.0),
+        }
+    }
+}
+
+/// What a branch of cycles starts from and how finely the cycles are resolved.
+#[derive(Clone, Debug)]
+pub struct CycleProblem {
+    pub(super) start: CycleStart,
+    pub(super) resolution: Resolution,
+}
+
+impl Problem for CycleProblem {
+    type Point = CyclePoint;
+
+    fn settings() -> Settings {
+        Settings::default()
+    }
+}
+
+type FollowedCycles = Followed<CycleInspection, SpecialKind, CycleEnd>;
+
+/// A branch of limit cycles to be followed.
+///
+/// ```
+/// use arclength::cycle::{CycleStart, Cycles};
+/// use arclength::{Scalar, VectorField};
+/// use num_complex::Complex64;
+///
+/// /// x' = rho x - y - x (x^2 + y^2), y' = x + rho y - y (x^2 + y^2): circles of radius sqrt(rho).
+/// struct Circle;
+/// impl VectorField for Circle {
+///     fn state_names(&self) -> Vec<String> { vec!["x".into(), "y".into()] }
+///     fn parameter_names(&self) -> Vec<String> { vec!["rho".into()] }
+///     fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+///         let growth = p[0] - s[0] * s[0] - s[1] * s[1];
+///         d[0] = growth * s[0] - s[1];
+///         d[1] = s[0] + growth * s[1];
+///     }
+/// }
+///
+/// let half = 0.5_f64.sqrt();
+/// let start = CycleStart::Hopf {
+///     state: vec![0.0; 2],
+///     frequency: 1.0,
+///     eigenvector: vec![Complex64::new(half, 0.0), Complex64::new(0.0, -half)],
+///     crossing_speed: 1.0,
+///     cubic_coefficient: -1.0,
+/// };
+/// let branch = Cycles::of(&Circle, start).parameters(&[0.0]).along("rho", 0.0..=1.0).at(&[0.25]).run()?;
+/// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).unwrap();
+/// assert!((quarter.max[0] - 0.5).abs() < 1e-8);
+/// assert_eq!(quarter.stable, Some(true));
+/// # Ok::<(), arclength::Error>(())
+/// ```
+pub type Cycles<'a> = Continuation<'a, CycleProblem>;
+
+impl<'a> Cycles<'a> {
+    /// Cycles of the field, from a start.
+    pub fn of<F: VectorField>(field: &'a F, start: CycleStart) -> Self {
+        Self::of_erased(ErasedField::of(field), CycleProblem { start, resolution: Resolution::default() })
+    }
+
+    /// Resolution of the cycles.
+    pub fn resolution(mut self, resolution: Resolution) -> Self {
+        self.start.resolution = resolution;
+        self
+    }
+
+    /// Follows the branch: from a Hopf point the one way there is, from a cycle both ways.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a start or range that makes no sense, [`Error::NotFound`] when no cycle is found
+    /// near the start.
+    pub fn run(mut self) -> Result<CycleBranch, Error> {
+        let (active, bounds) = self.active(1)?;
+        let parameters = self.checked_parameters()?;
+        let asked = Asked {
+            field: self.field,
+            parameters,
+            active: active[0],
+            bound: bounds[0],
+            resolution: self.start.resolution,
+            settings: self.settings,
+        };
+        asked.validate(&self.start.start)?;
+        let degree = match &self.start.start {
+            CycleStart::Hopf { .. } => self.start.resolution.degree,
+            CycleStart::Orbit(orbit) => orbit.degree,
+            CycleStart::Branching(branching) => branching.orbit.degree,
+        };
+        let Continuation { start, at, monitors, observer: told, settings, .. } = &mut self;
+        let range = asked.bound.width();
+        let point = |solution: &Solution<CycleInspection>, label: Option<Label>| {
+            let mut point = CyclePoint::new(solution, label, (range, degree));
+            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point
+        };
+        let request = request(&bounds, at, monitors, *settings, &point);
+        let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
+        let mut followed = asked.follow_from(&start.start, &request, &mut *observe)?;
+        drop(observe);
+        followed.mark_requested(at, |solution| bounds[0].value(&solution.unknown));
+        let active = [asked.active];
+        let mut branch = Branch::assemble(&asked.field, (&asked.parameters, &active), followed, |solution, label| {
+            point(&solution, label)
+        });
+        asked.refine_ends(&mut branch);
+        Ok(branch)
+    }
+}
+
+/// A checked request.
+pub(super) struct Asked<'a> {
+    pub field: ErasedField<'a>,
+    pub parameters: Vec<f64>,
+    pub active: usize,
+    pub bound: Bound,
+    pub resolution: Resolution,
+    pub settings: Settings,
+}
+
+impl<'a> Asked<'a> {
+    fn follow_from(
+        &self,
+        start: &CycleStart,
+        request: &Request<'_, CycleInspection>,
+        observer: &mut Observer<'_, CycleInspection, SpecialKind>,
+    ) -> Result<BothWays<CycleInspection, SpecialKind, CycleEnd>, Error> {
+        match start {
+            CycleStart::Hopf { state, frequency, eigenvector, crossing_speed, cubic_coefficient } => {
+                let hopf = HopfStart {
+                    state,
+                    frequency: *frequency,
+                    eigenvector,
+                    crossing_speed: *crossing_speed,
+                    cubic_coefficient: *cubic_coefficient,
+                };
+                Ok(BothWays::one_way(self.be_born(&hopf, request, observer)?, None))
+            }
+            CycleStart::Orbit(orbit) => self.pass_through(orbit, request, observer),
+            CycleStart::Branching(branching) if branching.doubled => {
+                Ok(BothWays::one_way(self.leave(branching, 1.0, request, observer)?, None))
+            }
+            CycleStart::Branching(branching) => {
+                let [backward, forward] =
+                    both_ways(|sign| self.leave(branching, sign, request, observer))?;
+                let middle = (self.branch_point(branching)?, Origin::Special(SpecialKind::BranchPointOfCycles));
+                if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
+                    return Ok(BothWays::one_way(forward, Some(middle)));
+                }
+                Ok(BothWays::join([backward, forward], Some(middle)))
+            }
+        }
+    }
+
+    pub(super) fn problem(&self) -> LimitCycle<'a> {
+        LimitCycle {
+            field: self.field,
+            parameters: self.parameters.clone(),
+            active: self.active,
+            scales: vec![1.0; self.field.dimension()],
+        }
+    }
+
+    fn curve(&self, start: &Departure) -> CycleCurve<'a> {
+        let collocation = Collocation::new(self.problem(), start.mesh.clone(), start.degree);
+        let mut curve = CycleCurve::new(collocation, self.resolution, self.bound.width(), &start.unknown);
+        curve.settings = self.settings;
+        curve
+    }
+
+    /// Follows the branch from a start in the direction of its tangent.
+    fn follow(
+        &self,
+        start: &Departure,
+        doubled: bool,
+        request: &Request<'_, CycleInspection>,
+        observer: &mut Observer<'_, CycleInspection, SpecialKind>,
+    ) -> Result<FollowedCycles, Error> {
+        let mut curve = self.curve(start);
+        curve.doubled = doubled;
+        follow(&mut curve, start.unknown.clone(), start.tangent.clone(), request, observer)
+    }
+
+    /// Follows the branch through a cycle both ways.
+    fn pass_through(
+        &self,
+        orbit: &Orbit,
+        request: &Request<'_, CycleInspection>,
+        observer: &mut Observer<'_, CycleInspection, SpecialKind>,
+    ) -> Result<BothWays<CycleInspection, SpecialKind, CycleEnd>, Error> {
+        let mut unknown = orbit.states.clone();
+        unknown.extend([orbit.period, self.parameters[self.active]]);
+        let mut tangent = vec![0.0; unknown.len()];
+        tangent[unknown.len() - 1] = self.bound.width();
+        let mut start = Departure { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree };
+        let directions = both_ways(|sign| {
+            if sign < 0.0 {
+                start.tangent.iter_mut().for_each(|entry| *entry = -*entry);
+                return self.follow(&start, false, request, observer);
+            }
+            match self.follow(&start, false, request, observer) {
+                // At a fold the parameter stands still: the size of the cycle changes.
+                Err(Error::NotFound { sought, cause }) => {
+                    start.tangent = orbit.deviation();
+                    start.tangent.extend([0.0, 0.0]);
+                    self.follow(&start, false, request, observer)
+                        .map_err(|_| Error::NotFound { sought, cause })
+                }
+                result => result,
+            }
+        })?;
+        let first = [directions[0].first, directions[1].first];
+        let mut followed = BothWays::join(directions, None);
+        // The mesh has moved on: the start once more, on its own.
+        let mut curve = self.curve(&start);
+        let forward: Vec<f64> =
+            followed.solutions.get(followed.start).map_or(Vec::new(), |(start, _)| start.tangent.clone());
+        let there = exact_start(&mut curve, start.unknown, start.tangent, request)?;
+        let points_forward =
+            there.tangent.len() == forward.len() && there.tangent.last().zip(forward.last()).is_some_and(|(a, b)| a * b >= 0.0);
+        let there = if points_forward { there } else { there.reversed() };
+        let events = around_start(&mut curve, &there, first, &request.bounds, &self.settings)?;
+        followed.insert_at_start(&curve, events);
+        Ok(followed)
+    }
+
+    /// Follows the branch from a Hopf point, from a smaller first cycle where there is none near that of the normal form.
+    fn be_born(
+        &self,
+        hopf: &HopfStart<'_>,
+        request: &Request<'_, CycleInspection>,
+        observer: &mut Observer<'_, CycleInspection, SpecialKind>,
+    ) -> Result<FollowedCycles, Error> {
+        // Shorter steps asked for mean a shorter first one.
+        let share = (self.settings.initial_step / Settings::default().initial_step).min(1.0);
+        let amplitude = share * hopf.first_amplitude(self.bound.width());
+        self.first_of(amplitude, AMPLITUDE_REDUCTION, |amplitude| {
+            let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
+            self.follow(&start, false, request, observer)
+        })
+    }
+
+    /// The first run that finds a cycle, at ever smaller distances.
+    fn first_of(
+        &self,
+        mut distance: f64,
+        reduction: f64,
+        mut run: impl FnMut(f64) -> Result<FollowedCycles, Error>,
+    ) -> Result<FollowedCycles, Error> {
+        let mut failure = None;
+        for _ in 0..MOST_REDUCTIONS {
+            match run(distance) {
+                Err(Error::NotFound { sought, cause }) => {
+                    failure.get_or_insert(Error::NotFound { sought, cause });
+                    distance *= reduction;
+                }
+                result => return result,
+            }
+        }
+        Err(failure.unwrap_or(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged }))
+    }
+
+    /// The bifurcation itself and the direction of the new branch.
+    fn departure(&self, branching: &Branching) -> Departure {
+        let Branching { orbit, direction, .. } = branching;
+        let mut start = Departure {
+            unknown: orbit.states.clone(),
+            tangent: direction.clone(),
+            mesh: orbit.mesh.clone(),
+            degree: orbit.degree,
+        };
+        start.unknown.extend([orbit.period, self.parameters[self.active]]);
+        start.tangent.extend([branching.period, branching.parameter]);
+        start
+    }
+
+    /// The branch point as a cycle of the branch that leaves there.
+    fn branch_point(&self, branching: &Branching) -> Result<Solution<CycleInspection>, Error> {
+        let start = self.departure(branching);
+        let mut curve = self.curve(&start);
+        let mut border = vec![0.0; start.tangent.len()];
+        curve.apply_metric(&start.tangent, &mut border);
+        let mut residual = vec![0.0; start.tangent.len()];
+        curve.estimate_error(&start.unknown);
+        // Singular there, but the multipliers do not need the border.
+        curve.factorize(&start.unknown, &border, &mut residual);
+        let mut point = curve.inspect(&start.unknown, &start.tangent, 0.0)?;
+        point.branching = branching.known_branch();
+        Ok(Solution { unknown: start.unknown, tangent: start.tangent, orientation: 0.0, point })
+    }
+
+    /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.
+    fn leave(
+        &self,
+        branching: &Branching,
+        sign: f64,
+        request: &Request<'_, CycleInspection>,
+        observer: &mut Observer<'_, CycleInspection, SpecialKind>,
+    ) -> Result<FollowedCycles, Error> {
+        let mut start = self.departure(branching);
+        let mut curve = self.curve(&start);
+        curve.count_resting_states_fully();
+        let mut image = vec![0.0; start.tangent.len()];
+        curve.apply_metric(&start.tangent, &mut image);
+        let size = start.tangent.iter().zip(&image).map(|(a, b)| a * b).sum::<f64>().sqrt();
+        start.tangent.iter_mut().for_each(|entry| *entry *= sign / size);
+        let origin = start.unknown.clone();
+        self.first_of(FIRST_DISTANCE, DISTANCE_REDUCTION, |distance| {
+            let ahead = origin.iter().zip(&start.tangent).map(|(value, slope)| value + distance * slope);
+            start.unknown = ahead.collect();
+            self.follow(&start, branching.doubled, request, observer)
+        })
+    }
+
+    fn validate(&self, start: &CycleStart) -> Result<(), Error> {
+        match start {
+            CycleStart::Orbit(orbit) => orbit.check(self.field.dimension())?,
+            CycleStart::Branching(branching) => branching.check(self.field.dimension())?,
+            CycleStart::Hopf { .. } => {}
+        }
+        let value = self.parameters[self.active];
+        let Bound { lower, upper, .. } = self.bound;
+        if !(lower..=upper).contains(&value) {
+            return Err(invalid("start value", &value.to_string(), &format!("{lower} to {upper}, inside the range")));
+        }
+        self.resolution.validate()
+    }
+}
