@@ -20,7 +20,7 @@ fn branch(tolerance: f64, degree: usize) -> CycleBranch {
     let (start, v) = wheel_start();
     Cycles::of(&Wheel, start)
         .parameters(&[v])
-        .along(0, 0.2..=9.0)
+        .along("v", 0.2..=9.0)
         .resolution(Resolution { tolerance, degree, ..Resolution::default() })
         .run()
         .expect("the branch exists")

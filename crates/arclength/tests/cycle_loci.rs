@@ -5,8 +5,8 @@ mod common;
 use approx::assert_relative_eq;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::{CycleStart, Cycles, Orbit, Special};
-use arclength::locus::{CycleLocus, CycleLocusBranch};
+use arclength::cycle::{CycleEnd, CycleStart, Cycles, Orbit};
+use arclength::locus::{CycleLocus, CycleLocusBranch, CycleLocusEnd};
 use arclength::{Scalar, VectorField};
 
 macro_rules! names {
@@ -34,7 +34,7 @@ impl VectorField for CuspOfCycles {
 }
 
 fn found(branch: &CycleLocusBranch) -> Vec<(SpecialKind, [f64; 2])> {
-    branch.special_points().map(|(kind, point)| (kind, point.values)).collect()
+    branch.special().map(|(kind, point)| (kind, point.values)).collect()
 }
 
 fn assert_at(branch: &CycleLocusBranch, kind: SpecialKind, exact: [f64; 2], tolerance: f64) {
@@ -54,10 +54,11 @@ fn cusp_of_cycles() {
         Orbit::from_time_history(&CuspOfCycles, &parameters, &[(1.0 + s).sqrt(), 0.0], 7.0).expect("a cycle");
     let branch = Cycles::of(&CuspOfCycles, CycleStart::Orbit(orbit))
         .parameters(&parameters)
-        .along(0, -0.2..=0.2)
+        .along("a", -0.2..=0.2)
         .run()
         .expect("exists");
-    let (_, fold) = branch.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    let (_, fold) =
+        branch.special().find(|(special, _)| *special == SpecialKind::FoldOfCycles).expect("a fold");
     let folds = CycleLocus::of(&CuspOfCycles)
         .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 0.27])
         .along("a", -0.2..=0.2)
@@ -119,7 +120,11 @@ fn strong_resonances_of_tori() {
         let exact = 1.0 / (8.0 * s * (1.0 + 2.0 * s));
         assert_relative_eq!(point.coefficient.expect("a coefficient"), exact, max_relative = 1e-6);
     }
-    assert!(matches!(tori.backward_stop, Stop::StrongResonance { order: 1 }), "{}", tori.backward_stop);
+    assert!(
+        matches!(tori.stops[0], Some(Stop::Problem(CycleLocusEnd::StrongResonance { order: 1 }))),
+        "{:?}",
+        tori.stops
+    );
     let at = |angle: f64| {
         let root = 0.5 * (angle / (2.0 * std::f64::consts::PI)).powi(2);
         [root * root, 0.5 * root]
@@ -139,10 +144,11 @@ fn the_one_to_one_resonance_on_the_folds() {
         .expect("a cycle");
     let branch = Cycles::of(&Resonances, CycleStart::Orbit(orbit))
         .parameters(&parameters)
-        .along(0, -0.1..=0.1)
+        .along("mu", -0.1..=0.1)
         .run()
         .expect("exists");
-    let (_, fold) = branch.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    let (_, fold) =
+        branch.special().find(|(special, _)| *special == SpecialKind::FoldOfCycles).expect("a fold");
     let folds = CycleLocus::of(&Resonances)
         .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 0.05])
         .along("mu", -0.1..=0.1)
@@ -222,7 +228,11 @@ fn tori_of_a_moebius_band_end_at_the_one_to_two_resonance() {
         .and("nu", -0.1..=0.1)
         .run()
         .expect("exists");
-    assert!(matches!(tori.forward_stop, Stop::StrongResonance { order: 2 }), "{}", tori.forward_stop);
+    assert!(
+        matches!(tori.stops[1], Some(Stop::Problem(CycleLocusEnd::StrongResonance { order: 2 }))),
+        "{:?}",
+        tori.stops
+    );
     assert_at(&tori, SpecialKind::Resonance2, [0.0, 0.0], 1e-8);
     assert_at(&tori, SpecialKind::Resonance3, [-1.0 / 36.0, 0.0], 1e-8);
     assert_at(&tori, SpecialKind::Resonance4, [-1.0 / 16.0, 0.0], 1e-8);
@@ -231,17 +241,20 @@ fn tori_of_a_moebius_band_end_at_the_one_to_two_resonance() {
 #[test]
 fn the_doublings_of_lure_form_a_closed_curve() {
     let start = common::hopf_start(&common::Lure, &[0.0; 3], &[1.0, 1.0]);
-    let branch =
-        Cycles::of(&common::Lure, start).parameters(&[1.0, 1.0]).along(0, 0.0..=1.1).run().expect("exists");
+    let branch = Cycles::of(&common::Lure, start)
+        .parameters(&[1.0, 1.0])
+        .along("alpha", 0.0..=1.1)
+        .run()
+        .expect("exists");
     let (_, doubling) =
-        branch.special_points().find(|(special, _)| *special == Special::Doubling).expect("a doubling");
+        branch.special().find(|(special, _)| *special == SpecialKind::PeriodDoubling).expect("a doubling");
     let doublings = CycleLocus::of(&common::Lure)
         .from_cycle(SpecialKind::PeriodDoubling, &doubling.orbit, &[doubling.value, 1.0])
         .along("alpha", -2.0..=2.0)
         .and("beta", 0.2..=2.0)
         .run()
         .expect("exists");
-    assert!(matches!(doublings.forward_stop, Stop::Closed), "{}", doublings.forward_stop);
+    assert!(matches!(doublings.stops[1], Some(Stop::Closed)), "{:?}", doublings.stops);
     // With alpha = 0 the system is reversible and multipliers come in reciprocal pairs: two of them are -1.
     let points = found(&doublings);
     assert_eq!(points.len(), 2, "{points:?}");
@@ -275,10 +288,9 @@ fn folds_and_tori_of_a_reaction_meet_in_the_same_resonance() {
     let parameters = [0.712475372576, 0.5];
     let start = common::hopf_start(&Peroxidase, &[1.808301, 25.573303, 0.015245858, 0.17761127], &parameters);
     let branch =
-        Cycles::of(&Peroxidase, start).parameters(&parameters).along(0, 0.5..=10.0).run().expect("exists");
-    let follow = |kind: SpecialKind, sought: fn(Special) -> bool| {
-        let (_, cycle) =
-            branch.special_points().find(|(special, _)| sought(*special)).expect("a special cycle");
+        Cycles::of(&Peroxidase, start).parameters(&parameters).along("k7", 0.5..=10.0).run().expect("exists");
+    let follow = |kind: SpecialKind, sought: fn(SpecialKind) -> bool| {
+        let (_, cycle) = branch.special().find(|(special, _)| sought(*special)).expect("a special cycle");
         CycleLocus::of(&Peroxidase)
             .from_cycle(kind, &cycle.orbit, &[cycle.value, 0.5])
             .along("k7", 0.5..=10.0)
@@ -286,8 +298,8 @@ fn folds_and_tori_of_a_reaction_meet_in_the_same_resonance() {
             .run()
             .expect("exists")
     };
-    let folds = follow(SpecialKind::FoldOfCycles, |special| special == Special::Fold);
-    let tori = follow(SpecialKind::Torus, |special| matches!(special, Special::Torus { .. }));
+    let folds = follow(SpecialKind::FoldOfCycles, |special| special == SpecialKind::FoldOfCycles);
+    let tori = follow(SpecialKind::Torus, |special| special == SpecialKind::Torus);
     let resonances = |curve: &CycleLocusBranch| -> Vec<[f64; 2]> {
         found(curve)
             .into_iter()
@@ -341,12 +353,15 @@ fn folds_of_cycles_end_at_a_generalised_hopf_point() {
         .and("b", -1.0..=1.5)
         .run()
         .expect("exists");
-    let ends = [(&folds.backward_stop, folds.points.first()), (&folds.forward_stop, folds.points.last())];
+    let ends =
+        [(folds.stops[0].as_ref(), folds.points.first()), (folds.stops[1].as_ref(), folds.points.last())];
     let (stop, point) = ends
         .into_iter()
-        .find(|(stop, _)| matches!(stop, Stop::GeneralizedHopfPoint { .. }))
+        .find(|(stop, _)| matches!(stop, Some(Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { .. }))))
         .expect("a generalised Hopf point");
-    let Stop::GeneralizedHopfPoint { values, frequency } = stop else { unreachable!() };
+    let Some(Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { values, frequency })) = stop else {
+        unreachable!()
+    };
     assert!(values.iter().all(|value| value.abs() < 1e-10), "{values:?}");
     assert_relative_eq!(*frequency, 2.0, max_relative = 1e-10);
     let point = point.expect("not empty");
@@ -401,17 +416,20 @@ fn a_branch_of_cycles_starts_at_its_fold() {
     let branch = |orbit: &Orbit, value: f64| {
         Cycles::of(&Bautin, CycleStart::Orbit(orbit.clone()))
             .parameters(&[value, parameters[1]])
-            .along(0, -1.0..=1.0)
+            .along("a", -1.0..=1.0)
             .run()
             .expect("exists")
     };
     let first = branch(&orbit, parameters[0]);
-    let (_, fold) = first.special_points().find(|(special, _)| *special == Special::Fold).expect("a fold");
+    let (_, fold) =
+        first.special().find(|(special, _)| *special == SpecialKind::FoldOfCycles).expect("a fold");
     assert!((fold.value + 0.25).abs() < 1e-10);
     let second = branch(&fold.orbit, fold.value);
-    let stops = [second.stops.0.as_ref(), Some(&second.stops.1)];
+    let stops = &second.stops;
     assert!(
-        stops.iter().any(|stop| matches!(stop, Some(Stop::HopfPoint { located: true, .. }))),
+        stops
+            .iter()
+            .any(|stop| matches!(stop, Some(Stop::Problem(CycleEnd::HopfPoint { located: true, .. })))),
         "{stops:?}"
     );
     assert!(stops.iter().any(|stop| matches!(stop, Some(Stop::RangeEnd { .. }))), "{stops:?}");
@@ -427,14 +445,14 @@ fn an_observer_ends_a_branch_and_what_there_is_stays() {
     let mut told = 0;
     let branch = Cycles::of(&Bautin, CycleStart::Orbit(orbit))
         .parameters(&parameters)
-        .along(0, -1.0..=1.0)
-        .observer(|_, _| {
+        .along("a", -1.0..=1.0)
+        .observer(|_| {
             told += 1;
             if told < 5 { std::ops::ControlFlow::Continue(()) } else { std::ops::ControlFlow::Break(()) }
         })
         .run()
         .expect("exists");
-    assert!(matches!(branch.stops, (Some(Stop::Interrupted), Stop::Interrupted)), "{:?}", branch.stops);
+    assert!(matches!(branch.stops, [Some(Stop::Interrupted), Some(Stop::Interrupted)]), "{:?}", branch.stops);
     assert_eq!(branch.points.len(), 5);
 }
 
@@ -500,12 +518,18 @@ fn folds_of_doubled_cycles_end_at_the_generalised_period_doubling() {
         .and("c", -1.5..=1.5)
         .run()
         .expect("exists");
-    let ends = [(&folds.backward_stop, folds.points.first()), (&folds.forward_stop, folds.points.last())];
+    let ends =
+        [(folds.stops[0].as_ref(), folds.points.first()), (folds.stops[1].as_ref(), folds.points.last())];
     let (stop, end) = ends
         .into_iter()
-        .find(|(stop, _)| matches!(stop, Stop::PeriodDoubling { .. }))
-        .unwrap_or_else(|| panic!("{} and {}", folds.backward_stop, folds.forward_stop));
-    let Stop::PeriodDoubling { parameter, period } = stop else { unreachable!() };
+        .find(|(stop, _)| {
+            matches!(stop, Some(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { .. }))))
+        })
+        .unwrap_or_else(|| panic!("{:?}", folds.stops));
+    let Some(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { parameter, period }))) = stop
+    else {
+        unreachable!()
+    };
     assert!(parameter.abs() < 1e-8, "{parameter}");
     assert_relative_eq!(*period, 2.0 * std::f64::consts::PI, max_relative = 1e-8);
     let end = end.expect("not empty");
@@ -533,7 +557,7 @@ fn tori_go_on_where_their_multipliers_pass_through_minus_one() {
         .and("w", 0.2..=0.9)
         .run()
         .expect("exists");
-    for stop in [&tori.backward_stop, &tori.forward_stop] {
+    for stop in tori.stops.iter().flatten() {
         assert!(matches!(stop, Stop::RangeEnd { .. }), "{stop}");
     }
     for point in &tori.points {
@@ -601,7 +625,8 @@ fn a_test_function_that_changes_its_sign_without_a_point_is_named() {
     let changes = doublings.points.windows(2).filter(
         |pair| matches!((resonance(&pair[0]), resonance(&pair[1])), (Some(a), Some(b)) if a * b < 0.0),
     );
-    let named = doublings.unlocated.iter().filter(|change| change.kind == SpecialKind::Resonance2).count();
+    let named =
+        doublings.unlocated.iter().filter(|change| change.kind == Some(SpecialKind::Resonance2)).count();
     let located = found(&doublings).len();
     assert!(changes.count() > 0);
     assert!(named + located > 0, "{:?}", doublings.unlocated);

@@ -3,7 +3,8 @@
 mod common;
 
 use approx::assert_relative_eq;
-use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Special};
+use arclength::branch::SpecialKind;
+use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::{Scalar, VectorField};
 use common::{Lure, hopf_start};
 
@@ -31,8 +32,8 @@ impl VectorField for ShearedFold {
     }
 }
 
-fn special(branch: &CycleBranch, sought: impl Fn(Special) -> bool) -> &CyclePoint {
-    branch.special_points().find(|(special, _)| sought(*special)).expect("a special cycle").1
+fn special(branch: &CycleBranch, sought: impl Fn(SpecialKind) -> bool) -> &CyclePoint {
+    branch.special().find(|(special, _)| sought(*special)).expect("a special cycle").1
 }
 
 fn coefficient(point: &CyclePoint, name: &str) -> f64 {
@@ -45,10 +46,10 @@ fn fold_of_a_sheared_rotation() {
         let start = hopf_start(&ShearedFold, &[0.0, 0.0], &[0.0, shear]);
         let branch = Cycles::of(&ShearedFold, start)
             .parameters(&[0.0, shear])
-            .along(0, -1.0..=0.5)
+            .along("rho", -1.0..=0.5)
             .run()
             .expect("exists");
-        let fold = special(&branch, |special| special == Special::Fold);
+        let fold = special(&branch, |special| special == SpecialKind::FoldOfCycles);
         assert_relative_eq!(fold.value, -0.25, max_relative = 1e-9);
         // r'' = 3 * 2 r - 20 r^3 at r^2 = 1/2, and d tau/dt = speed(r) / speed(r0).
         let r = 0.5_f64.sqrt();
@@ -96,10 +97,10 @@ fn doubling_of_a_moebius_band() {
         let orbit = Orbit::from_time_history(&Moebius, &parameters, &[1.0, 0.0, 0.0], 7.0).expect("a cycle");
         let branch = Cycles::of(&Moebius, CycleStart::Orbit(orbit))
             .parameters(&parameters)
-            .along(0, -0.5..=0.5)
+            .along("mu", -0.5..=0.5)
             .run()
             .expect("exists");
-        let doubling = special(&branch, |special| special == Special::Doubling);
+        let doubling = special(&branch, |special| special == SpecialKind::PeriodDoubling);
         assert!(doubling.value.abs() < 1e-9, "{}", doubling.value);
         assert_relative_eq!(coefficient(doubling, "cubic_coefficient"), c, max_relative = 1e-6);
         // The doubled cycles have xi^2 = -mu / c and the period 4 pi / (1 + s xi^2).
@@ -107,7 +108,7 @@ fn doubling_of_a_moebius_band() {
         let mu = -0.1 * c.signum();
         let doubled = Cycles::of(&Moebius, start)
             .parameters(&[doubling.value, c, s])
-            .along(0, -0.5..=0.5)
+            .along("mu", -0.5..=0.5)
             .at(&[mu])
             .run()
             .expect("exists");
@@ -126,15 +127,15 @@ fn doubling_of_the_lure_system_agrees_with_its_branches() {
     let start = hopf_start(&Lure, &[0.0; 3], &[1.0, 1.0]);
     let branch = Cycles::of(&Lure, start)
         .parameters(&[1.0, 1.0])
-        .along(0, -1.1..=1.1)
+        .along("alpha", -1.1..=1.1)
         .at(&values)
         .run()
         .expect("exists");
-    let doubling = special(&branch, |special| special == Special::Doubling);
+    let doubling = special(&branch, |special| special == SpecialKind::PeriodDoubling);
     let start = CycleStart::Branching(doubling.branching.clone().expect("a branch"));
     let doubled = Cycles::of(&Lure, start)
         .parameters(&[doubling.value, 1.0])
-        .along(0, 0.5..=0.7)
+        .along("alpha", 0.5..=0.7)
         .at(&values)
         .run()
         .expect("exists");
@@ -199,10 +200,10 @@ fn torus_of_two_oscillators() {
         Orbit::from_time_history(&TwoOscillators, &[-0.1], &[1.0, 0.0, 0.3, 0.0], 7.0).expect("a cycle");
     let branch = Cycles::of(&TwoOscillators, CycleStart::Orbit(orbit))
         .parameters(&[-0.1])
-        .along(0, -0.3..=0.3)
+        .along("mu", -0.3..=0.3)
         .run()
         .expect("exists");
-    let torus = special(&branch, |special| matches!(special, Special::Torus { .. }));
+    let torus = special(&branch, |special| special == SpecialKind::Torus);
     assert!(torus.value.abs() < 1e-9);
     let angle = 2.0 * std::f64::consts::PI * 0.3;
     assert_relative_eq!(coefficient(torus, "argument"), angle, max_relative = 1e-9);
@@ -244,15 +245,15 @@ fn branch_points_and_the_other_branch() {
             Orbit::from_time_history(&Symmetric, &parameters, &[1.0, 0.0, 0.0], 7.0).expect("a cycle");
         let branch = Cycles::of(&Symmetric, CycleStart::Orbit(orbit))
             .parameters(&parameters)
-            .along(0, -0.5..=0.5)
+            .along("mu", -0.5..=0.5)
             .run()
             .expect("exists");
-        let point = special(&branch, |special| special == Special::BranchPoint);
+        let point = special(&branch, |special| special == SpecialKind::BranchPointOfCycles);
         assert!(point.value.abs() < 1e-9, "{}", point.value);
         let start = CycleStart::Branching(point.branching.clone().expect("a branch"));
         let other = Cycles::of(&Symmetric, start)
             .parameters(&[point.value, q])
-            .along(0, -0.5..=0.5)
+            .along("mu", -0.5..=0.5)
             .run()
             .expect("exists");
         let heights: Vec<f64> = other.points.iter().map(|point| point.max[2]).collect();

@@ -92,7 +92,7 @@ fn wheel_branch_agrees_with_single_shooting() {
     let (start, v) = wheel_start();
     let branch = Cycles::of(&Wheel, start)
         .parameters(&[v])
-        .along(0, 0.2..=9.0)
+        .along("v", 0.2..=9.0)
         .at(&[1.0, 2.0, 4.0, 6.0, 8.0])
         .run()
         .expect("the branch exists");
@@ -110,7 +110,7 @@ fn wheel_branch_agrees_with_single_shooting() {
         assert!(cycle.error_estimate < 1e-8);
         assert_eq!(cycle.stable, Some(false));
     }
-    assert!(branch.special_points().next().is_none(), "{:?}", branch.special_points().next());
-    assert!(matches!(branch.stops.1, Stop::RangeEnd { value: 0.2, .. }));
+    assert!(branch.special().next().is_none(), "{:?}", branch.special().next());
+    assert!(matches!(branch.stops[1], Some(Stop::RangeEnd { value: 0.2, .. })));
     assert!(branch.points.len() < 60);
 }

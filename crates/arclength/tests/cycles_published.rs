@@ -3,8 +3,9 @@
 mod common;
 
 use approx::assert_relative_eq;
+use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::{CycleStart, Cycles, Orbit, Special};
+use arclength::cycle::{CycleEnd, CycleStart, Cycles, Orbit};
 use arclength::integration::{Integrator, autonomous};
 use common::{Brusselator, Lorenz, Lure, RadialCycle, VanDerPol, hopf_start};
 
@@ -18,7 +19,7 @@ fn van_der_pol_periods() {
     let orbit = Orbit::from_time_history(&VanDerPol, &parameters, &settled.state, 20.0).expect("a cycle");
     let branch = Cycles::of(&VanDerPol, CycleStart::Orbit(orbit))
         .parameters(&parameters)
-        .along(0, 0.5..=5.0)
+        .along("mu", 0.5..=5.0)
         .at(&[1.0, 5.0])
         .run()
         .expect("exists");
@@ -32,7 +33,7 @@ fn radial_cycle_has_its_exact_multiplier() {
     let start = hopf_start(&RadialCycle, &[0.0, 0.0], &[0.0]);
     let branch = Cycles::of(&RadialCycle, start)
         .parameters(&[0.0])
-        .along(0, 0.0..=2.0)
+        .along("rho", 0.0..=2.0)
         .at(&[0.5, 2.0])
         .run()
         .expect("exists");
@@ -48,16 +49,18 @@ fn radial_cycle_has_its_exact_multiplier() {
 #[test]
 fn lure_period_doubling() {
     let start = hopf_start(&Lure, &[0.0, 0.0, 0.0], &[1.0, 1.0]);
-    let branch = Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along(0, -1.1..=1.1).run().expect("exists");
+    let branch =
+        Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along("alpha", -1.1..=1.1).run().expect("exists");
     let doublings: Vec<_> =
-        branch.special_points().filter(|(special, _)| *special == Special::Doubling).collect();
+        branch.special().filter(|(special, _)| *special == SpecialKind::PeriodDoubling).collect();
     assert_eq!(doublings.len(), 2);
     for (_, cycle) in doublings {
         assert_relative_eq!(cycle.value.abs(), 0.6303020062, max_relative = 1e-9);
         assert_relative_eq!(cycle.period, 6.364071339, max_relative = 1e-9);
     }
-    let Stop::HopfPoint { parameter, frequency, located: true } = branch.stops.1 else {
-        panic!("{}", branch.stops.1)
+    let Some(Stop::Problem(CycleEnd::HopfPoint { parameter, frequency, located: true })) = branch.stops[1]
+    else {
+        panic!("{:?}", branch.stops)
     };
     assert_relative_eq!(parameter, -1.0, max_relative = 1e-12);
     assert_relative_eq!(frequency, 1.0, max_relative = 1e-12);
@@ -66,24 +69,25 @@ fn lure_period_doubling() {
 #[test]
 fn lure_doubled_branch() {
     let start = hopf_start(&Lure, &[0.0, 0.0, 0.0], &[1.0, 1.0]);
-    let branch = Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along(0, -1.1..=1.1).run().expect("exists");
+    let branch =
+        Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along("alpha", -1.1..=1.1).run().expect("exists");
     let (_, doubling) =
-        branch.special_points().find(|(special, _)| *special == Special::Doubling).expect("a doubling");
+        branch.special().find(|(special, _)| *special == SpecialKind::PeriodDoubling).expect("a doubling");
     let doubled = Cycles::of(&Lure, CycleStart::Branching(doubling.branching.clone().expect("a branch")))
         .parameters(&[doubling.value, 1.0])
-        .along(0, -1.1..=1.1)
+        .along("alpha", -1.1..=1.1)
         .run()
         .expect("exists");
-    let found = |sought: Special| -> Vec<(f64, f64)> {
-        let points = doubled.special_points().filter(|(special, _)| *special == sought);
+    let found = |sought: SpecialKind| -> Vec<(f64, f64)> {
+        let points = doubled.special().filter(|(special, _)| *special == sought);
         points.map(|(_, cycle)| (cycle.value, cycle.period)).collect()
     };
-    let folds = found(Special::Fold);
+    let folds = found(SpecialKind::FoldOfCycles);
     assert_eq!(folds.len(), 2);
     for (value, _) in &folds {
         assert_relative_eq!(value.abs(), 0.0449491239, max_relative = 1e-8);
     }
-    let doublings = found(Special::Doubling);
+    let doublings = found(SpecialKind::PeriodDoubling);
     assert!(
         doublings.iter().any(
             |(value, period)| (value + 0.0447196616).abs() < 1e-9 && (period - 11.062836564).abs() < 1e-8
@@ -91,7 +95,9 @@ fn lure_doubled_branch() {
         "{doublings:?}"
     );
     // The other end is the doubling on the other side: reversing time mirrors the system.
-    let Stop::PeriodDoubling { parameter, period } = doubled.stops.1 else { panic!("{}", doubled.stops.1) };
+    let Some(Stop::Problem(CycleEnd::PeriodDoubling { parameter, period })) = doubled.stops[1] else {
+        panic!("{:?}", doubled.stops)
+    };
     assert_relative_eq!(parameter, -doubling.value, max_relative = 1e-9);
     assert_relative_eq!(period, doubling.period, max_relative = 1e-9);
     assert!(doubled.unlocated.is_empty());
@@ -102,8 +108,13 @@ fn lorenz_subcritical_branch_and_homoclinic() {
     let rho: f64 = 470.0 / 19.0;
     let x = (8.0 / 3.0 * (rho - 1.0)).sqrt();
     let start = hopf_start(&Lorenz, &[x, x, rho - 1.0], &[rho]);
-    let branch = Cycles::of(&Lorenz, start).parameters(&[rho]).along(0, 5.0..=30.0).run().expect("exists");
-    assert!(matches!(branch.stops.1, Stop::PeriodUnbounded { .. }), "{}", branch.stops.1);
+    let branch =
+        Cycles::of(&Lorenz, start).parameters(&[rho]).along("rho", 5.0..=30.0).run().expect("exists");
+    assert!(
+        matches!(branch.stops[1], Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. }))),
+        "{:?}",
+        branch.stops
+    );
     let last = branch.points.last().expect("points");
     assert_relative_eq!(last.value, 13.926557, max_relative = 1e-5);
 }
@@ -112,8 +123,8 @@ fn lorenz_subcritical_branch_and_homoclinic() {
 fn brusselator_branch_reaches_its_end() {
     let start = hopf_start(&Brusselator, &[1.0, 2.0], &[1.0, 2.0]);
     let branch =
-        Cycles::of(&Brusselator, start).parameters(&[1.0, 2.0]).along(1, 1.5..=5.0).run().expect("exists");
-    assert!(matches!(branch.stops.1, Stop::RangeEnd { value: 5.0, .. }));
+        Cycles::of(&Brusselator, start).parameters(&[1.0, 2.0]).along("b", 1.5..=5.0).run().expect("exists");
+    assert!(matches!(branch.stops[1], Some(Stop::RangeEnd { value: 5.0, .. })));
     assert!(branch.points.iter().all(|cycle| cycle.stable == Some(true) && cycle.error_estimate < 1e-8));
     // With a = 1, b = 5 integration gives a relaxation oscillation.
     let last = branch.points.last().expect("points");

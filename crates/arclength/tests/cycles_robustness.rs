@@ -36,7 +36,7 @@ fn check(field: &Polynomial, start: CycleStart) -> Result<(), TestCaseError> {
     let settings = Settings { most_steps: 15, ..Settings::default() };
     let run = Cycles::of(field, start)
         .parameters(&[0.1])
-        .along(0, -1.0..=1.0)
+        .along("p", -1.0..=1.0)
         .resolution(resolution)
         .settings(settings)
         .run();
@@ -90,7 +90,7 @@ fn orbits_that_do_not_fit_are_refused() {
     let orbit =
         Orbit { mesh: vec![0.0, 0.5, 1.0], degree: 3, dimension: 3, states: vec![0.0; 24], period: 1.0 };
     let run = |orbit: Orbit| {
-        let cycles = Cycles::of(&field, CycleStart::Orbit(orbit)).parameters(&[0.0]).along(0, -1.0..=1.0);
+        let cycles = Cycles::of(&field, CycleStart::Orbit(orbit)).parameters(&[0.0]).along("p", -1.0..=1.0);
         matches!(cycles.run(), Err(Error::Invalid { .. }))
     };
     for wrong in [

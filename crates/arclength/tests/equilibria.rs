@@ -84,7 +84,7 @@ fn the_wheel_has_its_hopf_point_at_the_critical_speed() {
         .unwrap();
     assert_eq!(kinds(&branch), ["HB1"]);
     let hopf = branch.hopf_points().next().unwrap();
-    assert_relative_eq!(hopf.parameter, 8.43103697014, max_relative = 1e-11);
+    assert_relative_eq!(hopf.value, 8.43103697014, max_relative = 1e-11);
     // From the closed form of the characteristic polynomial.
     assert_relative_eq!(hopf.frequency, 43.255_392_119_586_26, max_relative = 1e-12);
     assert_relative_eq!(hopf.first_lyapunov.unwrap(), 6.520929e-5, max_relative = 1e-7);
@@ -94,17 +94,17 @@ fn the_wheel_has_its_hopf_point_at_the_critical_speed() {
     assert!(hopf.location_error < 1e-11, "{:e}", hopf.location_error);
     assert!(hopf.state[0].abs() < 1e-14);
     for point in &branch.points {
-        let expected = match point.parameter.total_cmp(&hopf.parameter) {
+        let expected = match point.value.total_cmp(&hopf.value) {
             std::cmp::Ordering::Less => Some(0),
             std::cmp::Ordering::Greater => Some(2),
             std::cmp::Ordering::Equal => continue,
         };
-        assert_eq!(point.stability.unstable_dimension(), expected, "at {}", point.parameter);
+        assert_eq!(point.stability.unstable_dimension(), expected, "at {}", point.value);
     }
-    assert!(matches!(branch.backward_stop, Stop::RangeEnd { value: 0.1, .. }));
-    assert!(matches!(branch.forward_stop, Stop::RangeEnd { value: 12.0, .. }));
-    assert_eq!(branch.points[0].parameter, 0.1);
-    assert_eq!(branch.points[branch.start].parameter, 1.0);
+    assert!(matches!(branch.stops[0], Some(Stop::RangeEnd { value: 0.1, .. })));
+    assert!(matches!(branch.stops[1], Some(Stop::RangeEnd { value: 12.0, .. })));
+    assert_eq!(branch.points[0].value, 0.1);
+    assert_eq!(branch.points[branch.start].value, 1.0);
 }
 
 #[test]
@@ -117,12 +117,12 @@ fn lure_has_a_hopf_point_and_a_neutral_saddle() {
         .unwrap();
     let hopf: Vec<_> = branch.hopf_points().collect();
     assert_eq!(hopf.len(), 1);
-    assert_relative_eq!(hopf[0].parameter, 1.0, max_relative = 1e-14);
+    assert_relative_eq!(hopf[0].value, 1.0, max_relative = 1e-14);
     assert_relative_eq!(hopf[0].frequency, 1.0, max_relative = 1e-14);
     assert_relative_eq!(hopf[0].first_lyapunov.unwrap(), -0.3, max_relative = 1e-13);
     assert_eq!(hopf[0].criticality, Criticality::Supercritical);
     assert_eq!(kinds(&branch), ["AT1", "HB1", "AT2"]);
-    assert_eq!(branch.labelled("AT2".parse().unwrap()).unwrap().parameter, 2.5);
+    assert_eq!(branch.labelled("AT2".parse().unwrap()).unwrap().value, 2.5);
     // The other equilibrium, x = 1, has the characteristic polynomial s^3 + alpha s^2 + beta s - 1: eigenvalues
     // +-i and 1 at alpha = -1, beta = 1, but +-sqrt(2) and -1/2 at alpha = 1/2, beta = -2.
     let run = |beta: f64| {
@@ -130,12 +130,12 @@ fn lure_has_a_hopf_point_and_a_neutral_saddle() {
         start.along("alpha", -3.0..=3.0).run().unwrap()
     };
     assert_eq!(kinds(&run(1.0)), ["HB1"]);
-    assert_relative_eq!(run(1.0).hopf_points().next().unwrap().parameter, -1.0, max_relative = 1e-14);
+    assert_relative_eq!(run(1.0).hopf_points().next().unwrap().value, -1.0, max_relative = 1e-14);
     let branch = run(-2.0);
     assert_eq!(kinds(&branch), ["NSE1"]);
     match branch.special_points().next() {
         Some(SpecialPoint::NeutralSaddle(saddle)) => {
-            assert_relative_eq!(saddle.parameter, 0.5, max_relative = 1e-14);
+            assert_relative_eq!(saddle.value, 0.5, max_relative = 1e-14);
             assert_relative_eq!(saddle.eigenvalue, 2.0_f64.sqrt(), max_relative = 1e-14);
         }
         other => panic!("{other:?}"),
@@ -152,7 +152,7 @@ fn brusselator_has_its_hopf_point_at_two() {
         .unwrap();
     let hopf: Vec<_> = branch.hopf_points().collect();
     assert_eq!(kinds(&branch), ["HB1"]);
-    assert_relative_eq!(hopf[0].parameter, 2.0, max_relative = 1e-14);
+    assert_relative_eq!(hopf[0].value, 2.0, max_relative = 1e-14);
     assert_relative_eq!(hopf[0].frequency, 1.0, max_relative = 1e-14);
     assert_relative_eq!(hopf[0].crossing_speed.unwrap(), 0.5, max_relative = 1e-13);
     assert_relative_eq!(hopf[0].c1_real.unwrap(), -0.5, max_relative = 1e-13);
@@ -162,8 +162,7 @@ fn brusselator_has_its_hopf_point_at_two() {
 fn reaction_has_its_published_folds_and_hopf_points() {
     let run =
         |b: f64| Equilibria::of(&Reaction).parameters(&[0.0, b, 3.0]).along("D", 0.0..=0.4).run().unwrap();
-    let values =
-        |branch: &EquilibriumBranch| branch.hopf_points().map(|hopf| hopf.parameter).collect::<Vec<_>>();
+    let values = |branch: &EquilibriumBranch| branch.hopf_points().map(|hopf| hopf.value).collect::<Vec<_>>();
     let branch = run(14.0);
     assert_eq!(kinds(&branch), ["HB1", "HB2"]);
     assert_relative_eq!(values(&branch)[0], 0.16504204532, max_relative = 1e-10);
@@ -175,8 +174,8 @@ fn reaction_has_its_published_folds_and_hopf_points() {
     let branch = run(18.0);
     assert_eq!(kinds(&branch), ["HB1", "LP1", "LP2", "HB2"]);
     let folds: Vec<_> = branch.folds().collect();
-    assert_relative_eq!(folds[0].parameter, (-1.5_f64).exp() / 2.0, max_relative = 1e-13);
-    assert_relative_eq!(folds[1].parameter, 2.0 * (-3.0_f64).exp(), max_relative = 1e-13);
+    assert_relative_eq!(folds[0].value, (-1.5_f64).exp() / 2.0, max_relative = 1e-13);
+    assert_relative_eq!(folds[1].value, 2.0 * (-3.0_f64).exp(), max_relative = 1e-13);
 }
 
 #[test]
@@ -185,20 +184,20 @@ fn lorenz_has_hopf_points_on_both_branches_through_the_pitchfork() {
     let trivial = Equilibria::of(&Lorenz).parameters(&parameters).along("rho", 0.0..=30.0).run().unwrap();
     assert_eq!(kinds(&trivial), ["BP1", "NSE1"]);
     let pitchfork = trivial.branch_points().next().unwrap();
-    assert_relative_eq!(pitchfork.parameter, 1.0, max_relative = 1e-14);
+    assert_relative_eq!(pitchfork.value, 1.0, max_relative = 1e-14);
     assert_eq!(pitchfork.crossing, Crossing::Pitchfork);
     assert!(pitchfork.cubic.unwrap() < 0.0);
     let branch = Equilibria::of(&Lorenz).from_branch_point(pitchfork).along("rho", 0.0..=30.0).run().unwrap();
     assert_eq!(kinds(&branch), ["HB1", "BP1", "HB2"]);
     for hopf in branch.hopf_points() {
-        assert_relative_eq!(hopf.parameter, 470.0 / 19.0, max_relative = 1e-13);
+        assert_relative_eq!(hopf.value, 470.0 / 19.0, max_relative = 1e-13);
         assert_eq!(hopf.criticality, Criticality::Subcritical);
     }
     for point in &branch.points {
-        assert!((point.state[2] - (point.parameter - 1.0)).abs() < 1e-9 * point.parameter);
+        assert!((point.state[2] - (point.value - 1.0)).abs() < 1e-9 * point.value);
         if point.label.is_none() {
-            let expected = if point.parameter < 470.0 / 19.0 { 0 } else { 2 };
-            assert_eq!(point.stability.unstable_dimension(), Some(expected), "at {}", point.parameter);
+            let expected = if point.value < 470.0 / 19.0 { 0 } else { 2 };
+            assert_eq!(point.stability.unstable_dimension(), Some(expected), "at {}", point.value);
         }
     }
 }
@@ -214,17 +213,17 @@ fn predator_has_its_published_special_points() {
         .unwrap();
     let hopf: Vec<_> = branch.hopf_points().collect();
     assert_eq!(kinds(&branch), ["HB1", "BP1"]);
-    assert_relative_eq!(hopf[0].parameter, 0.67159384747883, max_relative = 1e-13);
+    assert_relative_eq!(hopf[0].value, 0.67159384747883, max_relative = 1e-13);
     assert_relative_eq!(hopf[0].frequency, 0.6047822219, max_relative = 1e-10);
     let branch = Equilibria::of(&Predator).parameters(&parameters).along("p1", 0.0..=0.9).run().unwrap();
     assert_eq!(kinds(&branch), ["NSE1", "BP1"]);
     let branch_points: Vec<_> = branch.branch_points().collect();
-    assert_relative_eq!(branch_points[0].parameter, 0.6, max_relative = 1e-13);
+    assert_relative_eq!(branch_points[0].value, 0.6, max_relative = 1e-13);
     assert_eq!(branch_points[0].crossing, Crossing::Transcritical);
     let prey =
         Equilibria::of(&Predator).from_branch_point(branch_points[0]).along("p1", 0.0..=0.9).run().unwrap();
     // Both real eigenvalues pass through each other's negative on the way, twice.
     assert_eq!(kinds(&prey), ["BP1", "NSE1", "BP2", "LP1", "NSE2"]);
     let folds: Vec<_> = prey.folds().collect();
-    assert_relative_eq!(folds[0].parameter, 0.83292932223, max_relative = 1e-10);
+    assert_relative_eq!(folds[0].value, 0.83292932223, max_relative = 1e-10);
 }

@@ -27,7 +27,7 @@ fn only(branch: &EquilibriumLocusBranch, kind: SpecialKind) -> &CodimensionTwoPo
 }
 
 fn reaches_range_ends(branch: &EquilibriumLocusBranch) {
-    for stop in [&branch.backward_stop, &branch.forward_stop] {
+    for stop in branch.stops.iter().flatten() {
         assert!(matches!(stop, Stop::RangeEnd { .. }), "{stop}");
     }
 }
@@ -445,8 +445,8 @@ fn branch_points_persist_by_symmetry_only() {
     let branch = Equilibria::of(&Imperfect).parameters(&[-1.0, 0.0]).along("p", -1.0..=1.0).run().unwrap();
     let locus = EquilibriumLocus::of(&Imperfect).from_branch_point(branch.branch_points().next().unwrap());
     let locus = locus.along("p", -1.0..=1.0).and("q", -1.0..=1.0).run().unwrap();
-    assert!(matches!(locus.forward_stop, Stop::Failed(_)), "{}", locus.forward_stop);
-    assert!(locus.forward_stop.to_string().contains("breaks up"));
+    assert!(matches!(locus.stops[1], Some(Stop::Failed(_))), "{:?}", locus.stops);
+    assert!(locus.stops[1].as_ref().is_some_and(|stop| stop.to_string().contains("breaks up")));
 }
 
 #[test]
@@ -520,7 +520,7 @@ proptest! {
         let curves = folds.chain(branch.hopf_points().take(1).map(|hopf| ask().from_hopf(hopf)));
         for curve in curves {
             let locus = curve.run().unwrap();
-            for stop in [&locus.forward_stop, &locus.backward_stop] {
+            for stop in locus.stops.iter().flatten() {
                 prop_assert!(matches!(stop, Stop::RangeEnd { .. } | Stop::Closed), "{} {:?}", stop, labels(&locus));
             }
             for point in locus.special_points() {

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use arclength::branch::Stability;
 use arclength::continuation::Stop;
-use arclength::equilibrium::{Equilibria, EquilibriumBranch, SpecialPoint, find_equilibrium};
+use arclength::equilibrium::{Equilibria, EquilibriumBranch, EquilibriumEnd, SpecialPoint, find_equilibrium};
 use arclength::linear::eigenvalues::eigenvalues;
 use arclength::{Dual, Error, Scalar, VectorField};
 use proptest::prelude::*;
@@ -57,7 +57,7 @@ proptest! {
         prop_assert_eq!(kinds(&scaled), kinds(&reference));
         prop_assert!(scaled.points.len().abs_diff(reference.points.len()) < 3);
         for (one, other) in reference.special_points().zip(scaled.special_points()) {
-            let ratio = other.parameter() / (one.parameter() * 10f64.powf(exponents[2]));
+            let ratio = other.value() / (one.value() * 10f64.powf(exponents[2]));
             prop_assert!((ratio - 1.0).abs() < 1e-12);
         }
     }
@@ -118,7 +118,7 @@ fn two_special_points_in_one_step_are_both_found() {
     for gap in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
         let branch =
             Equilibria::of(&TwoHopfPoints(gap)).parameters(&[0.0]).along("p", 0.0..=1.0).run().unwrap();
-        let found: Vec<f64> = branch.hopf_points().map(|hopf| hopf.parameter).collect();
+        let found: Vec<f64> = branch.hopf_points().map(|hopf| hopf.value).collect();
         assert_eq!(kinds(&branch), ["HB1", "HB2"], "{gap}");
         for (value, expected) in found.iter().zip([0.5 - gap, 0.5 + gap]) {
             assert!((value - expected).abs() < 1e-14 / gap, "{gap} {value}");
@@ -130,7 +130,7 @@ fn two_special_points_in_one_step_are_both_found() {
         assert_eq!(kinds(&branch), ["LP1", "LP2"], "{gap}");
         let expected = 2.0 * (gap / 3.0).powf(1.5);
         for (fold, expected) in branch.folds().zip([expected, -expected]) {
-            assert!((fold.parameter - expected).abs() < 1e-14, "{gap}");
+            assert!((fold.value - expected).abs() < 1e-14, "{gap}");
         }
 
         for sign in [1.0, -1.0] {
@@ -138,9 +138,9 @@ fn two_special_points_in_one_step_are_both_found() {
             let branch = Equilibria::of(&field).parameters(&[0.0]).along("p", 0.0..=1.0).run().unwrap();
             let expected = if sign > 0.0 { ["BP1", "HB1"] } else { ["HB1", "BP1"] };
             assert_eq!(kinds(&branch), expected, "{gap}");
-            assert_relative_eq!(branch.branch_points().next().unwrap().parameter, 0.5, max_relative = 1e-12);
+            assert_relative_eq!(branch.branch_points().next().unwrap().value, 0.5, max_relative = 1e-12);
             let hopf = branch.hopf_points().next().unwrap();
-            assert_relative_eq!(hopf.parameter, 0.5 + sign * gap, max_relative = 1e-12);
+            assert_relative_eq!(hopf.value, 0.5 + sign * gap, max_relative = 1e-12);
         }
     }
 }
@@ -182,7 +182,7 @@ field!(Pitchfork, ["x", "y"], ["p"], |x, p, d| {
 fn a_zero_hopf_point_on_the_way_is_survived() {
     let branch = Equilibria::of(&ZeroHopf).start(&[0.0, 0.0, 1.0]).parameters(&[1.0]).along("p", -1.0..=1.0);
     let branch = branch.run().unwrap();
-    assert!(branch.folds().any(|fold| fold.parameter.abs() < 1e-10) || branch.special_points().count() > 0);
+    assert!(branch.folds().any(|fold| fold.value.abs() < 1e-10) || branch.special_points().count() > 0);
     assert!(branch.points.iter().all(|point| point.state.iter().all(|entry| entry.is_finite())));
 }
 
@@ -194,7 +194,7 @@ fn centres_are_neither_stable_nor_hopf_points() {
         assert_eq!(point.stability, Stability::Undecided);
     }
     let folds: Vec<_> = branch.folds().collect();
-    assert!(folds.iter().all(|fold| (fold.parameter.abs() - 1.0).abs() < 1e-12));
+    assert!(folds.iter().all(|fold| (fold.value.abs() - 1.0).abs() < 1e-12));
     assert!(folds.len() > 1);
 }
 
@@ -210,15 +210,17 @@ fn a_closed_branch_ends_after_one_lap() {
             .along("p", -2.0..=2.0)
             .run()
             .unwrap();
-        assert!(matches!(branch.forward_stop, Stop::Closed) && matches!(branch.backward_stop, Stop::Closed));
-        let folds: Vec<f64> = branch.folds().map(|fold| fold.parameter).collect();
+        assert!(
+            matches!(branch.stops[1], Some(Stop::Closed)) && matches!(branch.stops[0], Some(Stop::Closed))
+        );
+        let folds: Vec<f64> = branch.folds().map(|fold| fold.value).collect();
         assert_eq!(folds.len(), 2, "{angle}: {folds:?}");
         assert_relative_eq!(folds[0] * folds[1], -1.0, epsilon = 1e-12);
         assert_eq!(kinds(&branch).len(), 2);
         let length: f64 = branch
             .points
             .windows(2)
-            .map(|pair| (pair[1].parameter - pair[0].parameter).hypot(pair[1].state[0] - pair[0].state[0]))
+            .map(|pair| (pair[1].value - pair[0].value).hypot(pair[1].state[0] - pair[0].state[0]))
             .sum();
         assert!((length - std::f64::consts::TAU).abs() < 0.02, "{angle}: {length}");
     }
@@ -236,10 +238,10 @@ fn both_branches_of_a_pitchfork_are_found_from_either() {
         .unwrap();
     assert_eq!(kinds(&side), ["BP1"], "the turning branch has no fold at the pitchfork");
     let point = side.branch_points().next().unwrap();
-    assert!(point.parameter.abs() < 1e-14);
+    assert!(point.value.abs() < 1e-14);
     let back = Equilibria::of(&Pitchfork).from_branch_point(point).along("p", -1.0..=2.0).run().unwrap();
     assert!(back.points.iter().all(|point| point.state[0] == 0.0));
-    assert_eq!((back.points[0].parameter, back.points[back.points.len() - 1].parameter), (-1.0, 2.0));
+    assert_eq!((back.points[0].value, back.points[back.points.len() - 1].value), (-1.0, 2.0));
 }
 
 field!(Hyperbola, ["x"], ["p"], |x, p, d| {
@@ -254,16 +256,16 @@ field!(Logarithm, ["x"], ["p"], |x, p, d| {
 fn branches_that_go_to_infinity_end() {
     let branch =
         Equilibria::of(&Hyperbola).start(&[1.0]).parameters(&[1.0]).along("p", -1.0..=2.0).run().unwrap();
-    match branch.backward_stop {
-        Stop::StateUnbounded { parameter } => assert!(parameter.abs() < 1e-5),
-        other => panic!("{other}"),
+    match &branch.stops[0] {
+        Some(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })) => assert!(parameter.abs() < 1e-5),
+        other => panic!("{other:?}"),
     }
     let branch = Equilibria::of(&Logarithm).parameters(&[1.0]).along("p", 0.0..=2.0).run().unwrap();
-    assert!(matches!(branch.backward_stop, Stop::RangeEnd { value: 0.0, .. }), "{}", branch.backward_stop);
+    assert!(matches!(branch.stops[0], Some(Stop::RangeEnd { value: 0.0, .. })), "{:?}", branch.stops);
     let branch = Equilibria::of(&Logarithm).parameters(&[1.0]).along("p", -1.0..=2.0).run().unwrap();
-    match branch.backward_stop {
-        Stop::StateUnbounded { parameter } => assert!(parameter.abs() < 1e-5),
-        other => panic!("{other}"),
+    match &branch.stops[0] {
+        Some(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })) => assert!(parameter.abs() < 1e-5),
+        other => panic!("{other:?}"),
     }
 }
 
@@ -284,10 +286,10 @@ fn requested_values_are_there_once_wherever_they_are() {
     let branch = Equilibria::of(&Root).start(&[1.0]).parameters(&[1.0]).along("p", 0.5..=2.0);
     let branch = branch.at(&[0.5, 0.7, 1.0, 1.25, 2.0]).run().unwrap();
     let requested: Vec<f64> =
-        branch.points.iter().filter(|point| point.label.is_some()).map(|point| point.parameter).collect();
+        branch.points.iter().filter(|point| point.label.is_some()).map(|point| point.value).collect();
     assert_eq!(requested, [0.5, 0.7, 1.0, 1.25, 2.0]);
     for point in &branch.points {
-        assert_relative_eq!(point.state[0], point.parameter.powi(2), max_relative = 1e-10);
+        assert_relative_eq!(point.state[0], point.value.powi(2), max_relative = 1e-10);
     }
 }
 
@@ -342,7 +344,7 @@ fn every_mode_of_a_row_of_cells_has_its_hopf_point() {
     let field = Cells { count: cells, ring: false };
     let branch = Equilibria::of(&field).start(&[1.0; 24]).parameters(&[1.5, diffusion]).along("b", 1.5..=6.0);
     let branch = branch.run().unwrap();
-    let found: Vec<f64> = branch.hopf_points().map(|hopf| hopf.parameter).collect();
+    let found: Vec<f64> = branch.hopf_points().map(|hopf| hopf.value).collect();
     // Mode m decays with rate mu = 4 sin^2(pi m/(2 cells)) times the diffusion; its trace vanishes at b = 2 + 2 mu, where the
     // determinant 1 - mu^2 is positive for slow modes.
     let rate = |mode: usize| {
@@ -364,7 +366,7 @@ fn hopf_points_that_symmetry_makes_double_are_reported() {
     assert_eq!(kinds(&branch), ["HB1", "HB2", "HB3"]);
     let found: Vec<_> = branch.special_points().collect();
     for (special, expected) in found.iter().zip([2.0, 2.4, 2.8]) {
-        assert!((special.parameter() - expected).abs() < 1e-9, "{special:?}");
+        assert!((special.value() - expected).abs() < 1e-9, "{special:?}");
     }
     assert!(matches!(found[1], SpecialPoint::Degenerate { location_error, .. } if *location_error < 1e-9));
     assert_eq!(branch.points[0].stability, Stability::Stable);
@@ -397,9 +399,8 @@ fn two_real_eigenvalues_that_vanish_together_are_no_hopf_point() {
         let branch = run.unwrap();
         let labels = kinds(&branch);
         assert!(labels.iter().all(|label| !label.starts_with("HB")), "{coupling}: {labels:?}");
-        let near = |value: f64| {
-            branch.special_points().filter(|point| (point.parameter() - value).abs() < 1e-9).count()
-        };
+        let near =
+            |value: f64| branch.special_points().filter(|point| (point.value() - value).abs() < 1e-9).count();
         assert_eq!((near(0.0), near(3.0 * coupling)), (1, 1), "{coupling}: {labels:?}");
         assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: 3 });
     }
@@ -464,12 +465,12 @@ proptest! {
         let Ok(branch) = Equilibria::of(&field).start(&start).parameters(&[0.0]).along("p", -2.0..=2.0).run() else {
             return Ok(());
         };
-        for stop in [&branch.forward_stop, &branch.backward_stop] {
+        for stop in branch.stops.iter().flatten() {
             prop_assert!(matches!(stop, Stop::RangeEnd { .. } | Stop::Closed), "{:?}", stop);
         }
         let mut regular: Option<(usize, usize)> = None;
         for (index, point) in branch.points.iter().enumerate() {
-            let values = spectrum(&field, &point.state, point.parameter);
+            let values = spectrum(&field, &point.state, point.value);
             let largest = values.iter().map(|value| value.norm()).fold(1.0, f64::max);
             match point.special.as_deref() {
                 Some(SpecialPoint::Fold(_) | SpecialPoint::BranchPoint(_)) => {
@@ -534,7 +535,7 @@ fn branches_that_pass_each_other_closely_are_told_apart() {
         Equilibria::of(&field).start(&[0.3; 2]).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
     assert_eq!(kinds(&branch), ["HB1", "HB2", "LP1", "LP2"]);
     // The second fold is where the other branch passes.
-    let folds: Vec<f64> = branch.folds().map(|fold| fold.parameter).collect();
+    let folds: Vec<f64> = branch.folds().map(|fold| fold.value).collect();
     assert_relative_eq!(folds[1], -0.137595554245, epsilon = 1e-12);
     // The closer they pass, the shorter the steps have to be.
     for gap in [1e-2, 1e-4, 1e-6, 1e-7] {
@@ -542,7 +543,7 @@ fn branches_that_pass_each_other_closely_are_told_apart() {
         let branch =
             Equilibria::of(&field).start(&[-1.0]).parameters(&[-1.0]).along("p", -1.0..=1.0).run().unwrap();
         assert_eq!(kinds(&branch), ["LP1"], "{gap}");
-        assert!((branch.folds().next().unwrap().parameter + 2.0 * gap.sqrt()).abs() < 1e-12);
+        assert!((branch.folds().next().unwrap().value + 2.0 * gap.sqrt()).abs() < 1e-12);
     }
 }
 
@@ -586,7 +587,7 @@ fn pairs_that_cross_together_are_found_wherever_the_steps_fall() {
         let branch = Equilibria::of(&TwoAtOnce).parameters(&[start]).along("p", start..=1.0).run().unwrap();
         assert_eq!(kinds(&branch), ["HB1", "HB2"], "{start}");
         for hopf in branch.hopf_points() {
-            assert!(hopf.parameter.abs() < 1e-12, "{start}: {hopf:?}");
+            assert!(hopf.value.abs() < 1e-12, "{start}: {hopf:?}");
         }
     }
 }
@@ -620,7 +621,7 @@ fn a_ringing_mode_hides_no_hopf_point() {
             .unwrap();
         assert_eq!(kinds(&branch), ["HB1"], "{damping}");
         let hopf = branch.hopf_points().next().unwrap();
-        assert_relative_eq!(hopf.parameter, 0.3, max_relative = 1e-12);
+        assert_relative_eq!(hopf.value, 0.3, max_relative = 1e-12);
         assert_relative_eq!(hopf.frequency, 2.0, max_relative = 1e-12);
     }
 }

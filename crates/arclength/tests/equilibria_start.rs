@@ -10,7 +10,7 @@ mod field;
 
 /// Labels and parameter values of the labelled points, without neutral saddles.
 fn labelled(branch: &EquilibriumBranch) -> Vec<(String, f64)> {
-    let all = branch.points.iter().filter_map(|point| Some((point.label?.to_string(), point.parameter)));
+    let all = branch.points.iter().filter_map(|point| Some((point.label?.to_string(), point.value)));
     all.filter(|(label, _)| !label.starts_with("NSE")).collect()
 }
 
@@ -29,7 +29,7 @@ fn stability_changes_at_special_points_only(branch: &EquilibriumBranch) {
     for pair in branch.points.windows(2).filter(|pair| pair.iter().all(|point| point.special.is_none())) {
         let counts = [0, 1].map(|index| pair[index].stability.unstable_dimension());
         if let [Some(one), Some(other)] = counts {
-            assert_eq!(one, other, "between {} and {}", pair[0].parameter, pair[1].parameter);
+            assert_eq!(one, other, "between {} and {}", pair[0].value, pair[1].value);
         }
     }
 }
@@ -96,7 +96,7 @@ fn a_start_on_a_hopf_point_or_beside_it_finds_it_once() {
     for start in [0.0, 1e-16, -1e-15, 1e-14, 1e-13, -1e-12, 1e-11, 1e-9, -1e-7, 1e-6, 2e-6] {
         let branch = Equilibria::of(&Hopf).parameters(&[start]).along("mu", -2.0..=1.0).run().unwrap();
         expect(&branch, &[("HB1", 0.0)], 1e-13, &format!("start {start:e}"));
-        assert_eq!(branch.points[branch.start].parameter, start);
+        assert_eq!(branch.points[branch.start].value, start);
         assert!(matches!(branch.special_points().next(), Some(SpecialPoint::Hopf(_))));
         stability_changes_at_special_points_only(&branch);
         assert_eq!(branch.points[0].stability, Stability::Stable);
@@ -116,8 +116,8 @@ fn a_start_on_a_fold_or_beside_it_finds_it_once() {
             let branch = run.parameters(&[start]).along("p", -1.0..=1.0).run().unwrap();
             expect(&branch, &[("LP1", 0.0)], 1e-13, &format!("start {start:e}"));
             stability_changes_at_special_points_only(&branch);
-            assert_eq!(branch.points[0].parameter, 1.0);
-            assert_eq!(branch.points[branch.points.len() - 1].parameter, 1.0);
+            assert_eq!(branch.points[0].value, 1.0);
+            assert_eq!(branch.points[branch.points.len() - 1].value, 1.0);
         }
     }
 }
@@ -153,7 +153,7 @@ fn a_branch_point_is_followed_along_another_parameter() {
     let other = Equilibria::of(&Transcritical).from_branch_point(point).along("r", -1.0..=1.0).run().unwrap();
     expect(&other, &[("BP1", 0.1)], 1e-13, "other branch");
     for point in &other.points {
-        assert!((point.state[0] - (point.parameter - 0.1)).abs() < 1e-9, "{point:?}");
+        assert!((point.state[0] - (point.value - 0.1)).abs() < 1e-9, "{point:?}");
     }
     // A parameter that has no part in the branch point leaves the state x = 0 singular everywhere.
     let trivial = Equilibria::of(&Pitchfork).parameters(&[-0.7, 0.1]).along("p", -1.0..=1.0).run().unwrap();

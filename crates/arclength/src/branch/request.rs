@@ -94,7 +94,8 @@ impl<'a, S: Problem> Continuation<'a, S> {
     pub(crate) fn active(&self, count: usize) -> Result<(Vec<usize>, Vec<Bound>), Error> {
         let names = self.field.parameter_names();
         if self.ranges.len() != count {
-            let wanted = if count == 1 { "one parameter and its range" } else { "two parameters and their ranges" };
+            let wanted =
+                if count == 1 { "one parameter and its range" } else { "two parameters and their ranges" };
             return Err(invalid("along", &format!("{} parameters", self.ranges.len()), wanted));
         }
         let mut active = Vec::new();
@@ -198,7 +199,11 @@ pub(crate) fn check_range(name: &str, range: &RangeInclusive<f64>) -> Result<Bou
 /// That a list has the length that it should have and finite entries.
 pub(crate) fn check_length(name: &str, values: &[f64], length: usize, what: &str) -> Result<(), Error> {
     if values.len() != length {
-        return Err(invalid(name, &format!("{} numbers", values.len()), &format!("{length} numbers, {what}")));
+        return Err(invalid(
+            name,
+            &format!("{} numbers", values.len()),
+            &format!("{length} numbers, {what}"),
+        ));
     }
     match values.iter().find(|value| !value.is_finite()) {
         Some(value) => Err(invalid(name, &value.to_string(), "finite numbers")),

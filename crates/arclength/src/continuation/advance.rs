@@ -75,7 +75,8 @@ pub(super) fn advance<C: Curve>(
                 let ratio = settings.predictor_error / correction.distance.max(1e-300);
                 // The predictor's error grows with the square of the step at least.
                 let factor = ratio.sqrt().clamp(STEP_REDUCTION, STEP_GROWTH);
-                let too_far = correction.distance > FAR_CORRECTION * settings.predictor_error.max(FAR_CORRECTION_PART * length);
+                let too_far = correction.distance
+                    > FAR_CORRECTION * settings.predictor_error.max(FAR_CORRECTION_PART * length);
                 (too_far.then_some(CorrectionFailure::Diverged), factor)
             }
         };
@@ -134,8 +135,7 @@ pub(super) fn advance<C: Curve>(
 /// moves too little there to be seen.
 fn angle_in_plane<P>(current: &Solution<P>, next: &Solution<P>, bounds: &[Bound]) -> f64 {
     let [one, other] = bounds else { return 0.0 };
-    let part =
-        |vector: &[f64], bound: &Bound| vector[vector.len() - bound.from_end] / bound.width();
+    let part = |vector: &[f64], bound: &Bound| vector[vector.len() - bound.from_end] / bound.width();
     let [[a, b], [c, d]] =
         [current, next].map(|solution| [one, other].map(|bound| part(&solution.tangent, bound)));
     let [x, y] = [one, other].map(|bound| part(&next.unknown, bound) - part(&current.unknown, bound));
@@ -186,4 +186,3 @@ fn predict<P>(current: &Solution<P>, previous: Option<&(Vec<f64>, f64)>, length:
     }
     unknown
 }
-

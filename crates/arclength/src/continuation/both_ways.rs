@@ -55,8 +55,7 @@ impl<P: Clone, K: Copy + PartialEq, R> BothWays<P, K, R> {
             solutions.remove(0);
         }
         solutions.reverse();
-        solutions =
-            solutions.into_iter().map(|(solution, origin)| (solution.reversed(), origin)).collect();
+        solutions = solutions.into_iter().map(|(solution, origin)| (solution.reversed(), origin)).collect();
         let start = if repeated || middle.is_some() || solutions.is_empty() {
             solutions.len()
         } else {
@@ -139,4 +138,3 @@ impl<P: Clone, K: Copy + PartialEq, R> BothWays<P, K, R> {
 
 /// A [`BothWays`] of a curve `C`.
 pub(crate) type BothWaysOf<C> = BothWays<<C as Curve>::Point, <C as Curve>::Kind, <C as Curve>::Reason>;
-

@@ -116,6 +116,11 @@ pub trait Curve {
         false
     }
 
+    /// The kind of a located point, where it is not that of the test function that led to it.
+    fn kind_at(&self, _point: &Self::Point) -> Option<Self::Kind> {
+        None
+    }
+
     /// By how much the number of unstable directions may change at a located point, where more is known than its kind.
     fn changes_at(&self, _point: &Self::Point) -> Option<&'static [usize]> {
         None

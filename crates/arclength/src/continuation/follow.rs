@@ -40,8 +40,8 @@ pub struct Followed<P, K, R> {
     pub stop: Stop<R>,
     /// What was noticed and could not be located.
     pub unlocated: Vec<Unlocated<K>>,
-    /// Distance from the start, in the metric, from which on the curve was searched for special points.
-    pub(crate) first: Option<f64>,
+    /// The unknowns, next to the start, from which on the curve was searched for special points.
+    pub(crate) first: Option<Vec<f64>>,
 }
 
 impl<P, K, R> Followed<P, K, R> {
@@ -81,7 +81,7 @@ pub fn follow<C: Curve>(
     let mut run =
         Run { curve, request, observer, search, closure, solutions: Vec::new(), unlocated: Vec::new() };
     let stop = run.from(start);
-    let first = run.search.first();
+    let first = run.search.into_first();
     Ok(Followed { solutions: run.solutions, stop, unlocated: run.unlocated, first })
 }
 
@@ -183,7 +183,8 @@ impl<C: Curve> Run<'_, '_, C> {
         if let Some(end) = self.closed(current, &advanced) {
             let reached = along(self.curve, current, &end.unknown);
             // A special start is found again.
-            between.retain(|(solution, _)| along(self.curve, current, &solution.unknown) < reached - AT_START);
+            between
+                .retain(|(solution, _)| along(self.curve, current, &solution.unknown) < reached - AT_START);
             between.push((self.solutions[0].0.clone(), Origin::End));
             return Step::End(self.ended(between, Stop::Closed));
         }
@@ -298,7 +299,9 @@ impl<C: Curve> Run<'_, '_, C> {
     fn stopping_target(&self, between: &mut Between<C>) -> Option<Stop<C::Reason>> {
         let targets = &self.request.targets;
         let (place, target) = between.iter().enumerate().find_map(|(place, (_, origin))| match origin {
-            Origin::Target(index) => targets.get(*index).filter(|target| target.stops).map(|found| (place, found)),
+            Origin::Target(index) => {
+                targets.get(*index).filter(|target| target.stops).map(|found| (place, found))
+            }
             _ => None,
         })?;
         between.truncate(place + 1);

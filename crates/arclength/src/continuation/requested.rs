@@ -49,8 +49,7 @@ const CLOSE: f64 = 1e-3;
 const TARGET_BRACKET: f64 = 1e-13;
 
 /// Solutions between two neighbours, in order.
-pub(super) type Between<C> =
-    Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
+pub(super) type Between<C> = Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
 
 /// Inserts a converged solution wherever the first bounded parameter passes a requested value.
 ///

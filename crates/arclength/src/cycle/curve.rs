@@ -1,13 +1,13 @@
 //! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
 
 use super::collocation::Collocation;
+use super::end::CycleEnd;
 use super::extrema::{Range, ranges};
 use super::floquet::{Floquet, floquet};
 use super::limit_cycle::LimitCycle;
 use super::mesh::{error_profile, fit_mesh};
 use super::problem::PeriodicProblem;
 use super::sizes::{StateSizes, vanishing_point};
-use super::end::CycleEnd;
 use super::special;
 use super::switching::Branching;
 use crate::branch::{SpecialKind, invalid};
@@ -367,7 +367,9 @@ impl Curve for CycleCurve<'_> {
 
     fn are_distinct(&self, one: &CycleInspection, other: &CycleInspection) -> bool {
         // Torus bifurcations of pairs with different arguments.
-        let argument = |point: &CycleInspection| point.normal_form.iter().find(|(name, _)| *name == "argument").map(|entry| entry.1);
+        let argument = |point: &CycleInspection| {
+            point.normal_form.iter().find(|(name, _)| *name == "argument").map(|entry| entry.1)
+        };
         matches!((argument(one), argument(other)), (Some(one), Some(other)) if (one - other).abs() > DISTINCT)
     }
 
@@ -393,7 +395,10 @@ impl Curve for CycleCurve<'_> {
         if self.doubled
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
-            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period })));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling {
+                parameter,
+                period: 0.5 * period,
+            })));
         }
         let parameter_before = before.unknown[end + 1];
         let (here, there) = (&before.unknown[..end], &after.unknown[..end]);
@@ -401,14 +406,21 @@ impl Curve for CycleCurve<'_> {
             self.sizes.amplitude_passes_zero((here, parameter_before), (there, parameter))
         {
             let frequency = 2.0 * std::f64::consts::PI / period;
-            return Some(Ending::Between(Stop::Problem(CycleEnd::HopfPoint { parameter, frequency, located: false })));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::HopfPoint {
+                parameter,
+                frequency,
+                located: false,
+            })));
         }
         // Cycles that are not known to be doubled ones may be so; then they pass what looks like a branch point.
         if !self.doubled
             && before.orientation * after.orientation < 0.0
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
-            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period })));
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling {
+                parameter,
+                period: 0.5 * period,
+            })));
         }
         None
     }

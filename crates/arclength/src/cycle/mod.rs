@@ -25,8 +25,8 @@ mod start;
 mod switching;
 
 pub use branch::{CycleBranch, CyclePoint};
-pub use end::CycleEnd;
 pub use curve::Resolution;
+pub use end::CycleEnd;
 pub use orbit::Orbit;
 pub use start::{CycleProblem, CycleStart, Cycles};
 pub use switching::{BranchDirection, Branching};

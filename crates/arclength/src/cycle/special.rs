@@ -85,9 +85,9 @@ pub(super) fn crossing(
 
 /// Whether the two multipliers behind the `rank` largest ones are a complex pair on one side at least.
 fn is_pair_between(before: &Node, after: &Node, rank: usize) -> bool {
-    [before, after].iter().any(|node| {
-        node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real())
-    })
+    [before, after]
+        .iter()
+        .any(|node| node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real()))
 }
 
 /// Newton's method on the defining system from ever closer starts; for a torus bifurcation of the pair behind the `rank` largest

@@ -152,7 +152,8 @@ impl<'a> Cycles<'a> {
         let range = asked.bound.width();
         let point = |solution: &Solution<CycleInspection>, label: Option<Label>| {
             let mut point = CyclePoint::new(solution, label, (range, degree));
-            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point.monitors =
+                monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
         let request = request(&bounds, at, monitors, *settings, &point);
@@ -161,9 +162,10 @@ impl<'a> Cycles<'a> {
         drop(observe);
         followed.mark_requested(at, |solution| bounds[0].value(&solution.unknown));
         let active = [asked.active];
-        let mut branch = Branch::assemble(&asked.field, (&asked.parameters, &active), followed, |solution, label| {
-            point(&solution, label)
-        });
+        let mut branch =
+            Branch::assemble(&asked.field, (&asked.parameters, &active), followed, |solution, label| {
+                point(&solution, label)
+            });
         asked.refine_ends(&mut branch);
         Ok(branch)
     }
@@ -202,9 +204,9 @@ impl<'a> Asked<'a> {
                 Ok(BothWays::one_way(self.leave(branching, 1.0, request, observer)?, None))
             }
             CycleStart::Branching(branching) => {
-                let [backward, forward] =
-                    both_ways(|sign| self.leave(branching, sign, request, observer))?;
-                let middle = (self.branch_point(branching)?, Origin::Special(SpecialKind::BranchPointOfCycles));
+                let [backward, forward] = both_ways(|sign| self.leave(branching, sign, request, observer))?;
+                let middle =
+                    (self.branch_point(branching)?, Origin::Special(SpecialKind::BranchPointOfCycles));
                 if matches!(forward.stop, Stop::Closed | Stop::Interrupted) {
                     return Ok(BothWays::one_way(forward, Some(middle)));
                 }
@@ -270,15 +272,15 @@ impl<'a> Asked<'a> {
                 result => result,
             }
         })?;
-        let first = [directions[0].first, directions[1].first];
+        let first = [0, 1].map(|side: usize| directions[side].first.clone());
         let mut followed = BothWays::join(directions, None);
         // The mesh has moved on: the start once more, on its own.
         let mut curve = self.curve(&start);
         let forward: Vec<f64> =
             followed.solutions.get(followed.start).map_or(Vec::new(), |(start, _)| start.tangent.clone());
         let there = exact_start(&mut curve, start.unknown, start.tangent, request)?;
-        let points_forward =
-            there.tangent.len() == forward.len() && there.tangent.last().zip(forward.last()).is_some_and(|(a, b)| a * b >= 0.0);
+        let points_forward = there.tangent.len() == forward.len()
+            && there.tangent.last().zip(forward.last()).is_some_and(|(a, b)| a * b >= 0.0);
         let there = if points_forward { there } else { there.reversed() };
         let events = around_start(&mut curve, &there, first, &request.bounds, &self.settings)?;
         followed.insert_at_start(&curve, events);
@@ -382,7 +384,11 @@ impl<'a> Asked<'a> {
         let value = self.parameters[self.active];
         let Bound { lower, upper, .. } = self.bound;
         if !(lower..=upper).contains(&value) {
-            return Err(invalid("start value", &value.to_string(), &format!("{lower} to {upper}, inside the range")));
+            return Err(invalid(
+                "start value",
+                &value.to_string(),
+                &format!("{lower} to {upper}, inside the range"),
+            ));
         }
         self.resolution.validate()
     }

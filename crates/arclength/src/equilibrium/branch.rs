@@ -82,11 +82,6 @@ impl EquilibriumPoint {
     /// A solution of the curve as plain data; `range` is the length of the parameter's range.
     pub(super) fn new(solution: &Solution<Inspection>, label: Option<Label>, range: f64) -> Self {
         let Inspection { spectrum, determinant, special, .. } = &solution.point;
-        // A neutral saddle changes the test function of Hopf points; its label says what it is.
-        let label = label.map(|label| Label {
-            kind: special.as_ref().map_or(label.kind, |special| special.kind()),
-            ..label
-        });
         let (&value, state) = solution.unknown.split_last().unwrap_or((&0.0, &[]));
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
         Self {

@@ -33,8 +33,9 @@ const NEARLY_FOLD: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(crate) struct Inspection {
     pub spectrum: Spectrum,
-    /// Rates of change of the eigenvalues along the curve.
+    /// Rates of change of the eigenvalues in the direction of travel in which the orientation was this.
     pub rates: Vec<Complex64>,
+    pub orientation: f64,
     /// Modulus of the determinant of the scaled Jacobian bordered by the tangent: zero at a branch point.
     pub determinant: f64,
     pub special: Option<Box<SpecialPoint>>,
@@ -107,7 +108,7 @@ impl<'a> EquilibriumCurve<'a> {
         let tangent = point.tangents[0].clone();
         let special = Some(Box::new(SpecialPoint::BranchPoint(point)));
         let rates = vec![Complex64::ZERO; spectrum.eigenvalues.len()];
-        let point = Inspection { spectrum, rates, determinant: 0.0, special };
+        let point = Inspection { spectrum, rates, orientation: 0.0, determinant: 0.0, special };
         Ok(Solution { unknown, tangent, orientation: 0.0, point })
     }
 
@@ -163,7 +164,7 @@ impl Curve for EquilibriumCurve<'_> {
         Ok(Adaptation::Unchanged)
     }
 
-    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Inspection, Error> {
         let n = self.dimension();
         let determinant = self.system.determinant_size();
         let spectrum = self.spectrum()?;
@@ -179,7 +180,7 @@ impl Curve for EquilibriumCurve<'_> {
             }
             Err(_) => vec![Complex64::ZERO; n],
         };
-        Ok(Inspection { spectrum, rates, determinant, special: None })
+        Ok(Inspection { spectrum, rates, orientation, determinant, special: None })
     }
 
     fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
@@ -205,7 +206,8 @@ impl Curve for EquilibriumCurve<'_> {
     }
 
     fn exponent_rates(&self, solution: &Solution<Inspection>) -> Option<Vec<Complex64>> {
-        Some(solution.point.rates.clone())
+        let direction = solution.orientation * solution.point.orientation;
+        Some(solution.point.rates.iter().map(|rate| rate * direction).collect())
     }
 
     fn undecided(&self, solution: &Solution<Inspection>) -> usize {
@@ -250,6 +252,10 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
+    fn kind_at(&self, point: &Inspection) -> Option<SpecialKind> {
+        point.special.as_ref().map(|special| special.kind())
+    }
+
     fn changes_at(&self, point: &Inspection) -> Option<&'static [usize]> {
         match point.special.as_deref()? {
             SpecialPoint::Hopf(_) => Some(&[2]),
@@ -258,7 +264,11 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
-    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<EquilibriumEnd>> {
+    fn ending(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<EquilibriumEnd>> {
         let n = self.dimension();
         let range = self.system.scales[n];
         let parameter = after.unknown[n];

@@ -20,7 +20,10 @@ impl Reason for EquilibriumEnd {
     fn explain(&self, keys: &[&str]) -> Explanation {
         let Self::StateUnbounded { parameter } = self;
         let key = keys.first().copied().unwrap_or("the parameter");
-        Explanation::of(format!("the state grows without bound while {key} tends to {}", readable(*parameter)))
-            .try_this("nothing, if it does in truth; else other coordinates, such as reciprocals")
+        Explanation::of(format!(
+            "the state grows without bound while {key} tends to {}",
+            readable(*parameter)
+        ))
+        .try_this("nothing, if it does in truth; else other coordinates, such as reciprocals")
     }
 }

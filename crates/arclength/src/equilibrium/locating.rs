@@ -99,11 +99,7 @@ fn complete(
 }
 
 /// The fold between two solutions.
-pub(super) fn fold(
-    curve: &mut EquilibriumCurve<'_>,
-    before: &Node,
-    after: &Node,
-) -> Result<Node, Error> {
+pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node) -> Result<Node, Error> {
     let n = curve.dimension();
     let distance = distance(curve, &before.unknown, &after.unknown);
     let test: Test = |curve, node| curve.turn(&node.tangent);
@@ -127,11 +123,7 @@ pub(super) fn fold(
 }
 
 /// The Hopf point or neutral saddle between two solutions.
-pub(super) fn hopf(
-    curve: &mut EquilibriumCurve<'_>,
-    before: &Node,
-    after: &Node,
-) -> Result<Node, Error> {
+pub(super) fn hopf(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node) -> Result<Node, Error> {
     let distance = distance(curve, &before.unknown, &after.unknown);
     let test: Test = |_, node| node.point.spectrum.hopf_closest;
     // Pairs that stay on the axis are not what crosses it; of the others a weakly damped one may be closer to it.

@@ -22,8 +22,8 @@ mod special;
 pub(crate) mod spectrum;
 
 pub use branch::{EquilibriumBranch, EquilibriumPoint};
-pub use end::EquilibriumEnd;
 pub use branch_point::{BranchPoint, Crossing};
+pub use end::EquilibriumEnd;
 pub use fold::FoldPoint;
 pub use hopf::HopfPoint;
 pub use newton::find_equilibrium;

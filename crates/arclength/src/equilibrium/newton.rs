@@ -8,8 +8,8 @@
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{AlgebraicProblem, Differentiator, ScaledLu};
-use crate::erased::ErasedField;
 use crate::branch::check_length;
+use crate::erased::ErasedField;
 use crate::error::{CorrectionFailure, Error};
 use crate::field::VectorField;
 

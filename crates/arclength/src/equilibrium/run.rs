@@ -8,7 +8,7 @@ use super::newton::find_erased;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, length};
-use crate::branch::{Branch, SpecialKind, Continuation, Label, check_length, invalid, observer, request};
+use crate::branch::{Branch, Continuation, Label, SpecialKind, check_length, invalid, observer, request};
 use crate::continuation::events::around_start;
 use crate::continuation::{
     BothWays, BothWaysOf, Bound, Followed, FollowedCurve, Origin, Request, Settings, Solution, Stop,
@@ -138,7 +138,8 @@ impl<'a> Equilibria<'a> {
         let Continuation { field, at, monitors, observer: told, settings, .. } = &mut self;
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = EquilibriumPoint::new(solution, label, bound.width());
-            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point.monitors =
+                monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
         let request = request(&bounds, at, monitors, *settings, &point);
@@ -236,8 +237,11 @@ impl Departure {
         }
         let size = length(&self.tangent, &curve.system.scales);
         self.is_vertical = curve.turn(&self.tangent).abs() < VERTICAL_START * size;
-        let lead =
-            if self.is_vertical { self.tangent.iter().find(|entry| **entry != 0.0) } else { self.tangent.last() };
+        let lead = if self.is_vertical {
+            self.tangent.iter().find(|entry| **entry != 0.0)
+        } else {
+            self.tangent.last()
+        };
         let sign = if lead.is_some_and(|entry| *entry < 0.0) { -1.0 } else { 1.0 } / size;
         self.tangent.iter_mut().for_each(|entry| *entry *= sign);
         Ok(self)
@@ -279,9 +283,11 @@ impl Departure {
         let distance = self.distance();
         let [backward, mut forward] = directions;
         let Some(mut point) = self.branch_point else {
-            let first = [backward.first, forward.first];
+            let first = [&backward, &forward].map(|direction| direction.first.clone());
             let mut followed = BothWays::join([backward, forward], None);
-            let Some((start, _)) = followed.solutions.get(followed.start).cloned() else { return Ok(followed) };
+            let Some((start, _)) = followed.solutions.get(followed.start).cloned() else {
+                return Ok(followed);
+            };
             let events = around_start(curve, &start, first, &[bound], settings)?;
             followed.insert_at_start(curve, events);
             return Ok(followed);

@@ -175,7 +175,11 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         states.chain(last).collect()
     }
 
-    fn ending(&mut self, _before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<Infallible>> {
+    fn ending(
+        &mut self,
+        _before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<Infallible>> {
         if K::KIND != SpecialKind::BranchPoint {
             return None;
         }

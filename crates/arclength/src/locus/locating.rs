@@ -73,8 +73,11 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     }
     let near = near_zero(curve, before, after, LAST_BRACKET, kind);
     let smallest = near.point.monitor.test(kind).map_or(f64::INFINITY, f64::abs);
-    let ends =
-        [before, after].iter().filter_map(|node| node.point.monitor.test(kind)).map(f64::abs).fold(0.0, f64::max);
+    let ends = [before, after]
+        .iter()
+        .filter_map(|node| node.point.monitor.test(kind))
+        .map(f64::abs)
+        .fold(0.0, f64::max);
     if smallest > POLE * ends.max(POLE) {
         return Ok(None);
     }
@@ -105,7 +108,8 @@ fn near_zero<'a, K: LocusKind<'a>>(
     kind: SpecialKind,
 ) -> Node {
     let settings = curve.settings;
-    match locate(curve, before, after, &settings, tolerance, |_, solution| solution.point.monitor.test(kind)) {
+    match locate(curve, before, after, &settings, tolerance, |_, solution| solution.point.monitor.test(kind))
+    {
         Ok(Some(near)) => near,
         _ => {
             let value = |node: &Node| node.point.monitor.test(kind).map_or(f64::INFINITY, f64::abs);

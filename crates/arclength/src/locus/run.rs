@@ -95,8 +95,8 @@ impl<'a> EquilibriumLocus<'a> {
     pub fn run(mut self) -> Result<EquilibriumLocusBranch, Error> {
         let (active, bounds) = self.active(2)?;
         let start = self.start.clone();
-        let start = start
-            .ok_or_else(|| invalid("start", "nothing", "a fold, a Hopf point or a branch point"))?;
+        let start =
+            start.ok_or_else(|| invalid("start", "nothing", "a fold, a Hopf point or a branch point"))?;
         let (kind, state, parameters) = match &start {
             EquilibriumLocusStart::Fold(point) => (SpecialKind::Fold, &point.state, &point.parameters),
             EquilibriumLocusStart::Hopf(point) => (SpecialKind::Hopf, &point.state, &point.parameters),
@@ -120,7 +120,8 @@ impl<'a> EquilibriumLocus<'a> {
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = LocusPoint::new(solution, label, (n, ordered.swapped));
-            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point.monitors =
+                monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
         let request = request(&ordered.bounds, at, monitors, *settings, &point);
@@ -160,8 +161,7 @@ impl<'a> Run<'a> {
         Differentiator::default().jacobian(&equilibria, &point, &mut residual, &mut jacobian, n);
         let speed: Vec<f64> = (0..n)
             .map(|row| {
-                (jacobian[row + n * n] * ranges[0]).abs()
-                    + (jacobian[row + n * (n + 1)] * ranges[1]).abs()
+                (jacobian[row + n * n] * ranges[0]).abs() + (jacobian[row + n * (n + 1)] * ranges[1]).abs()
             })
             .collect();
         let matrix = &jacobian[..n * n];

@@ -58,8 +58,7 @@ const DISPLACEMENT: f64 = 1e-3;
 
 impl<C: Curve> Node<C> {
     pub fn new(curve: &C, solution: Solution<C::Point>) -> Self {
-        let readings =
-            curve.test_functions().iter().map(|test| curve.test(test.kind, &solution)).collect();
+        let readings = curve.test_functions().iter().map(|test| curve.test(test.kind, &solution)).collect();
         Self {
             readings,
             spectrum: curve.spectrum(&solution),

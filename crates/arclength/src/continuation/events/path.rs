@@ -75,7 +75,9 @@ impl Path {
             // One crossing is certain; two more take a turn to the wrong side of zero and back.
             let value = |s: f64| a.signum() * self.cubic(s);
             match turns[..] {
-                [one, other] if value(one) < self.doubt && value(other) > -self.doubt && value(one) < value(other) => {
+                [one, other]
+                    if value(one) < self.doubt && value(other) > -self.doubt && value(one) < value(other) =>
+                {
                     Some(0.5 * (one + other))
                 }
                 _ if self.doubt > a.abs().max(b.abs()) => Some(0.5),
@@ -162,10 +164,10 @@ mod tests {
             exponents: values.map(Complex64::from).to_vec(),
             ..Spectrum::default()
         };
-        // From -1 to 1 and from 1 to -1, sorted at both ends.
-        let (before, after) = (spectrum([1.0, -1.0]), spectrum([1.0, -1.0]));
-        let rates = [-2.0, 2.0].map(Complex64::from);
-        let behind = [2.0, -2.0].map(Complex64::from);
+        // From 1 to -3 and from -1 to 2, sorted at both ends.
+        let (before, after) = (spectrum([1.0, -1.0]), spectrum([2.0, -3.0]));
+        let rates = [-4.0, 3.0].map(Complex64::from);
+        let behind = [3.0, -4.0].map(Complex64::from);
         assert_eq!(partners(&before, &after, Some((&rates, &behind))), [1, 0]);
         assert_eq!(partners(&before, &after, None), [0, 1]);
     }

@@ -63,7 +63,9 @@ impl<'s, C: Curve> Scan<'s, C> {
         let tests = self.curve.test_functions();
         match changed {
             [] | [_] => false,
-            [first, rest @ ..] => rest.iter().all(|&index| tests[*first].absorbs.contains(&tests[index].kind)),
+            [first, rest @ ..] => {
+                rest.iter().all(|&index| tests[*first].absorbs.contains(&tests[index].kind))
+            }
         }
     }
 
@@ -75,17 +77,24 @@ impl<'s, C: Curve> Scan<'s, C> {
         let changed = Self::changed(before, after);
         let (one, other) = (&before.solution, &after.solution);
         let length = distance(self.curve, &one.unknown, &other.unknown);
-        let straightness = cosine(self.curve, one, &other.unknown, length)
-            .min(cosine(self.curve, other, &one.unknown, length));
+        let straightness = cosine(self.curve, one, &other.unknown, length).min(cosine(
+            self.curve,
+            other,
+            &one.unknown,
+            length,
+        ));
         if length > self.settings.shortest_jump && straightness < LEAST_COSINE {
             return Err(Error::OtherBranch);
         }
         let divide = if changed.len() > 1 || !self.is_explained(&changed, before, after) {
             Some(0.5)
         } else {
-            suspicious(self.curve, [before, after], length, self.memory, self.settings)
+            let tests = self.curve.test_functions();
+            let most = changed.iter().filter_map(|&index| tests[index].changes.iter().max()).sum();
+            suspicious(self.curve, [before, after], length, self.memory, (most, self.settings))
         };
-        let smallest = if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
+        let smallest =
+            if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
         if let Some(fraction) = divide.filter(|_| share > smallest && self.trials > 0) {
             self.trials -= 1;
             // Where all trials fail (next to a branch point, where the equations are singular) the division ends: the point
@@ -126,7 +135,9 @@ impl<'s, C: Curve> Scan<'s, C> {
     /// Locates the point at which a test function changes its sign.
     fn locate(&mut self, index: usize, before: &Node<C>, after: &Node<C>) -> Result<(), Error> {
         let test = self.curve.test_functions()[index];
-        let (Some(here), Some(there)) = (before.readings[index], after.readings[index]) else { return Ok(()) };
+        let (Some(here), Some(there)) = (before.readings[index], after.readings[index]) else {
+            return Ok(());
+        };
         if !here.resolved || !there.resolved {
             self.miss(Some(test.kind), &before.solution, &after.solution);
             return Ok(());
@@ -134,14 +145,17 @@ impl<'s, C: Curve> Scan<'s, C> {
         let around = here.value.abs().max(there.value.abs());
         let absorbing = self.absorbing(test.kind, &before.solution, &after.solution);
         let vanishes = absorbing.as_ref().is_some_and(|solution| {
-            self.curve.test(test.kind, solution).is_some_and(|reading| reading.value.abs() < VANISHING * around)
+            self.curve
+                .test(test.kind, solution)
+                .is_some_and(|reading| reading.value.abs() < VANISHING * around)
         });
         if vanishes {
             return Ok(());
         }
         match self.curve.locate(test.kind, [&before.solution, &after.solution])? {
             Location::At(solution) => {
-                self.found.push(Event { kind: test.kind, is_located: true, solution });
+                let kind = self.curve.kind_at(&solution.point).unwrap_or(test.kind);
+                self.found.push(Event { kind, is_located: true, solution });
             }
             Location::Bracketed(solution) => {
                 // Exponents that symmetry takes through zero together change the test function too.
@@ -167,9 +181,8 @@ impl<'s, C: Curve> Scan<'s, C> {
         after: &Solution<C::Point>,
     ) -> Option<Solution<C::Point>> {
         let tests = self.curve.test_functions();
-        let absorbs = |found: C::Kind| {
-            tests.iter().any(|test| test.kind == found && test.absorbs.contains(&kind))
-        };
+        let absorbs =
+            |found: C::Kind| tests.iter().any(|test| test.kind == found && test.absorbs.contains(&kind));
         let inside = |solution: &Solution<C::Point>| {
             let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
             let length = distance(self.curve, &before.unknown, &after.unknown);

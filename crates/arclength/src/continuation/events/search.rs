@@ -56,10 +56,9 @@ impl Memory {
     pub fn change_of_exponent(&self, spectrum: &Spectrum, index: usize) -> f64 {
         let Some(previous) = &self.spectrum else { return f64::INFINITY };
         let here = spectrum.exponents[index];
-        let nearest = previous
-            .exponents
-            .iter()
-            .min_by(|one, other| previous.separation(here, **one).total_cmp(&previous.separation(here, **other)));
+        let nearest = previous.exponents.iter().min_by(|one, other| {
+            previous.separation(here, **one).total_cmp(&previous.separation(here, **other))
+        });
         nearest.map_or(f64::INFINITY, |value| (value.re - here.re).abs())
     }
 
@@ -74,8 +73,8 @@ impl Memory {
 /// What a run remembers from step to step.
 pub(crate) struct EventSearch {
     memory: Memory,
-    /// Distance from the start, in the metric, from which on the curve was searched.
-    first: Option<f64>,
+    /// The unknowns, next to the start, from which on the curve was searched.
+    first: Option<Vec<f64>>,
     bounds: Vec<Bound>,
 }
 
@@ -85,8 +84,8 @@ impl EventSearch {
         Self { memory: Memory::default(), first: None, bounds: bounds.to_vec() }
     }
 
-    /// Distance from the start from which on the curve was searched; `None` before the first step.
-    pub fn first(&self) -> Option<f64> {
+    /// The unknowns, next to the start, from which on the curve was searched; `None` before the first step.
+    pub fn into_first(self) -> Option<Vec<f64>> {
         self.first
     }
 
@@ -115,13 +114,12 @@ impl EventSearch {
             None
         };
         let to = if undecided[1] > least { beyond(curve, after, least, reach, settings) } else { None };
-        let first = from.as_ref().map_or(0.0, |(distance, _)| *distance);
-        let mut left = Node::new(curve, from.map_or_else(|| before.clone(), |(_, node)| node));
-        let mut right = Node::new(curve, to.map_or_else(|| after.clone(), |(_, node)| node));
+        let mut left = Node::new(curve, from.unwrap_or_else(|| before.clone()));
+        let mut right = Node::new(curve, to.unwrap_or_else(|| after.clone()));
         let events = search(curve, [&mut left, &mut right], &self.memory, &self.bounds, settings)?;
         // A first step that led to another branch is made anew.
         if first_step {
-            self.first = Some(first);
+            self.first = Some(left.solution.unknown);
         }
         self.memory = Memory::of(curve, before);
         Ok(events)

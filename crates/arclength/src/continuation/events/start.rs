@@ -11,22 +11,21 @@ const BEYOND: [f64; 2] = [1e-6, 1e-4];
 /// The step is this many times as long at least.
 const STEP_BEYOND: f64 = 10.0;
 
-/// A solution a little further along with its distance, with no more than `least` undecided signs if there is one within
-/// `reach`.
+/// A solution a little further along, with no more than `least` undecided signs if there is one within `reach`.
 pub(super) fn beyond<C: Curve>(
     curve: &mut C,
     solution: &Solution<C::Point>,
     least: usize,
     reach: f64,
     settings: &Settings,
-) -> Option<(f64, Solution<C::Point>)> {
+) -> Option<Solution<C::Point>> {
     let mut first = None;
     for distance in BEYOND.into_iter().filter(|distance| STEP_BEYOND * distance < reach) {
         if let Ok(there) = across(curve, solution, solution.ahead(distance), settings) {
             if curve.undecided(&there) <= least {
-                return Some((distance, there));
+                return Some(there);
             }
-            first.get_or_insert((distance, there));
+            first.get_or_insert(there);
         }
     }
     first
@@ -34,7 +33,7 @@ pub(super) fn beyond<C: Curve>(
 
 /// Special points at the start of a curve that is followed both ways, and close to it.
 ///
-/// `first` are the distances from which on the directions, backward and forward, were searched; `None` for one that was not
+/// `first` are the unknowns from which on the directions, backward and forward, were searched; `None` for one that was not
 /// followed.
 ///
 /// # Errors
@@ -42,7 +41,7 @@ pub(super) fn beyond<C: Curve>(
 pub(crate) fn around_start<C: Curve>(
     curve: &mut C,
     start: &Solution<C::Point>,
-    first: [Option<f64>; 2],
+    first: [Option<Vec<f64>>; 2],
     bounds: &[Bound],
     settings: &Settings,
 ) -> Result<Events<C>, Error> {
@@ -50,9 +49,10 @@ pub(crate) fn around_start<C: Curve>(
     let mut ends = [None, None];
     for ((end, from), known) in ends.iter_mut().zip([&backward, start]).zip(first) {
         *end = match known {
-            Some(0.0) => Some(from.clone()),
-            Some(distance) => across(curve, from, from.ahead(distance), settings).ok(),
-            None => beyond(curve, from, 0, f64::INFINITY, settings).map(|(_, node)| node),
+            Some(unknown) if unknown == from.unknown => Some(from.clone()),
+            // On another mesh it is another one.
+            Some(unknown) if unknown.len() == from.unknown.len() => across(curve, from, unknown, settings).ok(),
+            _ => beyond(curve, from, 0, f64::INFINITY, settings),
         };
     }
     let [Some(behind), Some(ahead)] = ends else { return Ok(Events::default()) };

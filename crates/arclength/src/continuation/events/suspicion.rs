@@ -17,17 +17,19 @@ const DEAD: f64 = -20.0;
 /// A quantity that changes by less than this part of itself in a step does not pass zero unseen.
 const PLAUSIBLE: f64 = 0.5;
 
-/// The part of the step at which to look, if any.
+/// The part of the step at which to look, if any. `most_crossings` is the largest number of exponents that the changes of sign
+/// let cross the axis.
 pub(super) fn suspicious<C: Curve>(
     curve: &mut C,
     [before, after]: [&mut Node<C>; 2],
     length: f64,
     memory: &Memory,
-    settings: &Settings,
+    (most_crossings, settings): (usize, &Settings),
 ) -> Option<f64> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
-        let own = before.readings.len() > 0 && curve.test_functions().iter().any(|test| !test.of_spectrum && !test.is_turn);
+        let own = before.readings.len() > 0
+            && curve.test_functions().iter().any(|test| !test.of_spectrum && !test.is_turn);
         if !rates_cost_nothing && !plausible(before, after, memory) {
             return None;
         }
@@ -36,7 +38,7 @@ pub(super) fn suspicious<C: Curve>(
             before.rates(curve, length, settings)?;
             after.rates(curve, length, settings)?;
         }
-        exponents_hide(curve, before, after, length, settings)
+        exponents_hide(curve, before, after, length, (most_crossings, settings))
             .or_else(|| tests_hide(curve, before, after, length, settings))
     })
 }
@@ -44,20 +46,18 @@ pub(super) fn suspicious<C: Curve>(
 /// Whether an exponent or a test function comes close to zero compared with its changes.
 fn plausible<C: Curve>(before: &Node<C>, after: &Node<C>, memory: &Memory) -> bool {
     let indices = partners(&before.spectrum, &after.spectrum, None);
-    let exponents = before.spectrum.exponents.iter().zip(indices).enumerate().map(|(index, (here, partner))| {
-        let change = memory.change_of_exponent(&before.spectrum, index);
-        (here.re, after.spectrum.exponents[partner].re, change)
-    });
+    let exponents =
+        before.spectrum.exponents.iter().zip(indices).enumerate().map(|(index, (here, partner))| {
+            let change = memory.change_of_exponent(&before.spectrum, index);
+            (here.re, after.spectrum.exponents[partner].re, change)
+        });
     let readings = before.readings.iter().zip(&after.readings).enumerate().filter_map(|(index, pair)| {
         let (Some(here), Some(there)) = pair else { return None };
         Some((here.value, there.value, memory.change_of_reading(index, here.value)))
     });
-    exponents
-        .filter(|(here, there, _)| *here > DEAD || *there > DEAD)
-        .chain(readings)
-        .any(|(here, there, change)| {
-            PLAUSIBLE * here.abs().min(there.abs()) < change.max((there - here).abs())
-        })
+    exponents.filter(|(here, there, _)| *here > DEAD || *there > DEAD).chain(readings).any(
+        |(here, there, change)| PLAUSIBLE * here.abs().min(there.abs()) < change.max((there - here).abs()),
+    )
 }
 
 fn exponents_hide<C: Curve>(
@@ -65,25 +65,32 @@ fn exponents_hide<C: Curve>(
     before: &mut Node<C>,
     after: &mut Node<C>,
     length: f64,
-    settings: &Settings,
+    (most_crossings, settings): (usize, &Settings),
 ) -> Option<f64> {
     let noise = before.spectrum.noise.max(after.spectrum.noise);
-    let per_step = |rates: &[Complex64]| -> Vec<Complex64> { rates.iter().map(|rate| rate * length).collect() };
+    let per_step =
+        |rates: &[Complex64]| -> Vec<Complex64> { rates.iter().map(|rate| rate * length).collect() };
     let ahead = per_step(&before.rates(curve, length, settings)?.exponents);
     let behind = per_step(&after.rates(curve, length, settings)?.exponents);
     let (one, other) = (&before.spectrum, &after.spectrum);
     let indices = partners(one, other, Some((&ahead, &behind)));
-    indices.into_iter().enumerate().find_map(|(index, partner)| {
+    let mut crossings = 0;
+    for (index, partner) in indices.into_iter().enumerate() {
         let (here, there) = (one.exponents[index], *other.exponents.get(partner)?);
-        // Those of complex pairs say the same.
-        if here.im < 0.0 && there.im < 0.0 || here.re.max(there.re) < DEAD && one.is_periodic {
-            return None;
+        if here.re.max(there.re) < DEAD && one.is_periodic {
+            continue;
         }
         if here.re.abs() <= noise || there.re.abs() <= noise {
-            return None;
+            continue;
         }
-        Path::new([here.re, there.re], [ahead[index].re, behind[partner].re]).suspicious()
-    })
+        crossings += usize::from((here.re > 0.0) != (there.re > 0.0));
+        let path = Path::new([here.re, there.re], [ahead[index].re, behind[partner].re]);
+        if let Some(place) = path.suspicious() {
+            return Some(place);
+        }
+    }
+    // Some cross in one direction and as many in the other.
+    (crossings > most_crossings).then_some(0.5)
 }
 
 fn tests_hide<C: Curve>(

@@ -20,9 +20,9 @@ const COINCIDENT: f64 = 1e-8;
 pub(super) fn reachable<'a>(change: usize, lists: impl Iterator<Item = &'a [usize]>) -> bool {
     let mut sums = vec![0_isize];
     for list in lists.filter(|list| !list.is_empty()) {
-        let next = sums.iter().flat_map(|sum| {
-            list.iter().flat_map(move |&part| [sum + part as isize, sum - part as isize])
-        });
+        let next = sums
+            .iter()
+            .flat_map(|sum| list.iter().flat_map(move |&part| [sum + part as isize, sum - part as isize]));
         let mut next: Vec<isize> = next.collect();
         next.sort_unstable();
         next.dedup();
@@ -48,6 +48,9 @@ impl<C: Curve> Scan<'_, C> {
         self.trials = self.settings.most_trials;
         self.part([before, after], 1.0)?;
         let found = std::mem::take(&mut self.found);
+        if found.is_empty() {
+            return self.checked(Vec::new(), before, after, before, 0);
+        }
         let origin = before.solution.clone();
         let mut placed: Vec<(f64, Event<C::Kind, C::Point>)> = found
             .into_iter()
@@ -106,8 +109,9 @@ impl<C: Curve> Scan<'_, C> {
         let lists: Option<Vec<&[usize]>> = points
             .iter()
             .map(|event| {
-                let test = tests.iter().find(|test| test.kind == event.kind)?;
-                event.is_located.then(|| self.curve.changes_at(&event.solution.point).unwrap_or(test.changes))
+                let known = self.curve.changes_at(&event.solution.point);
+                let of_kind = || Some(tests.iter().find(|test| test.kind == event.kind)?.changes);
+                known.or_else(of_kind).filter(|_| event.is_located)
             })
             .collect();
         let lists = lists?;
@@ -128,7 +132,11 @@ impl<C: Curve> Scan<'_, C> {
         if let [event] = &group[..]
             && !event.is_located
             && Self::change_of_count(left, right) == Some(0)
-            && self.curve.test_functions().iter().any(|test| test.kind == event.kind && test.changes.contains(&2))
+            && self
+                .curve
+                .test_functions()
+                .iter()
+                .any(|test| test.kind == event.kind && test.changes.contains(&2))
         {
             // Where symmetry makes exponents equal, the signs of test functions are rounding.
             group.clear();

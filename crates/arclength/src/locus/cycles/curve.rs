@@ -5,7 +5,6 @@ use super::monitor;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
-use crate::cycle::{CycleEnd, Resolution};
 use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
@@ -17,6 +16,7 @@ use crate::cycle::mesh::{error_profile, fit_mesh};
 use crate::cycle::normal_form::CriticalCycle;
 use crate::cycle::problem::PeriodicProblem;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
+use crate::cycle::{CycleEnd, Resolution};
 use crate::error::{CorrectionFailure, Error};
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
@@ -420,7 +420,11 @@ impl Curve for CycleLocusCurve<'_> {
         signature
     }
 
-    fn ending(&mut self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> Option<Ending<CycleLocusEnd>> {
+    fn ending(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<CycleLocusEnd>> {
         let end = after.unknown.len() - self.system.collocation.problem.scalars();
         let period = after.unknown[end];
         let last = after.tangent.len() - 2;
@@ -429,7 +433,10 @@ impl Curve for CycleLocusCurve<'_> {
         let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
         if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
             let parameter = after.unknown[last];
-            return Some(Ending::After(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodUnbounded { period, parameter }))));
+            return Some(Ending::After(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodUnbounded {
+                period,
+                parameter,
+            }))));
         }
         // Next to the end both parameters depend on the amplitude through its square.
         let [(here, a), (there, b)] = [before, after].map(|solution| {
@@ -440,10 +447,17 @@ impl Curve for CycleLocusCurve<'_> {
         });
         if let Some(parameter) = self.sizes.amplitude_passes_zero((&here, a), (&there, b)) {
             let frequency = 2.0 * PI / period;
-            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { parameter, frequency, located: false }))));
+            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint {
+                parameter,
+                frequency,
+                located: false,
+            }))));
         }
         if let Some(parameter) = self.halves_become_equal(before, after) {
-            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { parameter, period: 0.5 * period }))));
+            return Some(Ending::Between(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling {
+                parameter,
+                period: 0.5 * period,
+            }))));
         }
         let (from, to) = (self.angle(before)?, self.angle(after)?);
         // Folds with the angle 0 and period doublings with the angle pi solve the defining system as well and cross its curve
@@ -451,14 +465,18 @@ impl Curve for CycleLocusCurve<'_> {
         let nearest = (to / PI).round();
         let order = |multiple: f64| if multiple.rem_euclid(2.0) == 0.0 { 1 } else { 2 };
         if (to - nearest * PI).abs() < AT_RESONANCE {
-            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance { order: order(nearest) })));
+            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance {
+                order: order(nearest),
+            })));
         }
         let multiple = (from.max(to) / PI).floor();
         let crosses = from.min(to) < multiple * PI;
         // Cycles that a symmetry maps onto themselves half a period later have the squares of other multipliers: theirs go
         // through -1 together, and the curve goes on. At a resonance it comes back on itself.
         if crosses && self.turns_back(before, after) {
-            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance { order: order(multiple) })));
+            return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance {
+                order: order(multiple),
+            })));
         }
         None
     }

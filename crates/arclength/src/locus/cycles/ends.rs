@@ -6,11 +6,11 @@ use super::end::CycleLocusEnd;
 use super::run::{Asked, CycleLocus, CycleLocusProblem};
 use crate::branch::{Label, SpecialKind};
 use crate::continuation::{Settings, Stop};
-use crate::cycle::{CycleEnd, Orbit};
-use crate::error::CorrectionFailure;
 use crate::cycle::collocation::Collocation;
 use crate::cycle::limit_cycle::LimitCycle;
+use crate::cycle::{CycleEnd, Orbit};
 use crate::equilibrium::locating::hopf_point_near;
+use crate::error::CorrectionFailure;
 use crate::locus::EquilibriumLocus;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
@@ -45,7 +45,8 @@ impl Asked<'_> {
                 Stop::Problem(CycleLocusEnd::StrongResonance { order }) => {
                     self.resonance(*order, last, parameters, ranges)
                 }
-                Stop::StepTooSmall { .. } | Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { .. }))
+                Stop::StepTooSmall { .. }
+                | Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { .. }))
                     if is_fold =>
                 {
                     let vanishing =
@@ -242,7 +243,10 @@ impl Asked<'_> {
 /// Labels the first of `points` where it is next to a resonance that no other curve leads to. The parameters depend on the square
 /// of the distance of the argument from that of the resonance: what is left of it gives the errors. A point that is not next to it
 /// is no reason to call the end a resonance.
-fn label_resonance<'p>(stop: &mut Stop<CycleLocusEnd>, mut points: impl Iterator<Item = &'p mut CycleLocusPoint>) {
+fn label_resonance<'p>(
+    stop: &mut Stop<CycleLocusEnd>,
+    mut points: impl Iterator<Item = &'p mut CycleLocusPoint>,
+) {
     let Stop::Problem(CycleLocusEnd::StrongResonance { order }) = stop else { return };
     let (kind, resonance) =
         if *order == 1 { (SpecialKind::Resonance1, 0.0) } else { (SpecialKind::Resonance2, PI) };

@@ -135,7 +135,8 @@ impl<'a> CycleLocus<'a> {
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = CycleLocusPoint::new(solution, label, orbit.degree);
-            point.monitors = monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
+            point.monitors =
+                monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
         let request = request(&bounds, at, monitors, *settings, &point);
@@ -144,7 +145,8 @@ impl<'a> CycleLocus<'a> {
         drop(observe);
         followed.mark_requested(at, |solution| bounds[0].value(&solution.unknown));
         let place = (&asked.parameters[..], &active[..]);
-        let branch = Branch::assemble(&asked.field, place, followed, |solution, label| point(&solution, label));
+        let branch =
+            Branch::assemble(&asked.field, place, followed, |solution, label| point(&solution, label));
         let mut branch = Branch { kind: Some(special), ..branch };
         asked.solve_for_ends(&mut branch);
         Ok(branch)
