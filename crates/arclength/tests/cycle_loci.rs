@@ -358,7 +358,7 @@ fn folds_of_cycles_end_at_a_generalised_hopf_point() {
     let (stop, point) = ends
         .into_iter()
         .find(|(stop, _)| matches!(stop, Some(Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { .. }))))
-        .expect("a generalised Hopf point");
+        .unwrap_or_else(|| panic!("a generalised Hopf point: {:?} {:?}", folds.stops, folds.unlocated));
     let Some(Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { values, frequency })) = stop else {
         unreachable!()
     };

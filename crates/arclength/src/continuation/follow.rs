@@ -331,6 +331,8 @@ impl<C: Curve> Run<'_, '_, C> {
         let Some(last) = last else { return Step::End(stop) };
         let (mut between, leaves) = match self.between(current, &last) {
             Ok(found) => found,
+            // Next to the end the curve may be too short to tell where it leads.
+            Err(Step::Again(_)) => return Step::End(stop),
             Err(end) => return end,
         };
         if let Some((bound, value)) = leaves {

@@ -9,7 +9,10 @@ use crate::algebraic::scales::natural_scales;
 use crate::branch::{
     Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
 };
-use crate::continuation::{BothWays, Observer, Request, Settings, Solution, both_ways, follow};
+use crate::continuation::events::around_start;
+use crate::continuation::{
+    BothWays, Observer, Request, Settings, Solution, Stop, both_ways, exact_start, follow,
+};
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use crate::equilibrium::problem::EquilibriumProblem;
 use crate::equilibrium::{BranchPoint, FoldPoint, HopfPoint, equilibrium_settings};
@@ -217,6 +220,17 @@ impl<'a> Run<'a> {
             }
             follow(&mut curve, unknown.clone(), tangent.clone(), request, observer)
         })?;
-        Ok(BothWays::join(directions, None))
+        let first = [0, 1].map(|side: usize| directions[side].first.clone());
+        let is_closed = matches!(directions[1].stop, Stop::Closed);
+        let mut followed = BothWays::join(directions, None);
+        curve.system.problem = normalised;
+        curve.renormalize(&mut unknown, &mut [&mut tangent])?;
+        if !is_closed {
+            tangent.iter_mut().for_each(|entry| *entry = -*entry);
+        }
+        let start = exact_start(&mut curve, unknown, tangent, request)?;
+        let events = around_start(&mut curve, &start, first, &request.bounds, &self.settings)?;
+        followed.insert_at_start(&curve, events);
+        Ok(followed)
     }
 }

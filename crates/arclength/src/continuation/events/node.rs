@@ -1,6 +1,7 @@
 //! A solution as the event engine sees it: values of the test functions, growth exponents and their rates along the curve.
 
 use super::test_function::Reading;
+use crate::continuation::corrector::norm;
 use crate::continuation::solution::{across, distance};
 use crate::continuation::{Curve, Settings, Solution};
 use num_complex::Complex64;
@@ -46,6 +47,12 @@ pub(super) struct Node<C: Curve + ?Sized> {
     rates: Option<Option<Rates>>,
 }
 
+/// How many of the signs at a solution may be rounding error.
+pub(super) fn undecided<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> usize {
+    let readings = curve.test_functions().iter().filter_map(|test| curve.test(test.kind, solution));
+    curve.undecided(solution) + readings.filter(|reading| !reading.is_decided()).count()
+}
+
 /// Rates of change per length of the curve.
 #[derive(Clone, Debug)]
 pub(super) struct Rates {
@@ -53,8 +60,9 @@ pub(super) struct Rates {
     pub readings: Vec<Option<f64>>,
 }
 
-/// Displacement along the tangent, as part of a step, from which rates are computed.
-const DISPLACEMENT: f64 = 1e-3;
+/// Displacement along the tangent, as part of a step, from which rates are computed: the solution itself may be known on an
+/// older mesh, whose error must not count against the difference.
+const DISPLACEMENT: f64 = 0.05;
 
 impl<C: Curve> Node<C> {
     pub fn new(curve: &C, solution: Solution<C::Point>) -> Self {
@@ -72,11 +80,22 @@ impl<C: Curve> Node<C> {
     pub fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
         if self.rates.is_none() {
             self.rates = Some(match curve.exponent_rates(&self.solution) {
-                Some(exponents) => Some(Rates { exponents, readings: vec![None; self.readings.len()] }),
+                Some(mut exponents) => {
+                    // The metric may have changed since the tangent had the length one.
+                    let stretch = self.stretch(curve);
+                    exponents.iter_mut().for_each(|rate| *rate /= stretch);
+                    Some(Rates { exponents, readings: vec![None; self.readings.len()] })
+                }
                 None => self.differences(curve, step, settings),
             });
         }
         self.rates.as_ref().and_then(Option::as_ref)
+    }
+
+    /// Length of the tangent in the metric as it is now.
+    pub fn stretch(&self, curve: &C) -> f64 {
+        let tangent = &self.solution.tangent;
+        norm(curve, tangent, &mut vec![0.0; tangent.len()])
     }
 
     fn differences(&self, curve: &mut C, step: f64, settings: &Settings) -> Option<Rates> {

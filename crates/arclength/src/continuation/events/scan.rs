@@ -20,6 +20,11 @@ const LEAST_COSINE: f64 = 0.5;
 /// the branch that turns at a pitchfork the parameter turns, but that is no fold.
 const VANISHING: f64 = 1e-3;
 
+/// What lies between two solutions is no farther from either of them than this many times their distance, unless they are so
+/// close in the metric that rounding counts.
+const BETWEEN: f64 = 1.2;
+const SHORTEST_BRACKET: f64 = 1e-6;
+
 /// The search in one step.
 pub(super) struct Scan<'s, C: Curve> {
     pub curve: &'s mut C,
@@ -121,6 +126,10 @@ impl<'s, C: Curve> Scan<'s, C> {
         for fraction in std::iter::once(1.0).chain(ASIDE).map(|part| part * fraction) {
             let trial = between(self.curve, &before.solution, &after.solution, fraction, self.settings);
             let Ok(trial) = trial else { continue };
+            // Newton's method may have left for another part of the curve.
+            if !self.lies_between(&trial, &before.solution, &after.solution) {
+                continue;
+            }
             let trial = Node::new(self.curve, trial);
             let decided = trial.undecided <= least;
             middle = Some((fraction, trial));
@@ -152,7 +161,15 @@ impl<'s, C: Curve> Scan<'s, C> {
         if vanishes {
             return Ok(());
         }
-        match self.curve.locate(test.kind, [&before.solution, &after.solution])? {
+        let location = match self.curve.locate(test.kind, [&before.solution, &after.solution])? {
+            Location::At(solution) | Location::Bracketed(solution)
+                if !self.lies_between(&solution, &before.solution, &after.solution) =>
+            {
+                Location::Missed
+            }
+            location => location,
+        };
+        match location {
             Location::At(solution) => {
                 let kind = self.curve.kind_at(&solution.point).unwrap_or(test.kind);
                 self.found.push(Event { kind, is_located: true, solution });
@@ -173,6 +190,18 @@ impl<'s, C: Curve> Scan<'s, C> {
         Ok(())
     }
 
+    /// Whether a solution lies between two others, give or take a margin.
+    fn lies_between(
+        &self,
+        solution: &Solution<C::Point>,
+        before: &Solution<C::Point>,
+        after: &Solution<C::Point>,
+    ) -> bool {
+        let length = distance(self.curve, &before.unknown, &after.unknown);
+        let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
+        length < SHORTEST_BRACKET || ends[0].max(ends[1]) <= BETWEEN * length
+    }
+
     /// A point between two solutions that has been found and at which the test function of `kind` may vanish too.
     fn absorbing(
         &self,
@@ -183,12 +212,7 @@ impl<'s, C: Curve> Scan<'s, C> {
         let tests = self.curve.test_functions();
         let absorbs =
             |found: C::Kind| tests.iter().any(|test| test.kind == found && test.absorbs.contains(&kind));
-        let inside = |solution: &Solution<C::Point>| {
-            let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
-            let length = distance(self.curve, &before.unknown, &after.unknown);
-            ends[0].max(ends[1]) <= 1.5 * length
-        };
-        let event = self.found.iter().rev().find(|event| absorbs(event.kind) && inside(&event.solution))?;
+        let event = self.found.iter().rev().find(|event| absorbs(event.kind) && self.lies_between(&event.solution, before, after))?;
         Some(event.solution.clone())
     }
 

@@ -1,6 +1,6 @@
 //! The search for special points along a curve, step by step.
 
-use super::node::{Node, Spectrum};
+use super::node::{Node, Spectrum, undecided};
 use super::scan::Scan;
 use super::start::beyond;
 use crate::continuation::solution::{Bound, distance};
@@ -105,7 +105,7 @@ impl EventSearch {
             return Ok(Events::default());
         }
         let reach = distance(curve, &before.unknown, &after.unknown);
-        let undecided = [before, after].map(|solution| curve.undecided(solution));
+        let undecided = [before, after].map(|solution| undecided(curve, solution));
         let least = undecided[0].min(undecided[1]);
         let first_step = self.first.is_none();
         let from = if first_step || undecided[0] > least {

@@ -1,6 +1,6 @@
 //! The neighbourhood of a solution that is a special point itself, and of the start of a curve.
 
-use super::node::Node;
+use super::node::{Node, undecided};
 use super::search::{Events, Memory, search};
 use crate::continuation::solution::{Bound, across};
 use crate::continuation::{Curve, Settings, Solution};
@@ -22,7 +22,7 @@ pub(super) fn beyond<C: Curve>(
     let mut first = None;
     for distance in BEYOND.into_iter().filter(|distance| STEP_BEYOND * distance < reach) {
         if let Ok(there) = across(curve, solution, solution.ahead(distance), settings) {
-            if curve.undecided(&there) <= least {
+            if undecided(curve, &there) <= least {
                 return Some(there);
             }
             first.get_or_insert(there);

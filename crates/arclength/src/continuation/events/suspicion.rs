@@ -8,14 +8,13 @@
 use super::node::Node;
 use super::path::{Path, partners};
 use super::search::Memory;
-use crate::continuation::solution::along;
 use crate::continuation::{Curve, Settings};
 use num_complex::Complex64;
 
 /// Exponents of multipliers below this at both ends are those of directions that die out in one period.
 const DEAD: f64 = -20.0;
 /// A quantity that changes by less than this part of itself in a step does not pass zero unseen.
-const PLAUSIBLE: f64 = 0.5;
+const PLAUSIBLE: f64 = 1.0;
 
 /// The part of the step at which to look, if any. `most_crossings` is the largest number of exponents that the changes of sign
 /// let cross the axis.
@@ -123,16 +122,10 @@ fn turns_twice<C: Curve>(curve: &C, before: &Node<C>, after: &Node<C>, length: f
         return None;
     }
     let parameter = before.solution.unknown.len() - 1;
-    // The parameter in the unit of its rate.
-    let unit = before.solution.tangent[parameter] / here.value;
-    let change = (after.solution.unknown[parameter] - before.solution.unknown[parameter]) / unit;
-    let forward = along(curve, &before.solution, &after.solution.unknown);
-    let mean = change / if forward > 0.0 { forward } else { length };
-    if !mean.is_finite() {
-        return None;
-    }
+    let rate = |node: &Node<C>| node.solution.tangent[parameter] / node.stretch(curve);
+    let (one, other) = (rate(before), rate(after));
+    let mean = (after.solution.unknown[parameter] - before.solution.unknown[parameter]) / length;
     // Derivative of the cubic: one + s (6 mean - 4 one - 2 other) + s^2 (3 one + 3 other - 6 mean).
-    let (one, other) = (here.value, there.value);
     let (linear, quadratic) = (6.0 * mean - 4.0 * one - 2.0 * other, 3.0 * (one + other) - 6.0 * mean);
     let s = -0.5 * linear / quadratic;
     let extreme = one + s * (linear + s * quadratic);

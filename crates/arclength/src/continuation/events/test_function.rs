@@ -78,7 +78,13 @@ impl Reading {
     pub(super) fn changes_to(self, other: Self) -> bool {
         (self.value > 0.0) != (other.value > 0.0)
             && self.class == other.class
-            && self.value.abs().max(other.value.abs()) > self.noise.max(other.noise)
+            && self.is_decided()
+            && other.is_decided()
+    }
+
+    /// Whether the sign is more than rounding.
+    pub(super) fn is_decided(self) -> bool {
+        self.value.abs() > self.noise
     }
 }
 

@@ -377,10 +377,13 @@ impl Curve for CycleLocusCurve<'_> {
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
-        let reading = Reading::exact(test_value(solution, kind)?);
-        // A coefficient that is zero all along, by symmetry for instance, changes its sign at random.
-        let noise = self.resolution.tolerance * solution.point.natural_coefficient;
-        Some(if monitor::is_coefficient(kind) { reading.with_noise(noise) } else { reading })
+        let value = test_value(solution, kind)?;
+        if !monitor::is_coefficient(kind) {
+            return Some(Reading::exact(value));
+        }
+        // Next to poles it does not run away. One that is zero all along, by symmetry for instance, changes its sign at random.
+        let saturated = value / (solution.point.natural_coefficient + value.abs());
+        Some(Reading::exact(saturated).with_noise(self.resolution.tolerance))
     }
 
     fn spectrum(&self, solution: &Solution<Inspection>) -> Spectrum {

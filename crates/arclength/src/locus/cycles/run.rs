@@ -6,8 +6,9 @@ use super::end::CycleLocusEnd;
 use crate::branch::{
     Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
 };
+use crate::continuation::events::around_start;
 use crate::continuation::{
-    BothWays, Observer, Request, Settings, Solution, both_ways, correct, finish, follow,
+    BothWays, Observer, Request, Settings, Solution, both_ways, correct, exact_start, finish, follow,
 };
 use crate::cycle::collocation::Collocation;
 use crate::cycle::curve::CycleCurve;
@@ -185,7 +186,14 @@ impl<'a> Asked<'a> {
             }
             follow(&mut curve, unknown, tangent, request, observer)
         })?;
-        Ok(BothWays::join(directions, None))
+        let first = [0, 1].map(|side: usize| directions[side].first.clone());
+        let mut followed = BothWays::join(directions, None);
+        let (mut curve, unknown) = self.start(kind, orbit)?;
+        let (unknown, _) = self.first(&mut curve, unknown)?;
+        let start = exact_start(&mut curve, unknown, forward, request)?;
+        let events = around_start(&mut curve, &start, first, &request.bounds, &self.settings)?;
+        followed.insert_at_start(&curve, events);
+        Ok(followed)
     }
 
     /// The curve and an approximate first solution.
