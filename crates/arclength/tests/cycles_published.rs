@@ -100,7 +100,7 @@ fn lure_doubled_branch() {
     };
     assert_relative_eq!(parameter, -doubling.value, max_relative = 1e-9);
     assert_relative_eq!(period, doubling.period, max_relative = 1e-9);
-    assert!(doubled.unlocated.is_empty());
+    assert!(doubled.unlocated.is_empty(), "{:?}", doubled.unlocated);
 }
 
 #[test]

@@ -61,8 +61,10 @@ pub type Observer<'o, P, K> = dyn FnMut(&Solution<P>, Origin<K>) -> ControlFlow<
 const AT_START: f64 = 1e-8;
 /// Part of its range by which a parameter of the start may move by rounding.
 const START_ROUNDING: f64 = 1e-13;
-/// The last stretch to an end inside a step is searched up to the step's length divided by two to this power before it.
-const LAST_STRETCH_HALVINGS: usize = 10;
+/// The last stretch to an end inside a step is searched up to the step's length divided by two to this power before it: closer to
+/// it, where parameters often stand still, signs are rounding. Where a solution next to the end is wanted, it is this close.
+const LAST_STRETCH_HALVINGS: usize = 6;
+const APPROACH_HALVINGS: usize = 10;
 
 /// Follows the curve from `start` (not necessarily converged) in the direction of `tangent`.
 ///
@@ -320,7 +322,7 @@ impl<C: Curve> Run<'_, '_, C> {
         let settings = &self.request.settings;
         let (mut inside, mut outside) = (0.0, 1.0);
         let mut last = None;
-        for _ in 0..LAST_STRETCH_HALVINGS {
+        for _ in 0..if approached { APPROACH_HALVINGS } else { LAST_STRETCH_HALVINGS } {
             let fraction = 0.5 * (inside + outside);
             let Ok(trial) = between(self.curve, current, advanced, fraction, settings) else { break };
             match self.curve.ending(current, &trial) {

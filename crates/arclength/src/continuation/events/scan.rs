@@ -212,7 +212,11 @@ impl<'s, C: Curve> Scan<'s, C> {
         let tests = self.curve.test_functions();
         let absorbs =
             |found: C::Kind| tests.iter().any(|test| test.kind == found && test.absorbs.contains(&kind));
-        let event = self.found.iter().rev().find(|event| absorbs(event.kind) && self.lies_between(&event.solution, before, after))?;
+        let event = self
+            .found
+            .iter()
+            .rev()
+            .find(|event| absorbs(event.kind) && self.lies_between(&event.solution, before, after))?;
         Some(event.solution.clone())
     }
 

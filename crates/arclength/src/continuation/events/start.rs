@@ -51,7 +51,9 @@ pub(crate) fn around_start<C: Curve>(
         *end = match known {
             Some(unknown) if unknown == from.unknown => Some(from.clone()),
             // On another mesh it is another one.
-            Some(unknown) if unknown.len() == from.unknown.len() => across(curve, from, unknown, settings).ok(),
+            Some(unknown) if unknown.len() == from.unknown.len() => {
+                across(curve, from, unknown, settings).ok()
+            }
             _ => beyond(curve, from, 0, f64::INFINITY, settings),
         };
     }
