@@ -4,12 +4,12 @@
 //! for, a plain wheel needs no root: the Routh-Hurwitz conditions are evaluated eight points at a time, with the widest
 //! vector instructions that the processor has.
 
+use crate::body::Body;
 use crate::error::KingpinError;
 use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomial};
 use crate::lanes::{LANES, Lanes};
 use crate::parameters::Key;
 use crate::plane::Plane;
-use crate::rolling::Body;
 use crate::wheel::Wheel;
 use rayon::prelude::*;
 use std::ops::ControlFlow;

@@ -17,6 +17,7 @@
 
 mod active;
 pub mod basin;
+mod body;
 pub mod boundary;
 pub mod branches;
 pub mod characteristic;
@@ -25,6 +26,7 @@ pub mod contact;
 pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
+mod keys;
 mod lanes;
 pub mod lateral;
 pub mod linear_stability;
