@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 use crate::geometry::Point;
-use crate::scene::{Path, Segment};
+use crate::path::{Path, Segment};
 
 /// Units of the em square; both fonts use it.
 pub(crate) const UNITS_PER_EM: f64 = 1000.0;
