@@ -13,6 +13,7 @@ mod erased;
 pub mod error;
 pub mod field;
 pub mod integration;
+pub mod lanes;
 pub mod linear;
 pub mod locus;
 

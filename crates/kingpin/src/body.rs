@@ -1,7 +1,7 @@
 //! The wheel and its caster as the equations of motion see them: masses, stiffnesses and dampers, in the combinations
 //! that occur, computed once for all evaluations in which none of them varies.
 
-use crate::lanes::Arithmetic;
+use crate::arithmetic::Arithmetic;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
 

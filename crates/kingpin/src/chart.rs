@@ -1,16 +1,16 @@
 //! Charts over a grid in the plane of two parameters, on all cores.
 //!
 //! A growth-rate chart takes the roots of the characteristic polynomial at every point. Where only stability is asked
-//! for, a plain wheel needs no root: the Routh-Hurwitz conditions are evaluated eight points at a time, with the widest
-//! vector instructions that the processor has.
+//! for, a plain wheel needs no root: the Routh-Hurwitz conditions are evaluated eight points at a time, with the vector
+//! instructions of the processor, but no fused ones, so that the chart does not depend on it.
 
 use crate::body::Body;
 use crate::error::KingpinError;
 use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomial};
-use crate::lanes::{LANES, Lanes};
 use crate::parameters::Key;
 use crate::plane::Plane;
 use crate::wheel::Wheel;
+use arclength::lanes::{self, Kernel};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -19,6 +19,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 pub const MOST_POINTS: usize = 100_000_000;
 /// Points that one core computes before it asks for more, at least.
 const POINTS_PER_CHUNK: usize = 4096;
+/// Points of a row that are taken together.
+const LANES: usize = 8;
+
+type Lanes = lanes::Lanes<LANES>;
 
 /// Told the part of the chart that is done, from 0 to 1, from any thread; `Break` cancels the computation.
 pub type Observer<'a> = dyn Fn(f64) -> ControlFlow<()> + Sync + 'a;
@@ -124,14 +128,13 @@ impl Wheel {
         let width = x.len();
         let chunk = rows_per_chunk(width) * width;
         let progress = Progress::new(y.len(), observer);
-        let processor = pulp::Arch::new();
         (stable.par_chunks_mut(chunk), rolls.par_chunks_mut(chunk))
             .into_par_iter()
             .zip(y.par_chunks(rows_per_chunk(width)))
             .try_for_each(|((stable, rolls), y)| {
                 for ((stable, rolls), &y) in stable.chunks_mut(width).zip(rolls.chunks_mut(width)).zip(y) {
                     let row = corner.with(keys[1], y)?;
-                    processor.dispatch(PlainRow { row: &row, key: keys[0], x: &x, stable, rolls });
+                    lanes::run(PlainRow { row: &row, key: keys[0], x: &x, stable, rolls });
                 }
                 progress.advance(y.len())
             })?;
@@ -185,16 +188,16 @@ struct PlainRow<'a> {
     rolls: &'a mut [bool],
 }
 
-impl pulp::WithSimd for PlainRow<'_> {
+impl Kernel for PlainRow<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn run<const FUSED: bool>(self) {
         let results = self.stable.chunks_mut(LANES).zip(self.rolls.chunks_mut(LANES));
         for (x, (stable, rolls)) in self.x.chunks(LANES).zip(results) {
             // The last lanes repeat the last point where the row ends before them.
-            let lanes = Lanes(std::array::from_fn(|lane| x[lane.min(x.len() - 1)]));
-            let [stability, adhesion] = plain_margins(self.row, self.key, lanes);
+            let points = Lanes::from(std::array::from_fn(|lane| x[lane.min(x.len() - 1)]));
+            let [stability, adhesion] = plain_margins(self.row, self.key, points);
             for (lane, (stable, rolls)) in stable.iter_mut().zip(rolls).enumerate() {
                 (*stable, *rolls) = (stability.0[lane] > 0.0, adhesion.0[lane] > 0.0);
             }

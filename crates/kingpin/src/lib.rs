@@ -16,6 +16,7 @@
 //! ```
 
 mod active;
+mod arithmetic;
 pub mod basin;
 mod body;
 pub mod boundary;
@@ -27,7 +28,6 @@ pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
 mod keys;
-mod lanes;
 pub mod lateral;
 pub mod linear_stability;
 pub mod parameters;

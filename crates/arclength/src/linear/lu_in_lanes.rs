@@ -16,42 +16,7 @@ const THRESHOLD: f64 = 0.1;
 const BLOCK: usize = 4;
 
 /// One number for each matrix.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(align(32))]
-pub(crate) struct Lanes(pub [f64; LANES]);
-
-impl Lanes {
-    pub const ZERO: Self = Self([0.0; LANES]);
-    pub const ONE: Self = Self([1.0; LANES]);
-
-    #[inline(always)]
-    pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self(self.0.map(function))
-    }
-
-    #[inline(always)]
-    pub fn times(self, other: Self) -> Self {
-        Self(from_fn(|lane| self.0[lane] * other.0[lane]))
-    }
-
-    /// `self + a b`, rounded once where the processor can; `FUSED` only to be compiled for those that do.
-    #[inline(always)]
-    pub fn plus<const FUSED: bool>(self, a: Self, b: Self) -> Self {
-        Self(from_fn(|lane| {
-            if FUSED {
-                a.0[lane].mul_add(b.0[lane], self.0[lane])
-            } else {
-                self.0[lane] + a.0[lane] * b.0[lane]
-            }
-        }))
-    }
-
-    /// `self - a b`, as [`plus`](Self::plus).
-    #[inline(always)]
-    pub fn minus<const FUSED: bool>(self, a: Self, b: Self) -> Self {
-        self.plus::<FUSED>(a.map(|entry| -entry), b)
-    }
-}
+pub(crate) type Lanes = crate::lanes::Lanes<LANES>;
 
 /// The rows exchanged at one step, by lane.
 pub(crate) type Exchange = [u32; LANES];
@@ -132,7 +97,7 @@ fn eliminate_block<const FUSED: bool, const B: usize>(
         let mut largest = Lanes::ZERO;
         for entry in &column[step..] {
             // `f64::max` would treat numbers that are not any, at twice the cost; the pivot's reciprocal shows them.
-            largest = Lanes(from_fn(|lane| {
+            largest = Lanes::from(from_fn(|lane| {
                 let size = entry.0[lane].abs();
                 if size > largest.0[lane] { size } else { largest.0[lane] }
             }));
@@ -153,7 +118,7 @@ fn eliminate_block<const FUSED: bool, const B: usize>(
         }
         column[step] = reciprocal;
         let multipliers = &mut column[step + 1..];
-        multipliers.iter_mut().for_each(|multiplier| *multiplier = multiplier.times(reciprocal));
+        multipliers.iter_mut().for_each(|multiplier| *multiplier = *multiplier * reciprocal);
         for other in right.chunks_exact_mut(rows).take(first + B - step - 1) {
             let factor = other[step];
             for (entry, multiplier) in other[step + 1..].iter_mut().zip(multipliers.iter()) {
@@ -274,7 +239,7 @@ fn substitute_block<const FUSED: bool, const B: usize, const C: usize>(
     for (head, column) in heads.iter_mut().zip(columns.iter_mut()) {
         head.copy_from_slice(&column[first..first + B]);
         for step in (0..B).rev() {
-            head[step] = head[step].times(upper[step][first + step]);
+            head[step] = head[step] * upper[step][first + step];
             for row in 0..step {
                 head[row] = head[row].minus::<FUSED>(head[step], upper[step][first + row]);
             }
@@ -298,11 +263,11 @@ mod tests {
             let mut next = || *numbers.next().expect("a cycle");
             let mut matrix = vec![Lanes::ZERO; rows * (rows + extra + 1)];
             let mut truth = vec![Lanes::ZERO; rows * (extra + 1)];
-            truth.iter_mut().for_each(|entry| *entry = Lanes(from_fn(|_| next())));
+            truth.iter_mut().for_each(|entry| *entry = Lanes::from(from_fn(|_| next())));
             for column in 0..rows {
                 for row in 0..rows {
                     let entry = &mut matrix[row + rows * column];
-                    *entry = Lanes(from_fn(|_| next()));
+                    *entry = Lanes::from(from_fn(|_| next()));
                     entry.0[0] += if row == column { 4.0 * rows as f64 } else { 0.0 };
                     entry.0[1] += if row == (column + 1) % rows { 4.0 * rows as f64 } else { 0.0 };
                     entry.0[3] = if row == column && rows > 1 { 0.0 } else { entry.0[3] };
@@ -313,7 +278,7 @@ mod tests {
                     let sum: [f64; LANES] = from_fn(|lane| {
                         (0..rows).map(|column| matrix[row + rows * column].0[lane] * truth[column + rows * right].0[lane]).sum()
                     });
-                    matrix[row + rows * (rows + right)] = Lanes(sum);
+                    matrix[row + rows * (rows + right)] = Lanes::from(sum);
                 }
             }
             let mut later = matrix[rows * (rows + extra)..].to_vec();
@@ -346,7 +311,7 @@ mod tests {
         let mut exchanges = [[0; LANES]; 2];
         let mut factorize = |lane: [f64; 4]| {
             let mut matrix: Vec<Lanes> =
-                [1.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(|entry| Lanes([entry; LANES])).to_vec();
+                [1.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(|entry| Lanes::from([entry; LANES])).to_vec();
             matrix.iter_mut().zip(lane).for_each(|(entry, number)| entry.0[2] = number);
             factorize_and_solve::<false>(&mut matrix, 2, &mut exchanges)
         };
