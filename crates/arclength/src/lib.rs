@@ -6,6 +6,7 @@
 mod algebraic;
 pub mod branch;
 pub mod continuation;
+pub mod control;
 pub mod cycle;
 pub mod differentiation;
 pub mod equilibrium;

@@ -37,7 +37,7 @@ mod tests;
 pub use error::IntegrationError;
 pub use event::{Crossing, Direction, Event};
 pub use integrator::Integrator;
-pub use solution::Solution;
+pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
 pub use system::{Autonomous, ClosureSystem, System, autonomous, from_fn};
 pub use variational::{StateTransition, VariationalEquations, state_transition_matrix};

@@ -2,6 +2,10 @@
 
 use super::event::EventLocator;
 use super::{Crossing, Event, IntegrationError, Integrator, Statistics, Stepper, System};
+use crate::control::Control;
+
+/// Part of the time after which progress is told again.
+const WORTH_TELLING: f64 = 0.01;
 
 /// A solution: samples, crossings and where it ended.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,7 +33,19 @@ impl Solution {
     }
 }
 
+/// An [`Integrator`] at work under a [`Control`], which is told the part of the time that has passed and may stop it.
+#[derive(Clone, Copy, Debug)]
+pub struct ControlledIntegrator<'a> {
+    integrator: &'a Integrator,
+    control: Control<'a>,
+}
+
 impl Integrator {
+    /// The same tasks under a control.
+    pub fn under<'a>(&'a self, control: &Control<'a>) -> ControlledIntegrator<'a> {
+        ControlledIntegrator { integrator: self, control: *control }
+    }
+
     /// Integrates from `initial` at `start` to `end`.
     ///
     /// # Errors
@@ -41,7 +57,7 @@ impl Integrator {
         initial: &[f64],
         end: f64,
     ) -> Result<Solution, IntegrationError> {
-        self.with_events(system, start, initial, end, &[], &mut [])
+        self.under(&Control::none()).integrate(system, start, initial, end)
     }
 
     /// Integrates from the first to the last of `times` and gives the states at all of them.
@@ -54,14 +70,7 @@ impl Integrator {
         initial: &[f64],
         times: &[f64],
     ) -> Result<Solution, IntegrationError> {
-        match (times.first(), times.last()) {
-            (Some(&start), Some(&end)) => self.with_events(system, start, initial, end, times, &mut []),
-            _ => Err(IntegrationError::WrongLength {
-                name: "the list of sampling times",
-                found: 0,
-                expected: 1,
-            }),
-        }
+        self.under(&Control::none()).sample(system, initial, times)
     }
 
     /// Integrates from `start` to `end` or to the first crossing of a terminal event, with samples at
@@ -78,15 +87,68 @@ impl Integrator {
         times: &[f64],
         events: &mut [Event],
     ) -> Result<Solution, IntegrationError> {
+        self.under(&Control::none()).with_events(system, start, initial, end, times, events)
+    }
+}
+
+impl ControlledIntegrator<'_> {
+    /// As [`Integrator::integrate`].
+    ///
+    /// # Errors
+    /// As [`Integrator::integrate`]; [`IntegrationError::Interrupted`].
+    pub fn integrate<S: System>(
+        &self,
+        system: S,
+        start: f64,
+        initial: &[f64],
+        end: f64,
+    ) -> Result<Solution, IntegrationError> {
+        self.with_events(system, start, initial, end, &[], &mut [])
+    }
+
+    /// As [`Integrator::sample`].
+    ///
+    /// # Errors
+    /// As [`Integrator::sample`]; [`IntegrationError::Interrupted`].
+    pub fn sample<S: System>(
+        &self,
+        system: S,
+        initial: &[f64],
+        times: &[f64],
+    ) -> Result<Solution, IntegrationError> {
+        match (times.first(), times.last()) {
+            (Some(&start), Some(&end)) => self.with_events(system, start, initial, end, times, &mut []),
+            _ => Err(IntegrationError::WrongLength {
+                name: "the list of sampling times",
+                found: 0,
+                expected: 1,
+            }),
+        }
+    }
+
+    /// As [`Integrator::with_events`].
+    ///
+    /// # Errors
+    /// As [`Integrator::with_events`]; [`IntegrationError::Interrupted`].
+    pub fn with_events<S: System>(
+        &self,
+        system: S,
+        start: f64,
+        initial: &[f64],
+        end: f64,
+        times: &[f64],
+        events: &mut [Event],
+    ) -> Result<Solution, IntegrationError> {
         check_times(start, end, times)?;
         let dimension = system.dimension();
-        let mut stepper = Stepper::new(system, self, start, initial, end)?;
+        let mut stepper = Stepper::new(system, self.integrator, start, initial, end)?;
         let mut solution = Solution {
             times: Vec::with_capacity(times.len()),
             states: Vec::with_capacity(times.len() * dimension),
             ..Solution::default()
         };
         let mut locator = EventLocator::new(events, start, initial);
+        let mut told = 0.0;
         loop {
             let is_terminated =
                 !events.is_empty() && locator.locate(&mut stepper, events, &mut solution.crossings);
@@ -106,6 +168,12 @@ impl Integrator {
                     _ => solution.state.extend_from_slice(stepper.state()),
                 }
                 return Ok(solution);
+            }
+            self.control.check()?;
+            let done = (stepper.time() - start) / (end - start);
+            if done - told >= WORTH_TELLING {
+                self.control.done(done);
+                told = done;
             }
             stepper.advance()?;
         }
