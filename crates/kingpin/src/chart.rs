@@ -10,10 +10,9 @@ use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomi
 use crate::parameters::Key;
 use crate::plane::Plane;
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use arclength::lanes::{self, Kernel};
 use rayon::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Most points of a grid.
 pub const MOST_POINTS: usize = 100_000_000;
@@ -23,9 +22,6 @@ const POINTS_PER_CHUNK: usize = 4096;
 const LANES: usize = 8;
 
 type Lanes = lanes::Lanes<LANES>;
-
-/// Told the part of the chart that is done, from 0 to 1, from any thread; `Break` cancels the computation.
-pub type Observer<'a> = dyn Fn(f64) -> ControlFlow<()> + Sync + 'a;
 
 /// Stability and rolling on a grid. The rows of the grid follow each other: point `(column, row)` has the index
 /// `row * x.len() + column`.
@@ -61,20 +57,20 @@ impl Wheel {
     ///
     /// ```
     /// use kingpin::{Axis, Key, Plane, Wheel};
-    /// use std::ops::ControlFlow::Continue;
+    /// use arclength::control::Control;
     /// let plane = Plane::new(Axis::new(Key::V, 1.0..=10.0)?, Axis::new(Key::L, 0.05..=0.2)?)?;
-    /// let chart = Wheel::default().growth_rate_chart(&plane, [10, 4], &|_| Continue(()))?;
+    /// let chart = Wheel::default().growth_rate_chart(&plane, [10, 4], &Control::none())?;
     /// assert!(chart.stable[0] && !chart.stable[9]);
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     ///
     /// # Errors
-    /// [`GridSize`](KingpinError::GridSize) and [`Cancelled`](KingpinError::Cancelled).
+    /// [`GridSize`](KingpinError::GridSize) and [`Interrupted`](KingpinError::Interrupted).
     pub fn growth_rate_chart(
         &self,
         plane: &Plane,
         points: [usize; 2],
-        observer: &Observer,
+        control: &Control<'_>,
     ) -> Result<GrowthRateChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
         let mut growth_rate = vec![None; x.len() * y.len()];
@@ -84,7 +80,7 @@ impl Wheel {
         let (x_key, y_key) = (plane.x().key(), plane.y().key());
         let width = x.len();
         let chunk = rows_per_chunk(width) * width;
-        let progress = Progress::new(y.len(), observer);
+        let progress = control.count(y.len());
         (rows.0.par_chunks_mut(chunk), rows.1.par_chunks_mut(chunk), rows.2.par_chunks_mut(chunk))
             .into_par_iter()
             .zip(y.par_chunks(rows_per_chunk(width)))
@@ -92,11 +88,13 @@ impl Wheel {
                 let points = y.iter().flat_map(|&y| x.iter().map(move |&x| (x, y)));
                 let results = growth_rate.iter_mut().zip(stable).zip(rolls);
                 for ((x, y), ((growth_rate, stable), rolls)) in points.zip(results) {
+                    control.check()?;
                     let wheel = self.with(y_key, y).and_then(|wheel| wheel.with(x_key, x))?;
                     let Some((rate, holds)) = wheel.growth_rate_and_rolling() else { continue };
                     (*growth_rate, *stable, *rolls) = (Some(rate), rate < 0.0, holds);
                 }
-                progress.advance(y.len())
+                progress.advance(y.len());
+                Ok::<_, KingpinError>(())
             })?;
         Ok(GrowthRateChart { x, y, growth_rate, stable, rolls })
     }
@@ -109,7 +107,7 @@ impl Wheel {
         &self,
         plane: &Plane,
         points: [usize; 2],
-        observer: &Observer,
+        control: &Control<'_>,
     ) -> Result<StabilityChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
         let keys = [plane.x().key(), plane.y().key()];
@@ -120,23 +118,25 @@ impl Wheel {
         let corner = self.with(keys[0], x[0])?.with(keys[1], y[0])?;
         if !(corner.is_plain() && stays_plain) {
             let GrowthRateChart { x, y, stable, rolls, .. } =
-                self.growth_rate_chart(plane, points, observer)?;
+                self.growth_rate_chart(plane, points, control)?;
             return Ok(StabilityChart { x, y, stable, rolls });
         }
         let mut stable = vec![false; x.len() * y.len()];
         let mut rolls = vec![false; x.len() * y.len()];
         let width = x.len();
         let chunk = rows_per_chunk(width) * width;
-        let progress = Progress::new(y.len(), observer);
+        let progress = control.count(y.len());
         (stable.par_chunks_mut(chunk), rolls.par_chunks_mut(chunk))
             .into_par_iter()
             .zip(y.par_chunks(rows_per_chunk(width)))
             .try_for_each(|((stable, rolls), y)| {
                 for ((stable, rolls), &y) in stable.chunks_mut(width).zip(rolls.chunks_mut(width)).zip(y) {
+                    control.check()?;
                     let row = corner.with(keys[1], y)?;
                     lanes::run(PlainRow { row: &row, key: keys[0], x: &x, stable, rolls });
                 }
-                progress.advance(y.len())
+                progress.advance(y.len());
+                Ok::<_, KingpinError>(())
             })?;
         Ok(StabilityChart { x, y, stable, rolls })
     }
@@ -152,31 +152,6 @@ fn axes(plane: &Plane, [columns, rows]: [usize; 2]) -> Result<(Vec<f64>, Vec<f64
 
 fn rows_per_chunk(width: usize) -> usize {
     POINTS_PER_CHUNK.div_ceil(width)
-}
-
-/// Counts the rows that are done, and stops all threads when the observer says so.
-struct Progress<'a> {
-    rows: usize,
-    done: AtomicUsize,
-    cancelled: AtomicBool,
-    observer: &'a Observer<'a>,
-}
-
-impl<'a> Progress<'a> {
-    fn new(rows: usize, observer: &'a Observer<'a>) -> Self {
-        Self { rows, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false), observer }
-    }
-
-    fn advance(&self, rows: usize) -> Result<(), KingpinError> {
-        let done = self.done.fetch_add(rows, Ordering::Relaxed) + rows;
-        if self.cancelled.load(Ordering::Relaxed)
-            || (self.observer)(done as f64 / self.rows as f64).is_break()
-        {
-            self.cancelled.store(true, Ordering::Relaxed);
-            return Err(KingpinError::Cancelled);
-        }
-        Ok(())
-    }
 }
 
 /// One row of a stability chart of plain wheels.
