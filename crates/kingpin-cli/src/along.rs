@@ -1,31 +1,27 @@
 //! The parameter along which branches of the wheel are followed.
 
-use crate::document::Number;
-use crate::failure::Failure;
-use crate::range::{Range, Values};
+use crate::error::Error;
+use arclength_analysis::{Interval, Values};
 use kingpin::branches::Along;
 use kingpin::{Key, KingpinError};
+use kingpin_report::Number;
 use serde::Serialize;
 
 /// The interval of a parameter of the wheel; `r` may end at infinity.
 ///
 /// # Errors
 /// An unknown key, or ends that the parameter may not take.
-pub fn along(range: &Range) -> Result<Along, KingpinError> {
-    Along::new(range.key.parse()?, range.start, range.end)
+pub fn along(interval: &Interval) -> Result<Along, KingpinError> {
+    Along::new(interval.key.parse()?, interval.start, interval.end)
 }
 
 /// Values of the parameter, within its interval.
 ///
 /// # Errors
 /// Another parameter, or a value outside the interval.
-pub fn values_on(along: &Along, given: &[Values]) -> Result<Vec<f64>, Failure> {
-    let failure = |given: String, problem: String, allowed: String| Failure::Option {
-        option: "--at",
-        given,
-        problem,
-        allowed,
-    };
+pub fn values_on(along: &Along, given: &[Values]) -> Result<Vec<f64>, Error> {
+    let failure =
+        |given: String, problem: String, allowed: String| Error::invalid(&["at"], given, problem, allowed);
     let name = along.key().name();
     for key in given.iter().filter_map(|values| values.key.as_ref()) {
         if key != name {

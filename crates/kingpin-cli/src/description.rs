@@ -1,7 +1,7 @@
 //! Wheels in words.
 
-use crate::numbers::readable;
 use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
 
 /// Speed, caster length and radius, and every other parameter that is not the paper's; without those that vary.
 ///

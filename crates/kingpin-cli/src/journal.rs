@@ -4,7 +4,7 @@
 //! A journal is text: its first line says which computation it belongs to, every other line is a JSON array of the index
 //! of a part and its result. A last line that was torn is passed over. It goes when the result has been written.
 
-use crate::failure::Failure;
+use crate::error::Error;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -31,27 +31,32 @@ impl Journal {
     /// Without a result file nothing is kept.
     ///
     /// # Errors
-    /// [`Failure::Option`] where there is a journal that was not asked for, or one of another computation;
-    /// [`Failure::Journal`] where it cannot be read or written.
+    /// [`Error::Option`] where there is a journal that was not asked for, or one of another computation;
+    /// [`Error::Journal`] where it cannot be read or written.
     pub fn open<T: DeserializeOwned>(
         result: Option<&Path>,
         computation: &Value,
         resume: bool,
-    ) -> Result<(Self, BTreeMap<usize, T>), Failure> {
+    ) -> Result<(Self, BTreeMap<usize, T>), Error> {
         let Some(result) = result else {
             if resume {
-                return Err(refused("--resume", String::new(), "there is no result file", "with --out PATH"));
+                return Err(Error::invalid(
+                    &["resume"],
+                    String::new(),
+                    "there is no result file",
+                    "with --out PATH",
+                ));
             }
             return Ok((Self { place: None, lost: Mutex::default() }, BTreeMap::new()));
         };
         let path = beside(result);
-        let failure = |source| Failure::Journal { path: path.clone(), source };
+        let failure = |source| Error::Journal { path: path.clone(), source };
         let mut parts = BTreeMap::new();
         if path.exists() {
             if !resume {
                 let problem = "an unfinished run is kept in it";
                 let allowed = "go on with it by --resume, or delete it";
-                return Err(refused("--out", path.display().to_string(), problem, allowed));
+                return Err(Error::invalid(&["out"], path.display().to_string(), problem, allowed));
             }
             parts = read(&path, computation)?;
         }
@@ -83,11 +88,11 @@ impl Journal {
     /// That every part was kept and nobody interrupted the run, of which so many parts in so many are done.
     ///
     /// # Errors
-    /// [`Failure::Journal`] and [`Failure::Interrupted`].
-    pub fn checked(&self, done: usize, parts: usize) -> Result<(), Failure> {
+    /// [`Error::Journal`] and [`Error::Interrupted`].
+    pub fn checked(&self, done: usize, parts: usize) -> Result<(), Error> {
         let lost = self.lost.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let (Some(source), Some((path, _))) = (lost, &self.place) {
-            return Err(Failure::Journal { path: path.clone(), source });
+            return Err(Error::Journal { path: path.clone(), source });
         }
         if done == parts {
             return Ok(());
@@ -96,47 +101,25 @@ impl Journal {
             Some((path, _)) => format!("kept in {}; go on with --resume", path.display()),
             None => "nothing was kept; with --out PATH it would be".to_owned(),
         };
-        Err(Failure::Interrupted { done, parts, kept })
+        Err(Error::Interrupted { done, parts, kept })
     }
 
     /// Removes the journal once the result is written.
     ///
     /// # Errors
-    /// [`Failure::Journal`].
-    pub fn finish(self) -> Result<(), Failure> {
+    /// [`Error::Journal`].
+    pub fn finish(self) -> Result<(), Error> {
         match self.place {
-            Some((path, _)) => {
-                std::fs::remove_file(&path).map_err(|source| Failure::Journal { path, source })
-            }
+            Some((path, _)) => std::fs::remove_file(&path).map_err(|source| Error::Journal { path, source }),
             None => Ok(()),
         }
     }
-}
-
-/// Set once Ctrl-C was pressed, so that a run stops after the parts that it is at; pressed again it ends the program.
-///
-/// # Errors
-/// [`Failure::Signals`].
-pub fn interruption() -> Result<&'static AtomicBool, Failure> {
-    static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-    /// The exit code of programs that end by the signal SIGINT.
-    const ENDED_BY_SIGNAL: i32 = 130;
-    ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(ENDED_BY_SIGNAL);
-        }
-    })?;
-    Ok(&INTERRUPTED)
 }
 
 fn beside(result: &Path) -> PathBuf {
     let mut name = result.as_os_str().to_owned();
     name.push(ENDING);
     name.into()
-}
-
-fn refused(option: &'static str, given: String, problem: &str, allowed: &str) -> Failure {
-    Failure::Option { option, given, problem: problem.to_owned(), allowed: allowed.to_owned() }
 }
 
 /// The lines that are whole.
@@ -157,10 +140,15 @@ fn copy_parts(from: &Path, to: &mut impl Write) -> std::io::Result<()> {
     lines(from)?.iter().skip(1).try_for_each(|line| writeln!(to, "{line}"))
 }
 
-fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMap<usize, T>, Failure> {
-    let lines = lines(path).map_err(|source| Failure::Journal { path: path.to_owned(), source })?;
+fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMap<usize, T>, Error> {
+    let lines = lines(path).map_err(|source| Error::Journal { path: path.to_owned(), source })?;
     let other = |problem: String| {
-        refused("--resume", path.display().to_string(), &problem, "the same command, or delete the journal")
+        Error::invalid(
+            &["resume"],
+            path.display().to_string(),
+            &problem,
+            "the same command, or delete the journal",
+        )
     };
     let Some(first) = lines.first() else {
         return Err(other("it is empty: no computation was kept in it".to_owned()));
@@ -212,7 +200,7 @@ mod tests {
         assert!(cells.is_empty());
         journal.keep(3, &vec![1_u8, 2], &never);
         journal.keep(0, &vec![0_u8], &never);
-        assert!(matches!(journal.checked(2, 5), Err(Failure::Interrupted { done: 2, parts: 5, .. })));
+        assert!(matches!(journal.checked(2, 5), Err(Error::Interrupted { done: 2, parts: 5, .. })));
         drop(journal);
         let path = beside(&result);
         let mut text = std::fs::read_to_string(&path).unwrap();

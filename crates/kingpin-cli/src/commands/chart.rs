@@ -1,18 +1,20 @@
 //! `kingpin chart`: stability of the uniform motion over two parameters.
 
 use crate::axis_label;
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::numbers::{readable, significant};
-use crate::options::{OutputOptions, WheelOptions, axis, note_conversion, parameter_help, parameters_of};
-use crate::progress::Progress;
-use crate::range::SampledRange;
-use crate::report::Report;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, axis, note_conversion, parameter_help, parameters_of};
+use arclength_analysis::Progress as Step;
+use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin::{Axis, Curve, GrowthRateChart, Plane, Wheel};
 use kingpin_figure::{ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::numbers::{readable, significant};
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::OutputOptions;
+use kingpin_terminal::Progress;
 use serde::Serialize;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -31,11 +33,11 @@ const RESOLVED_PART: f64 = 0.85;
 pub struct Chart {
     /// Parameter across, from A to B at N points
     #[arg(long, value_name = "KEY=A:B:N", default_value = "v=0.1:12:240")]
-    x: SampledRange,
+    x: SampledInterval,
 
     /// Parameter upwards, from A to B at N points
     #[arg(long, value_name = "KEY=A:B:N", default_value = "l=0.02:0.3:141")]
-    y: SampledRange,
+    y: SampledInterval,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -48,29 +50,29 @@ impl Chart {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub fn run(&self) -> Result<(), Error> {
         let wheel = self.wheel.wheel()?;
-        let plane = Plane::new(axis(&self.x.range)?, axis(&self.y.range)?)?;
+        let plane = Plane::new(axis(&self.x.interval)?, axis(&self.y.interval)?)?;
         let points = [self.x.count, self.y.count];
         if points[0].checked_mul(points[1]).is_none_or(|points| points > MOST_POINTS) {
-            return Err(Failure::Option {
-                option: "--x and --y",
-                given: format!("{} x {} points", points[0], points[1]),
-                problem: "too many".to_owned(),
-                allowed: format!("at most {MOST_POINTS} points in all"),
-            });
+            return Err(Error::invalid(
+                &["x", "y"],
+                format!("{} x {} points", points[0], points[1]),
+                "too many".to_owned(),
+                format!("at most {MOST_POINTS} points in all"),
+            ));
         }
-        let output = self.output.prepare(true)?;
-        note_conversion(&self.x.range, plane.x(), &output);
-        note_conversion(&self.y.range, plane.y(), &output);
+        let output = self.output.prepare()?;
+        note_conversion(&self.x.interval, plane.x(), &output);
+        note_conversion(&self.y.interval, plane.y(), &output);
         let progress = Progress::bar("chart", output.is_quiet());
         let chart = wheel.growth_rate_chart(&plane, points, &|part| {
-            progress.done(part);
+            progress.show(Step::Done(part));
             ControlFlow::Continue(())
         })?;
         drop(progress);
         let GrowthRateChart { x, y, growth_rate, stable, rolls } = chart;
-        output.deliver(&ChartReport {
+        Ok(output.deliver(&ChartReport {
             wheel,
             plane,
             x: SampledAxis::new(plane.x(), x),
@@ -80,7 +82,7 @@ impl Chart {
             rolls,
             stability_boundary: points_of(wheel.stability_boundary(&plane)),
             rolling_limit: points_of(wheel.rolling_limit(&plane)),
-        })
+        })?)
     }
 }
 

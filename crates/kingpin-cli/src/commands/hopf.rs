@@ -1,20 +1,21 @@
 //! `kingpin hopf`: Hopf points of the uniform motion along a parameter.
 
 use crate::along::{VaryingParameter, along};
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Number, Schema};
-use crate::failure::Failure;
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::range::Range;
-use crate::report::Report;
-use crate::table::Table;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
 use arclength::branch::Criticality;
+use arclength_analysis::Interval;
 use clap::Args;
 use kingpin::branches::{Along, HopfPoint, HopfSearch};
 use kingpin::rolling::STATE_NAMES;
 use kingpin::{Key, Wheel};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::Table;
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Number, Schema};
+use kingpin_terminal::OutputOptions;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -26,7 +27,7 @@ const EXAMPLE: &str = "kingpin hopf --along v=0.5:12 -s l=0.1";
 pub struct Hopf {
     /// Parameter and its interval; r may reach inf
     #[arg(long, value_name = "KEY=A:B")]
-    along: Range,
+    along: Interval,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -39,20 +40,20 @@ impl Hopf {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(false)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare_without_picture()?;
         let wheel = self.wheel.wheel()?;
         let along = along(&self.along)?;
         let search = search(&wheel, along)?;
-        output.deliver(&HopfReport::new(wheel, along, &search))
+        Ok(output.deliver(&HopfReport::new(wheel, along, &search))?)
     }
 }
 
 /// The Hopf points of the interval, of which there must be one.
 ///
 /// # Errors
-/// [`Failure::NothingFound`] with the stability at both ends, and those of the search.
-pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Failure> {
+/// [`Error::NothingFound`] with the stability at both ends, and those of the search.
+pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Error> {
     let search = wheel.hopf_points(along)?;
     if !search.points.is_empty() {
         return Ok(search);
@@ -84,10 +85,10 @@ pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Failure> {
     if straight && wheel.get(Key::CU) == 0.0 && !wheel.has_lateral_elasticity_only() {
         message += "; on a straight path without c_u the longitudinal motion is undamped, which hides Hopf points: \
                     set a small c_u, or follow cycles from a circle with `kingpin cycles --along r=A:inf`";
-        return Err(Failure::NothingFound(message));
+        return Err(Error::NothingFound(message));
     }
     message += "; try a wider interval, or see with `kingpin chart` where the stability changes";
-    Err(Failure::NothingFound(message))
+    Err(Error::NothingFound(message))
 }
 
 /// The name of the sense of a Hopf bifurcation.

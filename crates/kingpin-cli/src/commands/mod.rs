@@ -13,8 +13,9 @@ pub mod stability;
 pub mod steady;
 pub mod study;
 
-use crate::failure::Failure;
+use crate::error::Error;
 use clap::{Parser, Subcommand};
+use kingpin_terminal::Failure;
 
 /// Finds out whether a towed wheel shimmies
 ///
@@ -48,7 +49,7 @@ impl Kingpin {
     /// # Errors
     /// Why it failed.
     pub fn run(&self) -> Result<(), Failure> {
-        match &self.command {
+        let outcome = match &self.command {
             Command::Paper(command) => command.run(),
             Command::Steady(command) => command.run(),
             Command::Stability(command) => command.run(),
@@ -60,6 +61,10 @@ impl Kingpin {
             Command::Basin(command) => command.run(),
             Command::SafeKick(command) => command.run(),
             Command::Margin(command) => command.run(),
-        }
+        };
+        outcome.map_err(|error| match error {
+            Error::Terminal(failure) => failure,
+            other => other.into(),
+        })
     }
 }

@@ -1,14 +1,16 @@
 //! `kingpin paper`: the figures of the paper and a report on its statements.
 
-use crate::columns::Columns;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::options::{MOST_THREADS, start_threads};
-use crate::output::{Format, Output};
+use crate::error::Error;
+use kingpin_report::Columns;
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::{MOST_THREADS, start_threads};
+
 use crate::paper::{PaperOptions, run};
-use crate::progress::Progress;
-use crate::report::Report;
+use arclength_analysis::Progress as Step;
 use clap::Args;
+use kingpin_report::Report;
+use kingpin_terminal::Progress;
+use kingpin_terminal::{Format, Output};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -44,17 +46,17 @@ impl Paper {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub fn run(&self) -> Result<(), Error> {
         start_threads(self.threads)?;
-        let output = Output::new(self.format, &[], self.quiet, false)?;
+        let output = Output::new(self.format, &[], self.quiet, &[])?;
         let progress = Progress::bar("paper", self.quiet);
         let options = PaperOptions { figure: self.figure, out: self.out.clone() };
         let report = run(&options, &|part| {
-            progress.done(part);
+            progress.show(Step::Done(part));
             ControlFlow::Continue(())
         })?;
         drop(progress);
-        output.deliver(&FileList { files: report.files })
+        Ok(output.deliver(&FileList { files: report.files })?)
     }
 }
 

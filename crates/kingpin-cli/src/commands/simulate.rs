@@ -1,21 +1,22 @@
 //! `kingpin simulate`: a time history from the uniform motion with some states perturbed.
 
-use crate::columns::Columns;
 use crate::commands::basin::classification::Contact;
 use crate::commands::sliding_history::SlidingReport;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::history::{drawn, extremes, summary};
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::range::Assignment;
-use crate::report::Report;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
+use arclength_analysis::Assignment;
 use clap::Args;
 use kingpin::rolling::STATE_NAMES;
 use kingpin::simulation::TimeHistory;
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::history::{drawn, extremes, summary};
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::OutputOptions;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -55,14 +56,14 @@ impl Simulate {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(true)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare()?;
         let wheel = self.wheel.wheel()?;
         let perturbations: Vec<(&str, f64)> = self.perturb.iter().map(amount).collect::<Result<_, _>>()?;
         if self.contact == Contact::Sliding {
             let start = wheel.perturbed_sliding_motion(&perturbations)?;
             let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points as usize)?;
-            return output.deliver(&SlidingReport::new(wheel, history));
+            return Ok(output.deliver(&SlidingReport::new(wheel, history))?);
         }
         let history = wheel.simulate(self.duration, &perturbations, self.points as usize)?;
         if let Some(time) = history.rolling_lost_at {
@@ -78,16 +79,18 @@ impl Simulate {
                  compare with a large finite k_u",
             );
         }
-        output.deliver(&HistoryReport::new(wheel, &history))
+        Ok(output.deliver(&HistoryReport::new(wheel, &history))?)
     }
 }
 
-fn amount(perturbation: &Assignment) -> Result<(&str, f64), Failure> {
-    let failure = || Failure::Option {
-        option: "--perturb",
-        given: format!("{}={}", perturbation.key, perturbation.value),
-        problem: "the change is not a number".to_owned(),
-        allowed: "a finite number in SI units".to_owned(),
+fn amount(perturbation: &Assignment) -> Result<(&str, f64), Error> {
+    let failure = || {
+        Error::invalid(
+            &["perturb"],
+            format!("{}={}", perturbation.key, perturbation.value),
+            "the change is not a number".to_owned(),
+            "a finite number in SI units".to_owned(),
+        )
     };
     let amount = perturbation.value.parse().map_err(|_| failure())?;
     Ok((&perturbation.key, amount))

@@ -1,15 +1,15 @@
 //! Time histories of a wheel that rolls or slides, as a result of `kingpin simulate --contact sliding`.
 
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::history::{drawn, summary};
-use crate::numbers::readable;
-use crate::options::parameters_of;
-use crate::report::Report;
+use crate::wheel_options::parameters_of;
 use kingpin::sliding::{Contact, SLIDING_STATE_NAMES, SlidingHistory};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::history::{drawn, summary};
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 

@@ -1,15 +1,16 @@
 //! `kingpin stability`: eigenvalues of the uniform motion and its critical speed.
 
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::report::Report;
-use crate::table::Table;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
 use clap::Args;
 use kingpin::{Key, Wheel};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::Table;
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::OutputOptions;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -30,12 +31,12 @@ impl Stability {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(false)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare_without_picture()?;
         let wheel = self.wheel.wheel()?;
         let motion = wheel.uniform_motion()?;
         let critical = wheel.critical_speed();
-        output.deliver(&StabilityReport {
+        Ok(output.deliver(&StabilityReport {
             wheel,
             eigenvalues: motion
                 .eigenvalues()
@@ -46,7 +47,7 @@ impl Stability {
             stable: motion.is_stable(),
             critical_speed: critical.map(|critical| critical.speed),
             critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
-        })
+        })?)
     }
 }
 

@@ -1,15 +1,16 @@
 //! `kingpin steady`: the uniform motion at one parameter point.
 
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::report::Report;
-use crate::table::Table;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
 use clap::Args;
 use kingpin::{UniformMotion, Wheel};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::Table;
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::OutputOptions;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -30,10 +31,10 @@ impl Steady {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(false)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare_without_picture()?;
         let motion = self.wheel.wheel()?.uniform_motion()?;
-        output.deliver(&SteadyReport::of(&motion))
+        Ok(output.deliver(&SteadyReport::of(&motion))?)
     }
 }
 

@@ -1,15 +1,17 @@
 //! `kingpin study`: what goes beyond the paper, each study with its figures, data and findings.
 
-use crate::columns::Columns;
-use crate::document::{NamedNumbers, Schema};
-use crate::failure::Failure;
-use crate::options::{MOST_THREADS, start_threads};
-use crate::output::{Format, Output};
-use crate::progress::Progress;
-use crate::report::Report;
+use crate::error::Error;
+use kingpin_report::Columns;
+use kingpin_report::{NamedNumbers, Schema};
+use kingpin_terminal::{MOST_THREADS, start_threads};
+
 use crate::studies::{Finding, Name, Study, write};
-use crate::table::{Cell, Table};
+use arclength_analysis::Progress as Step;
 use clap::Args;
+use kingpin_report::Report;
+use kingpin_report::{Cell, Table};
+use kingpin_terminal::Progress;
+use kingpin_terminal::{Format, Output};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -74,20 +76,21 @@ impl StudyCommand {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub fn run(&self) -> Result<(), Error> {
         start_threads(self.threads)?;
-        let output = Output::new(self.format, &[], self.quiet, false)?;
+        let output = Output::new(self.format, &[], self.quiet, &[])?;
         std::fs::create_dir_all(&self.out)
-            .map_err(|source| Failure::Unwritable { path: self.out.clone(), source })?;
+            .map_err(|source| kingpin_report::ReportError::Unwritable { path: self.out.clone(), source })?;
         let mut told = Findings { findings: Vec::new(), files: Vec::new() };
         for name in self.name.names() {
             let progress = Progress::bar(name.as_str(), self.quiet);
-            let Study { findings, drawings, pictures } = name.compute(&|part| progress.done(part))?;
+            let Study { findings, drawings, pictures } =
+                name.compute(&|part| progress.show(Step::Done(part)))?;
             drop(progress);
             told.files.extend(write(&self.out, &drawings, &pictures)?);
             told.findings.extend(findings.into_iter().map(|finding| (name, finding)));
         }
-        output.deliver(&told)
+        Ok(output.deliver(&told)?)
     }
 }
 

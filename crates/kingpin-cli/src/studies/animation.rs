@@ -3,7 +3,7 @@
 //! The picture is that of somebody who travels with the towing frame: the towing point stands still, the ground turns past
 //! it about the centre of the curve. Marks on the ground are spaced so that the picture repeats itself with the motion.
 
-use crate::failure::Failure;
+use crate::error::Error;
 use kingpin::Key;
 use kingpin::shimmy::PeriodicSliding;
 use kingpin::sliding::Contact;
@@ -30,7 +30,7 @@ const WIDTH: f64 = 0.28;
 ///
 /// # Errors
 /// When the motion cannot be simulated again.
-pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Failure> {
+pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Error> {
     let history = motion.history(1.0, FRAMES + 1)?;
     let wheel = &motion.wheel;
     let (length, radius) = (wheel.get(Key::L), wheel.get(Key::WheelRadius));

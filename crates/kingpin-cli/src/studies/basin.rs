@@ -1,13 +1,13 @@
 //! Where kicked wheels end: maps over the release angle and the yaw rate at several speeds, rolling ideally.
 
 use super::{Drawing, Finding, Study, fate_color, wheel};
-use crate::columns::Columns;
-use crate::failure::Failure;
+use crate::error::Error;
 use kingpin::Key;
 use kingpin::basin::{
     Axis as Range, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate, Fraction,
 };
 use kingpin_figure::{Axis, CategoryMap, Figure, Grid, Legend, Panel};
+use kingpin_report::Columns;
 use std::sync::atomic::AtomicBool;
 
 /// Speeds in m/s of the maps.
@@ -26,7 +26,7 @@ struct Map {
     fates: Vec<Fate>,
 }
 
-pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
     let mut maps = Vec::new();
     let mut findings = Vec::new();
     let axes = [Range::new("psi", -ANGLE, ANGLE)?, Range::new("Omega", -YAW_RATE, YAW_RATE)?];
@@ -49,7 +49,7 @@ fn values(largest: f64) -> Vec<f64> {
     (0..POINTS).map(|index| largest * (2.0 * index as f64 / (POINTS - 1) as f64 - 1.0)).collect()
 }
 
-fn drawing(maps: &[Map]) -> Result<Drawing, Failure> {
+fn drawing(maps: &[Map]) -> Result<Drawing, Error> {
     let seen: Vec<Fate> =
         Fate::ALL.into_iter().filter(|fate| maps.iter().any(|map| map.fates.contains(fate))).collect();
     let mut figure = Figure::double_column()

@@ -6,10 +6,10 @@
 
 use super::{Drawing, Finding, Study, wheel};
 use crate::axis_label;
-use crate::columns::Columns;
-use crate::failure::Failure;
+use crate::error::Error;
 use kingpin::{Axis as Interval, Curve, Key, Plane};
 use kingpin_figure::{Axis, Color, Figure, Legend, Line, Panel, palette};
+use kingpin_report::Columns;
 use rayon::prelude::*;
 
 /// Turning radius of the charts in m.
@@ -35,23 +35,23 @@ struct Boundary {
     curves: Vec<Curve>,
 }
 
-pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
     let pairs = |values: fn(&Damper) -> [f64; 4]| -> Vec<(Key, f64, f64)> {
         let all = DAMPERS.iter();
         all.flat_map(|damper| values(damper).map(|value| (damper.0, value, damper.2))).collect()
     };
     let charts = pairs(|damper| damper.1).into_par_iter().map(|(damper, value, _)| chart(damper, value));
-    let charts = charts.collect::<Result<Vec<_>, Failure>>()?;
+    let charts = charts.collect::<Result<Vec<_>, Error>>()?;
     progress(0.5);
     let sections =
         pairs(|_| SECTIONS).into_par_iter().map(|(damper, length, most)| section(damper, length, most));
-    let sections = sections.collect::<Result<Vec<_>, Failure>>()?;
+    let sections = sections.collect::<Result<Vec<_>, Error>>()?;
     progress(0.9);
     let findings = sections.iter().map(finding).collect();
     Ok(Study { findings, drawings: vec![drawing(&charts, &sections)], pictures: Vec::new() })
 }
 
-fn chart(damper: Key, damping: f64) -> Result<Boundary, Failure> {
+fn chart(damper: Key, damping: f64) -> Result<Boundary, Error> {
     let plane = Plane::new(
         Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?,
         Interval::new(Key::L, LENGTHS.0..=LENGTHS.1)?,
@@ -60,7 +60,7 @@ fn chart(damper: Key, damping: f64) -> Result<Boundary, Failure> {
     Ok(Boundary { damper, value: damping, curves })
 }
 
-fn section(damper: Key, length: f64, most: f64) -> Result<Boundary, Failure> {
+fn section(damper: Key, length: f64, most: f64) -> Result<Boundary, Error> {
     let plane = Plane::new(Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?, Interval::new(damper, 0.0..=most)?)?;
     let curves = wheel(&[(Key::TurningRadius, RADIUS), (Key::L, length)])?.stability_boundary(&plane);
     Ok(Boundary { damper, value: length, curves })

@@ -10,14 +10,14 @@ mod isola;
 mod sliding;
 mod step_steer;
 
-use crate::columns::Columns;
-use crate::failure::Failure;
-use crate::output::write_whole;
-use crate::table::Cell;
-use crate::terminal::output_failure;
+use crate::error::Error;
 use kingpin::basin::Fate;
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Color, Figure, palette};
+use kingpin_report::Cell;
+use kingpin_report::Columns;
+use kingpin_report::ReportError;
+use kingpin_report::files::write_whole;
 use std::path::{Path, PathBuf};
 
 /// Resolution of the PNG files in dots per inch.
@@ -71,7 +71,7 @@ impl Name {
     ///
     /// # Errors
     /// What could not be computed.
-    pub fn compute(self, progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+    pub fn compute(self, progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
         match self {
             Self::Isola => isola::study(progress),
             Self::Sliding => sliding::study(progress),
@@ -129,23 +129,24 @@ pub struct Drawing {
 /// Writes figures, data and pictures into a folder that exists; every file appears whole or not at all.
 ///
 /// # Errors
-/// [`Failure::Unwritable`] and those of the drawing.
+/// [`Error::Unwritable`] and those of the drawing.
 pub fn write(
     folder: &Path,
     drawings: &[Drawing],
     pictures: &[(&'static str, String)],
-) -> Result<Vec<PathBuf>, Failure> {
+) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     let mut keep = |name: String, content: &[u8]| {
         let path = folder.join(name);
-        write_whole(&path, |out| out.write_all(content).map_err(|error| output_failure(error, "a file")))?;
+        let encoding = |source| ReportError::Encoding { format: "a file", source };
+        write_whole(&path, |out| out.write_all(content).map_err(encoding))?;
         files.push(path);
-        Ok::<_, Failure>(())
+        Ok::<_, Error>(())
     };
     for Drawing { number, figure, data } in drawings {
         let (svg, png) = rayon::join(|| figure.to_svg(), || figure.to_png(DPI));
         let mut csv = Vec::new();
-        data.write_csv(&mut csv).map_err(|error| output_failure(error, "CSV"))?;
+        data.write_csv(&mut csv).map_err(|source| ReportError::Encoding { format: "CSV", source })?;
         keep(format!("figure{number}.svg"), svg?.as_bytes())?;
         keep(format!("figure{number}.png"), &png?)?;
         keep(format!("figure{number}.csv"), &csv)?;
@@ -156,8 +157,8 @@ pub fn write(
     Ok(files)
 }
 
-fn not_found(what: &str, place: &str) -> Failure {
-    Failure::NothingFound(format!("no {what} was found at {place}"))
+fn not_found(what: &str, place: &str) -> Error {
+    Error::NothingFound(format!("no {what} was found at {place}"))
 }
 
 /// The colour of a fate, the same in all figures.

@@ -5,8 +5,7 @@
 //! uniform motion lies the unstable cycle of ideal rolling.
 
 use super::{Drawing, Finding, Study, animation, wheel};
-use crate::columns::Columns;
-use crate::failure::Failure;
+use crate::error::Error;
 use arclength::continuation::Settings;
 use arclength::cycle::CyclePoint;
 use kingpin::branches::{Along, CycleOptions, HopfPoint};
@@ -17,6 +16,7 @@ use kingpin::{Key, Wheel};
 use kingpin_figure::{
     Axis, Branch, Figure, Legend, Line, Marker, MarkerShape, Markers, Panel, Region, Stability, palette,
 };
+use kingpin_report::Columns;
 use std::ops::ControlFlow;
 
 /// Vertical force on the king pin in N.
@@ -46,11 +46,11 @@ struct Motions {
     friction: Vec<f64>,
 }
 
-fn loaded(speed: f64, damping: f64) -> Result<Wheel, Failure> {
+fn loaded(speed: f64, damping: f64) -> Result<Wheel, Error> {
     Ok(wheel(&[(Key::V, speed), (Key::FAz, LOAD), (Key::CU, damping), (Key::CQ, damping)])?)
 }
 
-pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
     let [first, second] = DAMPINGS;
     let (bare, damped) = rayon::join(|| Motions::compute(first), || Motions::compute(second));
     let all = [bare?, damped?];
@@ -61,7 +61,7 @@ pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
 }
 
 impl Motions {
-    fn compute(damping: f64) -> Result<Self, Failure> {
+    fn compute(damping: f64) -> Result<Self, Error> {
         let wheel = loaded(START, damping)?;
         let start = wheel.perturbed_uniform_motion(&[("psi", RELEASE_ANGLE)])?;
         let search = SlidingMotionSearch { settling_time: SETTLING_TIME, ..SlidingMotionSearch::default() };
@@ -80,7 +80,7 @@ impl Motions {
             None => Vec::new(),
         };
         cycles.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let friction = cycles.iter().map(|cycle| friction(cycle, damping)).collect::<Result<_, Failure>>()?;
+        let friction = cycles.iter().map(|cycle| friction(cycle, damping)).collect::<Result<_, Error>>()?;
         Ok(Self { damping, at_start, shimmy, hopf, cycles, friction })
     }
 
@@ -135,7 +135,7 @@ impl Motions {
         findings
     }
 
-    fn panel(&self, tag: &str, legend: Legend) -> Result<Panel, Failure> {
+    fn panel(&self, tag: &str, legend: Legend) -> Result<Panel, Error> {
         let mut panel = Panel::new(
             Axis::new("$v$ (m/s)").limits(SPEEDS.0, SPEEDS.1),
             Axis::new("extremes of $\\psi$ (rad)").limits(-3.3, 1.6),
@@ -190,7 +190,7 @@ impl Motions {
 }
 
 /// The largest friction force along a cycle over the static limit.
-fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Failure> {
+fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Error> {
     let wheel = loaded(cycle.value, damping)?;
     let initial: [f64; 5] = std::array::from_fn(|index| cycle.orbit.states[index]);
     let history = wheel.simulate_from(&initial, cycle.period, FORCE_SAMPLES)?;
@@ -198,7 +198,7 @@ fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Failure> {
     Ok(largest / (wheel.get(Key::MuS) * wheel.normal_force()))
 }
 
-fn drawing(all: &[Motions; 2]) -> Result<Drawing, Failure> {
+fn drawing(all: &[Motions; 2]) -> Result<Drawing, Error> {
     let [bare, damped] = all;
     let title = |motions: &Motions| match motions.damping {
         0.0 => "no dampers".to_owned(),

@@ -4,12 +4,12 @@
 //! circle. Ideal rolling is compared with Coulomb friction; the boundary of linear stability is drawn beside both.
 
 use super::{Drawing, Finding, Study, fate_color, wheel};
-use crate::columns::Columns;
-use crate::failure::Failure;
+use crate::error::Error;
 use kingpin::basin::{ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Axis, CategoryMap, Color, Figure, Grid, Legend, Line, Panel, palette};
+use kingpin_report::Columns;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -66,7 +66,7 @@ struct Map {
     outcomes: Vec<Outcome>,
 }
 
-pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
     let total = ROLLING_POINTS.iter().product::<usize>() + SLIDING_POINTS.iter().product::<usize>();
     let done = AtomicUsize::new(0);
     let step = || progress((done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / total as f64);
@@ -88,7 +88,7 @@ fn curve(model: ContactModel, speed: f64, radius: f64) -> Result<Wheel, KingpinE
 }
 
 /// What becomes of the straight running wheel on its curve.
-fn outcome(wheel: &Wheel, model: ContactModel, settings: ClassificationSettings) -> Result<Outcome, Failure> {
+fn outcome(wheel: &Wheel, model: ContactModel, settings: ClassificationSettings) -> Result<Outcome, Error> {
     let destinations = match Destinations::new(wheel, model, settings) {
         Ok(destinations) => destinations,
         Err(SimulationError::UniformMotionSlides { .. }) => return Ok(Outcome::Slides),
@@ -108,9 +108,9 @@ impl Map {
         points: [usize; 2],
         duration: f64,
         step: &(dyn Fn() + Sync),
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let (speeds, radii) = (values(SPEEDS, points[0]), values(RADII, points[1]));
-        let outcome = |index: usize| -> Result<Outcome, Failure> {
+        let outcome = |index: usize| -> Result<Outcome, Error> {
             let (speed, radius) = (speeds[index % points[0]], radii[index / points[0]]);
             let found = outcome(&curve(model, speed, radius)?, model, ClassificationSettings { duration })?;
             step();
@@ -188,7 +188,7 @@ impl Map {
     }
 }
 
-fn drawing(maps: &[Map; 2]) -> Result<Drawing, Failure> {
+fn drawing(maps: &[Map; 2]) -> Result<Drawing, Error> {
     let seen: Vec<Outcome> =
         Outcome::all().filter(|outcome| maps.iter().any(|map| map.outcomes.contains(outcome))).collect();
     let critical = wheel(&[(Key::V, 1.0)])?.critical_yaw_rate();

@@ -1,11 +1,11 @@
 //! How motions are followed and told apart, an option of every command that asks where they end.
 
-use crate::failure::Failure;
-use crate::output::Output;
+use crate::error::Error;
 use clap::{Args, ValueEnum};
 use kingpin::basin::{ClassificationSettings, ContactModel, Fate};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Color, palette};
+use kingpin_terminal::Output;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -47,17 +47,17 @@ impl Classification {
     ///
     /// # Errors
     /// No uniform motion, or a duration that is not positive.
-    pub fn settings(&self, wheel: &Wheel) -> Result<ClassificationSettings, Failure> {
+    pub fn settings(&self, wheel: &Wheel) -> Result<ClassificationSettings, Error> {
         match self.duration {
             Some(duration) if duration > 0.0 && duration.is_finite() => {
                 Ok(ClassificationSettings { duration })
             }
-            Some(duration) => Err(Failure::Option {
-                option: "--duration",
-                given: duration.to_string(),
-                problem: "no time to follow a motion".to_owned(),
-                allowed: "positive and finite, in s".to_owned(),
-            }),
+            Some(duration) => Err(Error::invalid(
+                &["duration"],
+                duration.to_string(),
+                "no time to follow a motion".to_owned(),
+                "positive and finite, in s".to_owned(),
+            )),
             None => Ok(ClassificationSettings::for_wheel(wheel)?),
         }
     }

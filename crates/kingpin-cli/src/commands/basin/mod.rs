@@ -3,14 +3,17 @@
 pub mod classification;
 mod report;
 
-use crate::failure::Failure;
-use crate::journal::{Journal, interruption};
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::progress::Progress;
-use crate::range::SampledRange;
+use crate::error::Error;
+use crate::journal::Journal;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
+use arclength_analysis::Progress as Step;
+use arclength_analysis::SampledInterval;
 use clap::Args;
 use classification::{Classification, NamedFate};
 use kingpin::basin::{Axis, BasinMap, Destinations, Fate, Tile};
+use kingpin_terminal::Interruption;
+use kingpin_terminal::OutputOptions;
+use kingpin_terminal::Progress;
 use report::{BasinReport, Starts};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -34,11 +37,11 @@ const MOST_POINTS: usize = 10_000_000;
 pub struct Basin {
     /// State across (u, q, psi, V, Omega), from A to B at N points
     #[arg(long, value_name = "STATE=A:B:N", default_value = "psi=-1:1:81", allow_hyphen_values = true)]
-    x: SampledRange,
+    x: SampledInterval,
 
     /// State upwards, from A to B at N points
     #[arg(long, value_name = "STATE=A:B:N", default_value = "Omega=-60:60:61", allow_hyphen_values = true)]
-    y: SampledRange,
+    y: SampledInterval,
 
     /// Draw N random initial conditions in the rectangle in place of the grid
     #[arg(long, value_name = "N", allow_negative_numbers = true,
@@ -67,9 +70,9 @@ impl Basin {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub fn run(&self) -> Result<(), Error> {
         let axes = self.axes()?;
-        let output = self.output.prepare(true)?;
+        let output = self.output.prepare()?;
         let wheel = self.wheel.wheel()?;
         let settings = self.classification.settings(&wheel)?;
         let model = self.classification.model();
@@ -80,7 +83,9 @@ impl Basin {
             None => BasinMap::grid(&destinations, &axes, counts)?,
             Some(count) => BasinMap::samples(&destinations, &axes, count as usize, self.seed)?,
         };
-        let ends = |range: &SampledRange| (range.range.key.clone(), range.range.start, range.range.end);
+        let ends = |interval: &SampledInterval| {
+            (interval.interval.key.clone(), interval.interval.start, interval.interval.end)
+        };
         let computation = json!({
             "program": env!("CARGO_PKG_VERSION"),
             "command": "basin",
@@ -105,25 +110,27 @@ impl Basin {
         journal.finish()
     }
 
-    fn axes(&self) -> Result<[Axis; 2], Failure> {
-        let axis = |range: &SampledRange| Axis::new(&range.range.key, range.range.start, range.range.end);
+    fn axes(&self) -> Result<[Axis; 2], Error> {
+        let axis = |interval: &SampledInterval| {
+            Axis::new(&interval.interval.key, interval.interval.start, interval.interval.end)
+        };
         let axes = [axis(&self.x)?, axis(&self.y)?];
         if axes[0].name() == axes[1].name() {
-            return Err(Failure::Option {
-                option: "--x and --y",
-                given: axes[0].name().to_owned(),
-                problem: "the same state on both axes".to_owned(),
-                allowed: "two different states".to_owned(),
-            });
+            return Err(Error::invalid(
+                &["x", "y"],
+                axes[0].name().to_owned(),
+                "the same state on both axes".to_owned(),
+                "two different states".to_owned(),
+            ));
         }
         let points = self.x.count.checked_mul(self.y.count);
         if self.samples.is_none() && points.is_none_or(|points| points > MOST_POINTS) {
-            return Err(Failure::Option {
-                option: "--x and --y",
-                given: format!("{} x {} points", self.x.count, self.y.count),
-                problem: "too many".to_owned(),
-                allowed: format!("at most {MOST_POINTS} points in all"),
-            });
+            return Err(Error::invalid(
+                &["x", "y"],
+                format!("{} x {} points", self.x.count, self.y.count),
+                "too many".to_owned(),
+                format!("at most {MOST_POINTS} points in all"),
+            ));
         }
         Ok(axes)
     }
@@ -135,25 +142,25 @@ impl Basin {
         journal: &Journal,
         finished: BTreeMap<usize, Vec<NamedFate>>,
         quiet: bool,
-    ) -> Result<Vec<Fate>, Failure> {
+    ) -> Result<Vec<Fate>, Error> {
         for (&index, fates) in &finished {
             if fates.len() != map.states_of(index).len() || fates.is_empty() {
-                return Err(Failure::Option {
-                    option: "--resume",
-                    given: format!("part {index} of the journal"),
-                    problem: format!("{} fates", fates.len()),
-                    allowed: "as many as the part has; delete the journal".to_owned(),
-                });
+                return Err(Error::invalid(
+                    &["resume"],
+                    format!("part {index} of the journal"),
+                    format!("{} fates", fates.len()),
+                    "as many as the part has; delete the journal".to_owned(),
+                ));
             }
         }
-        let cancelled = interruption()?;
+        let cancelled = Interruption::watch()?.flag();
         let progress = Progress::bar("basin", quiet);
         let done = AtomicUsize::new(finished.len());
         let keep = |tile: &Tile| {
             let fates: Vec<NamedFate> = tile.fates.iter().copied().map(NamedFate).collect();
             journal.keep(tile.index, &fates, cancelled);
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress.done(done as f64 / map.tiles() as f64);
+            progress.show(Step::Done(done as f64 / map.tiles() as f64));
         };
         let computed = map.run(cancelled, |index| finished.contains_key(&index), keep)?;
         drop(progress);

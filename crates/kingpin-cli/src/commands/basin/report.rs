@@ -1,18 +1,18 @@
 //! Fates of initial conditions as a result.
 
 use super::classification::{NamedFate, color};
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::numbers::{readable, significant};
-use crate::options::parameters_of;
-use crate::report::Report;
-use crate::table::{Cell, Table};
+use crate::wheel_options::parameters_of;
 use kingpin::basin::{Axis, Destinations, Fate, Fraction, Tile};
 use kingpin::rolling::STATE_NAMES;
 use kingpin_figure::{
     CategoryMap, Figure, FigureError, Grid, Legend, LegendEntry, Marker, MarkerShape, Markers, Panel,
 };
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::numbers::{readable, significant};
+use kingpin_report::{Cell, Table};
+use kingpin_report::{NamedNumbers, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 

@@ -5,20 +5,24 @@ mod report;
 
 use crate::along::{along, as_followed, values_on};
 use crate::commands::hopf;
-use crate::failure::Failure;
-use crate::models::branch::Interruption;
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help};
-use crate::progress::Progress;
-use crate::range::{Range, Values};
-use crate::stored::{LabelledPoint, PointReference};
+use crate::error::Error;
+use crate::stored::LabelledPoint;
+use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength::continuation::Stop;
 use arclength::cycle::CycleStart;
+use arclength_analysis::PointReference;
+use arclength_analysis::Progress as Step;
+use arclength_analysis::{Interval, Values};
 use clap::Args;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use kingpin::{KingpinError, Wheel};
+use kingpin_report::numbers::readable;
+use kingpin_terminal::Interruption;
+use kingpin_terminal::OutputOptions;
+use kingpin_terminal::Progress;
 use report::CyclesReport;
 use std::ops::ControlFlow;
+use std::sync::atomic::Ordering;
 
 const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
          kingpin cycles --from cycles.json:AT3 --along r=1:inf";
@@ -33,7 +37,7 @@ const SAME_HOPF_POINT: f64 = 1e-6;
 pub struct Cycles {
     /// Parameter and its interval; r may reach inf
     #[arg(long, value_name = "KEY=A:B")]
-    along: Range,
+    along: Interval,
 
     /// Values of the parameter at which cycles are wanted exactly
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
@@ -82,8 +86,8 @@ impl Cycles {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(true)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare()?;
         let along = along(&self.along)?;
         let at = values_on(&along, &self.at)?;
         let options = CycleOptions { at, ..CycleOptions::default() };
@@ -94,8 +98,13 @@ impl Cycles {
         let mut observer = |value: f64, period: f64| {
             found += 1;
             let (value, period) = (readable(value), readable(period));
-            progress.message(format!("{found} cycles, {} = {value}, period {period} s", along.key()));
-            interruption.flow()
+            let message = format!("{found} cycles, {} = {value}, period {period} s", along.key());
+            progress.show(Step::At(&message));
+            if interruption.flag().load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
         let branches = match start {
             Start::Cycle { origin, start } => {
@@ -118,16 +127,16 @@ impl Cycles {
             ));
         }
         output.deliver(&CyclesReport::new(wheel, along, &branches)?)?;
-        interruption.report()
+        Ok(interruption.check_branch()?)
     }
 
-    fn start(&self, along: Along) -> Result<(Wheel, Start), Failure> {
+    fn start(&self, along: Along) -> Result<(Wheel, Start), Error> {
         let Some(reference) = &self.from else {
             let wheel = self.wheel.wheel()?;
             let points = hopf::search(&wheel, along)?.points;
             return Ok((wheel, Start::Hopf { points, only: None }));
         };
-        let LabelledPoint { parameters, orbit, branching } = reference.read(&SCHEMAS)?;
+        let LabelledPoint { parameters, orbit, branching } = LabelledPoint::read(reference, &SCHEMAS)?;
         let wheel = stored_wheel(&parameters).map_err(|error| reference.failure(error.to_string()))?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
@@ -138,13 +147,15 @@ impl Cycles {
         if let Some(orbit) = orbit {
             let states = wheel.free_states();
             if orbit.dimension != states.len() {
-                return Err(reference.failure(format!(
-                    "the orbit of {} has {} states, this wheel {} ({}): leave k_u as it is in the file",
-                    reference.label,
-                    orbit.dimension,
-                    states.len(),
-                    states.join(", ")
-                )));
+                return Err(reference
+                    .failure(format!(
+                        "the orbit of {} has {} states, this wheel {} ({}): leave k_u as it is in the file",
+                        reference.label,
+                        orbit.dimension,
+                        states.len(),
+                        states.join(", ")
+                    ))
+                    .into());
             }
             reference.check(&orbit, states.len())?;
             // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
@@ -173,7 +184,7 @@ impl Cycles {
         let points = hopf::search(&wheel.with(along.key(), start)?, along)?.points;
         match points.iter().position(|point| same_value(point.value, value)) {
             Some(only) => Ok((wheel, Start::Hopf { points, only: Some(only) })),
-            None => Err(Failure::NothingFound(format!(
+            None => Err(Error::NothingFound(format!(
                 "{} is no Hopf point along {}: the wheel was changed, or the growth rate does not change its sign \
                  there; without --from all Hopf points of the interval are found",
                 reference.label,
@@ -190,7 +201,7 @@ fn from_hopf_points(
     along: Along,
     options: &CycleOptions,
     mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
-) -> Result<Vec<Branch>, Failure> {
+) -> Result<Vec<Branch>, Error> {
     let mut branches: Vec<Branch> = Vec::new();
     for (index, hopf) in points.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index))
     {

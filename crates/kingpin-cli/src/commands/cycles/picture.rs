@@ -2,8 +2,8 @@
 
 use super::report::{CyclesReport, PointReport};
 use crate::along::drawn_as;
-use crate::labels::kind;
 use crate::{axis_label, description};
+use arclength_analysis::labels::kind;
 use kingpin::Key;
 use kingpin_figure::{
     Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,

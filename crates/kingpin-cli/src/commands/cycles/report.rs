@@ -2,23 +2,23 @@
 
 use super::{Branch, picture};
 use crate::along::{VaryingParameter, as_followed};
-use crate::columns::Columns;
 use crate::commands::hopf::{criticality, named_state};
 use crate::description;
-use crate::document::{NamedNumbers, Number, Schema};
-use crate::failure::Failure;
-use crate::labels::{Labels, is_bifurcation, kind};
-use crate::numbers::{readable, significant};
-use crate::options::parameters_of;
-use crate::report::Report;
-use crate::table::{Cell, Table};
+use crate::error::Error;
+use crate::wheel_options::parameters_of;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
 use arclength::cycle::{Branching, CyclePoint, Orbit};
+use arclength_analysis::labels::{Labels, is_bifurcation, kind};
 use kingpin::Wheel;
 use kingpin::branches::{Along, HopfPoint};
 use kingpin::rolling::STATE_NAMES;
 use kingpin_figure::{Figure, FigureError};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::numbers::{readable, significant};
+use kingpin_report::{Cell, Table};
+use kingpin_report::{NamedNumbers, Number, Schema};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -78,8 +78,8 @@ impl CyclesReport {
     /// The result of branches in their order.
     ///
     /// # Errors
-    /// [`Failure::Wheel`] where a Hopf point has no uniform motion.
-    pub(super) fn new(wheel: Wheel, interval: Along, branches: &[Branch]) -> Result<Self, Failure> {
+    /// [`Error::Wheel`] where a Hopf point has no uniform motion.
+    pub(super) fn new(wheel: Wheel, interval: Along, branches: &[Branch]) -> Result<Self, Error> {
         let mut labels = Labels::default();
         let mut points = Vec::new();
         let mut ends = Vec::new();
@@ -154,7 +154,7 @@ fn at_cycle(branch: u64, cycle: &CyclePoint, label: Option<String>) -> PointRepo
 }
 
 /// The Hopf point as a cycle of no amplitude: its multipliers are the exponentials of the eigenvalues.
-fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<PointReport, Failure> {
+fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<PointReport, Error> {
     let period = TAU / hopf.frequency;
     let eigenvalues = hopf.wheel.uniform_motion()?.eigenvalues();
     let multipliers: Vec<Complex64> =

@@ -4,17 +4,20 @@ mod report;
 
 use crate::commands::basin::classification::Classification;
 use crate::commands::safe_kick::edge::{DisturbanceOptions, Edge};
-use crate::failure::Failure;
-use crate::journal::{Journal, interruption};
-use crate::numbers::readable;
-use crate::options::{OutputOptions, WheelOptions, parameter_help, parameters_of};
-use crate::output::Output;
-use crate::progress::Progress;
-use crate::range::SampledRange;
+use crate::error::Error;
+use crate::journal::Journal;
+use crate::wheel_options::{WheelOptions, parameter_help, parameters_of};
+use arclength_analysis::Progress as Step;
+use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin::branches::{Along, CycleOptions};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
+use kingpin_report::numbers::readable;
+use kingpin_terminal::Interruption;
+use kingpin_terminal::Output;
+use kingpin_terminal::OutputOptions;
+use kingpin_terminal::Progress;
 use rayon::prelude::*;
 use report::MarginReport;
 use serde::{Deserialize, Serialize};
@@ -43,7 +46,7 @@ const SEARCHED: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 pub struct Margin {
     /// Parameter, from A to B at N values
     #[arg(long, value_name = "KEY=A:B:N", default_value = "v=1:8:15")]
-    along: SampledRange,
+    along: SampledInterval,
 
     #[command(flatten)]
     disturbance: DisturbanceOptions,
@@ -74,24 +77,22 @@ impl Margin {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let key: Key = self.along.range.key.parse()?;
-        let along = Along::new(key, self.along.range.start, self.along.range.end)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let key: Key = self.along.interval.key.parse()?;
+        let along = Along::new(key, self.along.interval.start, self.along.interval.end)?;
         let count = self.along.count;
-        if count > MOST_POINTS || self.along.range.end.is_infinite() {
-            return Err(Failure::Option {
-                option: "--along",
-                given: format!("{} values up to {}", count, self.along.range.end),
-                problem: "too many, or infinite".to_owned(),
-                allowed: format!(
-                    "at most {MOST_POINTS} finite values; `curvature` goes to 0 where r goes to inf"
-                ),
-            });
+        if count > MOST_POINTS || self.along.interval.end.is_infinite() {
+            return Err(Error::invalid(
+                &["along"],
+                format!("{} values up to {}", count, self.along.interval.end),
+                "too many, or infinite".to_owned(),
+                format!("at most {MOST_POINTS} finite values; `curvature` goes to 0 where r goes to inf"),
+            ));
         }
         let (start, end) = along.ends();
         let values: Vec<f64> =
             (0..count).map(|index| start + (end - start) * (index as f64 / (count - 1) as f64)).collect();
-        let output = self.output.prepare(true)?;
+        let output = self.output.prepare()?;
         let wheel = self.wheel.wheel()?;
         self.disturbance.check(&wheel.with(key, end)?)?;
         if let Some(duration) = self.classification.duration() {
@@ -134,8 +135,8 @@ impl Margin {
         journal: &Journal,
         finished: BTreeMap<usize, Cell>,
         quiet: bool,
-    ) -> Result<Vec<Cell>, Failure> {
-        let cancelled = interruption()?;
+    ) -> Result<Vec<Cell>, Error> {
+        let cancelled = Interruption::watch()?.flag();
         let progress = Progress::bar("margin", quiet);
         let done = AtomicUsize::new(finished.len());
         let computed: Vec<(usize, Cell)> = (0..values.len())
@@ -145,10 +146,10 @@ impl Margin {
                 let cell = self.cell(&wheel.with(key, values[index])?)?;
                 journal.keep(index, &cell, cancelled);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                progress.done(done as f64 / values.len() as f64);
+                progress.show(Step::Done(done as f64 / values.len() as f64));
                 Ok((index, cell))
             })
-            .collect::<Result<_, Failure>>()?;
+            .collect::<Result<_, Error>>()?;
         drop(progress);
         let mut all = finished;
         all.extend(computed);
@@ -156,11 +157,11 @@ impl Margin {
         Ok(all.into_values().collect())
     }
 
-    fn cell(&self, wheel: &Wheel) -> Result<Cell, Failure> {
+    fn cell(&self, wheel: &Wheel) -> Result<Cell, Error> {
         let without =
             |problem: &str| Ok(Cell { positive: None, negative: None, problem: Some(problem.to_owned()) });
         let settings = match self.classification.settings(wheel) {
-            Err(Failure::Simulation(SimulationError::Wheel(KingpinError::NoUniformMotion { .. }))) => {
+            Err(Error::Simulation(SimulationError::Wheel(KingpinError::NoUniformMotion { .. }))) => {
                 return without("no uniform motion");
             }
             settings => settings?,
@@ -188,7 +189,7 @@ fn unstable_cycles(
     along: Along,
     values: &[f64],
     output: &Output,
-) -> Result<UnstableCycles, Failure> {
+) -> Result<UnstableCycles, Error> {
     let progress = Progress::spinner("unstable limit cycles", output.is_quiet());
     let mut found = UnstableCycles { amplitudes: vec![None; values.len()], remarks: Vec::new() };
     let key = along.key();

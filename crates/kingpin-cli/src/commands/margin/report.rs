@@ -2,18 +2,18 @@
 
 use super::{Cell as Found, UnstableCycles};
 use crate::along::VaryingParameter;
-use crate::columns::Columns;
 use crate::commands::safe_kick::edge::Edge;
-use crate::document::{NamedNumbers, Schema};
-use crate::numbers::readable;
-use crate::options::parameters_of;
-use crate::report::Report;
-use crate::table::{Cell, Table};
+use crate::wheel_options::parameters_of;
 use crate::{axis_label, description};
 use kingpin::Wheel;
 use kingpin::basin::{ContactModel, Disturbance};
 use kingpin::branches::Along;
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::numbers::readable;
+use kingpin_report::{Cell, Table};
+use kingpin_report::{NamedNumbers, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 

@@ -1,7 +1,7 @@
 //! Which disturbance, and the edges of what the wheel returns from.
 
 use crate::commands::basin::classification::NamedFate;
-use crate::failure::Failure;
+use crate::error::Error;
 use clap::{Args, ValueEnum};
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, Fate, SafeKick};
 use kingpin::simulation::SimulationError;
@@ -91,23 +91,23 @@ impl DisturbanceOptions {
     /// That the largest magnitude makes sense.
     ///
     /// # Errors
-    /// [`Failure::Option`].
-    pub fn check(&self, wheel: &Wheel) -> Result<(), Failure> {
+    /// [`Error::Option`].
+    pub fn check(&self, wheel: &Wheel) -> Result<(), Error> {
         let largest = self.largest(wheel);
         let stands = self.kind == Kind::Jolt && largest >= wheel.get(Key::V);
         if largest > 0.0 && largest.is_finite() && !stands {
             return Ok(());
         }
         let unit = self.kind().unit();
-        Err(Failure::Option {
-            option: "--largest",
-            given: largest.to_string(),
-            problem: if stands { "the wheel would stand before the jolt" } else { "no magnitude" }.to_owned(),
-            allowed: match self.kind {
+        Err(Error::invalid(
+            &["largest"],
+            largest.to_string(),
+            if stands { "the wheel would stand before the jolt" } else { "no magnitude" }.to_owned(),
+            match self.kind {
                 Kind::Jolt => format!("above 0 and below v = {} {unit}", wheel.get(Key::V)),
                 _ => format!("positive and finite, in {unit}"),
             },
-        })
+        ))
     }
 
     /// The edges in the positive and in the negative direction, where there are any. A step of the curvature has one direction.

@@ -4,13 +4,14 @@ pub mod edge;
 mod report;
 
 use crate::commands::basin::classification::Classification;
-use crate::failure::Failure;
-use crate::options::{OutputOptions, WheelOptions, parameter_help};
-use crate::progress::Progress;
+use crate::error::Error;
+use crate::wheel_options::{WheelOptions, parameter_help};
 use clap::Args;
 use edge::{DisturbanceOptions, Edge};
 use kingpin::basin::{Disturbance, DisturbedMotion};
 use kingpin::{Key, Wheel};
+use kingpin_terminal::OutputOptions;
+use kingpin_terminal::Progress;
 use report::SafeKickReport;
 
 const EXAMPLE: &str = "kingpin safe-kick -s v=6 -o edge.svg
@@ -48,8 +49,8 @@ impl SafeKick {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare(true)?;
+    pub fn run(&self) -> Result<(), Error> {
+        let output = self.output.prepare()?;
         let wheel = self.wheel.wheel()?;
         let settings = self.classification.settings(&wheel)?;
         let model = self.classification.model();
@@ -71,11 +72,11 @@ impl SafeKick {
         drop(progress);
         let kind = self.disturbance.kind();
         let largest = self.disturbance.largest(&wheel);
-        output.deliver(&SafeKickReport::new(wheel, kind, model, settings, largest, edges, motions))
+        Ok(output.deliver(&SafeKickReport::new(wheel, kind, model, settings, largest, edges, motions))?)
     }
 
     /// The motions on both sides of the edge, until they have parted.
-    fn motions(&self, wheel: &Wheel, edge: &Edge, duration: f64) -> Result<[DisturbedMotion; 2], Failure> {
+    fn motions(&self, wheel: &Wheel, edge: &Edge, duration: f64) -> Result<[DisturbedMotion; 2], Error> {
         let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
         let period = std::f64::consts::TAU * (mass / wheel.get(Key::KQ)).sqrt();
         let history = |magnitude: f64, duration: f64| {

@@ -1,17 +1,17 @@
 //! The edges of what the wheel returns from as a result, with the motions on both sides of the nearer one.
 
 use super::edge::Edge;
-use crate::columns::Columns;
 use crate::description;
-use crate::document::{NamedNumbers, Schema};
-use crate::history::drawn;
-use crate::numbers::readable;
-use crate::options::parameters_of;
-use crate::report::Report;
-use crate::table::Table;
+use crate::wheel_options::parameters_of;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::Report;
+use kingpin_report::Table;
+use kingpin_report::history::drawn;
+use kingpin_report::numbers::readable;
+use kingpin_report::{NamedNumbers, Schema};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::{self, Write};

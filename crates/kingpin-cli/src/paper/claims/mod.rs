@@ -14,7 +14,7 @@ use super::rolling_limit::RollingLimits;
 use super::stability_chart::StabilityChart;
 use super::uniform_motion::UniformMotions;
 use super::{PaperError, Progress};
-use crate::numbers::significant;
+use kingpin_report::numbers::significant;
 use serde::Serialize;
 
 /// What became of a statement.

@@ -1,13 +1,13 @@
 //! Figure 7: branches of cycles for three dampers, and the folds in speed and damping.
 
 use super::{DETACHED, Isola, WITH_HOPF_POINTS};
-use crate::columns::Columns;
 use crate::studies::Drawing;
 use arclength::cycle::{CycleBranch, Role, Special};
 use kingpin_figure::{
     Axis, Branch, Color, Figure, Legend, LegendEntry, Line, Marker, MarkerShape, Markers, Panel, Region,
     Stability, palette,
 };
+use kingpin_report::Columns;
 
 /// Speeds shown in m/s, dampings in N s/m.
 const SPEEDS: (f64, f64) = (0.015, 60.0);

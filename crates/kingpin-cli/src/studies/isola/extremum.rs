@@ -1,7 +1,7 @@
 //! The extremum of the damping along a curve of folds: where the isola shrinks to a point.
 
 use super::super::not_found;
-use crate::failure::Failure;
+use crate::error::Error;
 use arclength::branch::SpecialKind;
 use arclength::locus::{CycleLocus, CycleLocusBranch, CycleLocusPoint};
 use kingpin::LateralWheel;
@@ -26,7 +26,7 @@ pub(in crate::studies) struct Extremum {
 
 /// The largest damping on the curve: from the largest computed point, folds at exact speeds around it, and the
 /// maximum of the polynomial through them.
-pub(super) fn largest_damping(field: &LateralWheel, folds: &CycleLocusBranch) -> Result<Extremum, Failure> {
+pub(super) fn largest_damping(field: &LateralWheel, folds: &CycleLocusBranch) -> Result<Extremum, Error> {
     let missing = || {
         not_found(
             "largest damping",

@@ -8,7 +8,7 @@ mod drawing;
 mod extremum;
 
 use super::{Finding, Study, not_found, wheel};
-use crate::failure::Failure;
+use crate::error::Error;
 use arclength::branch::SpecialKind;
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Special};
@@ -123,13 +123,13 @@ pub(super) fn lateral(speed: f64, damping: f64) -> Result<LateralWheel, KingpinE
     wheel(&values)?.lateral(&[Key::V, Key::CQ])
 }
 
-pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Failure> {
+pub(super) fn study(progress: &(dyn Fn(f64) + Sync)) -> Result<Study, Error> {
     let isola = Isola::compute(progress)?;
     Ok(Study { findings: isola.findings(), drawings: vec![isola.drawing()], pictures: Vec::new() })
 }
 
 impl Isola {
-    pub fn compute(progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Failure> {
+    pub fn compute(progress: &(dyn Fn(f64) + Sync)) -> Result<Self, Error> {
         let field = lateral(1.0, WITH_HOPF_POINTS)?;
         let straight =
             Equilibria::of(&field).parameters(&[1.0, WITH_HOPF_POINTS]).along("v", 0.1..=20.0).run()?;
@@ -158,23 +158,23 @@ impl Isola {
             .along(DAMPING, BRIDGED.0..=BRIDGED.1)
             .at(&[SHOWN[0], DETACHED, SHOWN[1]])
             .run()?;
-        let reached = |damping: f64| -> Result<&Orbit, Failure> {
+        let reached = |damping: f64| -> Result<&Orbit, Error> {
             let at = |point: &&CyclePoint| point.value == damping;
             let found = bridged.points.iter().find(at).map(|point| &point.orbit);
             found.ok_or_else(|| not_found("limit cycle", &format!("v = 10 m/s, c_q = {damping} N s/m")))
         };
         progress(0.3);
-        let start = |damping: f64| Ok::<_, Failure>(CycleStart::Orbit(reached(damping)?.clone()));
+        let start = |damping: f64| Ok::<_, Error>(CycleStart::Orbit(reached(damping)?.clone()));
         let lightest = bridged.points.iter().min_by(|a, b| a.value.total_cmp(&b.value));
         let undamped_angle = lightest.map_or(0.0, |point| point.max[1]);
         let shown = SHOWN
             .into_iter()
             .map(|damping| Ok((damping, along_speed(&field, start(damping)?, [BRIDGE, damping])?)))
-            .collect::<Result<Vec<_>, Failure>>()?;
+            .collect::<Result<Vec<_>, Error>>()?;
         progress(0.5);
         let closed = along_speed(&field, start(DETACHED)?, [BRIDGE, DETACHED])?;
         if !matches!(closed.stops.1, Stop::Closed) {
-            return Err(Failure::NothingFound(format!(
+            return Err(Error::NothingFound(format!(
                 "the branch of cycles at c_q = {DETACHED} N s/m does not close: {}",
                 closed.stops.1
             )));
