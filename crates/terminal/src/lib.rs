@@ -3,6 +3,7 @@
 //! A command turns its options into a request, runs the analysis by [`Output::watch`], which shows progress and listens to
 //! Ctrl-C, and hands the result to [`Output::deliver`].
 
+mod exit;
 mod failure;
 mod interruption;
 mod options;
@@ -10,7 +11,8 @@ mod output;
 mod progress;
 mod streams;
 
-pub use failure::{Failure, exit_code};
+pub use exit::exit_code;
+pub use failure::Failure;
 pub use interruption::Interruption;
 pub use options::{
     MOST_THREADS, MeshOptions, OutputOptions, PlaneOptions, StepOptions, requested_values, start_threads,
