@@ -47,7 +47,7 @@ pub struct Values {
 }
 
 /// A parameter with its value as text, `KEY=VALUE`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Assignment {
     /// Key of the parameter.
     pub key: String,
@@ -106,6 +106,11 @@ fn number(text: &str) -> Result<f64, IntervalError> {
 }
 
 impl Interval {
+    /// The interval of a parameter between two values, in either order.
+    pub fn new(key: impl Into<String>, first: f64, second: f64) -> Self {
+        Self { key: key.into(), start: first.min(second), end: first.max(second) }
+    }
+
     /// Whether a value is inside, ends included.
     pub fn contains(&self, value: f64) -> bool {
         (self.start..=self.end).contains(&value)
@@ -151,6 +156,19 @@ impl FromStr for Interval {
             [first, second] => Self::parsed(key, first, second),
             _ => Err(INTERVAL),
         }
+    }
+}
+
+impl SampledInterval {
+    /// Equidistant values of a parameter between two values, both included.
+    pub fn new(key: impl Into<String>, first: f64, second: f64, count: usize) -> Self {
+        Self { interval: Interval::new(key, first, second), count }
+    }
+}
+
+impl std::fmt::Display for SampledInterval {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "{}:{}", self.interval, self.count)
     }
 }
 

@@ -27,6 +27,7 @@ pub mod simulate;
 mod start;
 mod steps;
 mod stored_model;
+mod varying_parameter;
 
 pub use branch::Origin;
 pub use control::{Control, Progress};
@@ -40,3 +41,4 @@ pub use result_file::ResultFile;
 pub use start::{LabelledPoint, What};
 pub use steps::{Mesh, Steps};
 pub use stored_model::StoredModel;
+pub use varying_parameter::VaryingParameter;

@@ -63,11 +63,11 @@ impl Cycles {
             mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
-        analysis.warnings().iter().for_each(|warning| output.warn(warning));
+        output.warn_of(analysis.warnings());
         let progress = Progress::spinner("cycles", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
-        result.warnings().iter().for_each(|warning| output.warn(warning));
+        output.warn_of(&result.warnings());
         output.deliver(&result)?;
         interruption.check_branch()
     }

@@ -49,7 +49,7 @@ impl Equilibria {
             steps: self.steps.into(),
         };
         let analysis = request.validate()?;
-        analysis.warnings().iter().for_each(|warning| output.warn(warning));
+        output.warn_of(analysis.warnings());
         let progress = Progress::spinner("equilibria", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         output.deliver(&result?)?;

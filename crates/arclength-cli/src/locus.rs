@@ -59,7 +59,7 @@ impl Locus {
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.deliver(&result)?;
-        result.warnings().iter().for_each(|warning| output.warn(warning));
+        output.warn_of(&result.warnings());
         interruption.check_branch()
     }
 }

@@ -35,7 +35,7 @@ impl Simulate {
         let request =
             SimulateRequest { model: self.model.request()?, duration: self.duration, points: self.points };
         let analysis = request.validate()?;
-        analysis.warnings().iter().for_each(|warning| output.warn(warning));
+        output.warn_of(analysis.warnings());
         output.deliver(&analysis.run()?)
     }
 }

@@ -72,6 +72,11 @@ impl Output {
         }
     }
 
+    /// Warns of several things on standard error.
+    pub fn warn_of(&self, messages: &[String]) {
+        messages.iter().for_each(|message| self.warn(message));
+    }
+
     /// Says something worth knowing on standard error.
     pub fn note(&self, message: &str) {
         if !self.quiet {

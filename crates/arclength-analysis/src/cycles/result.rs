@@ -9,6 +9,7 @@ use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::varying_parameter::VaryingParameter;
 use arclength::cycle::{Branching, CycleBranch, CyclePoint, Orbit, Unlocated};
 use kingpin_figure::{Figure, FigureError, palette};
 use kingpin_report::numbers::readable;
@@ -85,7 +86,7 @@ pub struct CyclesResult {
     /// The model.
     pub model: StoredModel,
     /// The parameter that varies.
-    pub along: Interval,
+    pub along: VaryingParameter,
     /// Where the branch starts.
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
@@ -133,7 +134,7 @@ impl CyclesResult {
         Self {
             parameters: chosen.named_parameters(&[active]),
             model: chosen.stored.clone(),
-            along: along.clone(),
+            along: along.into(),
             from,
             ends: [first, End::of(second, &keys, last(points.last()))],
             unlocated: branch.unlocated.iter().map(unlocated).collect(),

@@ -9,6 +9,7 @@ use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::varying_parameter::VaryingParameter;
 use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
 use kingpin_figure::{Figure, FigureError, palette};
 use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
@@ -49,7 +50,7 @@ pub struct EquilibriaResult {
     /// The model.
     pub model: StoredModel,
     /// The parameter that varies.
-    pub along: Interval,
+    pub along: VaryingParameter,
     /// Where the branch starts.
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
@@ -87,7 +88,7 @@ impl EquilibriaResult {
         Self {
             parameters: chosen.named_parameters(&[branch.active]),
             model: chosen.stored.clone(),
-            along: along.clone(),
+            along: along.into(),
             from,
             ends,
             points,

@@ -8,6 +8,7 @@ use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::varying_parameter::VaryingParameter;
 use arclength::branch::{Label, SpecialKind};
 use arclength::cycle::Orbit;
 use arclength::locus::{CycleLocusBranch, CycleLocusPoint};
@@ -89,7 +90,7 @@ pub struct CycleLocusResult {
     pub model: StoredModel,
     /// The parameters that vary.
     #[serde(rename = "in")]
-    pub plane: [Interval; 2],
+    pub plane: [VaryingParameter; 2],
     /// Where the curve starts.
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
@@ -132,7 +133,7 @@ impl CycleLocusResult {
             parameters: chosen.named_parameters(&branch.active),
             kind: branch.kind,
             model: chosen.stored.clone(),
-            plane: plane.map(Clone::clone),
+            plane: plane.map(VaryingParameter::from),
             from,
             ends: [
                 End::of(&branch.backward_stop, &keys, last(points.first())),

@@ -9,6 +9,7 @@ use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::varying_parameter::VaryingParameter;
 use arclength::branch::SpecialKind;
 use arclength::locus::{CodimensionTwoPoint, EquilibriumLocusBranch, LocusPoint};
 use kingpin_figure::{Color, Figure, FigureError, palette};
@@ -56,7 +57,7 @@ pub struct EquilibriumLocusResult {
     pub model: StoredModel,
     /// The parameters that vary.
     #[serde(rename = "in")]
-    pub plane: [Interval; 2],
+    pub plane: [VaryingParameter; 2],
     /// Where the curve starts.
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
@@ -104,7 +105,7 @@ impl EquilibriumLocusResult {
             parameters: chosen.named_parameters(&branch.active),
             kind: branch.kind,
             model: chosen.stored.clone(),
-            plane: plane.map(Clone::clone),
+            plane: plane.map(VaryingParameter::from),
             from,
             ends,
             points,
