@@ -6,6 +6,7 @@
 mod algebraic;
 pub mod branch;
 pub mod continuation;
+pub mod control;
 pub mod cycle;
 pub mod differentiation;
 pub mod equilibrium;
@@ -13,6 +14,7 @@ mod erased;
 pub mod error;
 pub mod field;
 pub mod integration;
+pub mod lanes;
 pub mod linear;
 pub mod locus;
 pub mod numbers;

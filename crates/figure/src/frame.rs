@@ -6,7 +6,8 @@ use crate::font::Font;
 use crate::geometry::{Point, Rect};
 use crate::legend::{Legend, LegendLayout};
 use crate::panel::{Map, Panel};
-use crate::scene::{Dash, Item, Path, Raster, Scene, Stroke};
+use crate::path::Path;
+use crate::scene::{Dash, Item, Raster, Scene, Stroke};
 use crate::style::{FRAME_WIDTH, LABEL_GAP, MAJOR_TICK, MINOR_TICK, SMALL_SIZE, TEXT_SIZE};
 use crate::text::{Anchor, TextLayout};
 

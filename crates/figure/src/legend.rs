@@ -3,7 +3,8 @@
 use crate::color::{Color, palette};
 use crate::geometry::{Point, Rect};
 use crate::markers::draw_marker;
-use crate::scene::{Dash, Path, Scene, Stroke};
+use crate::path::Path;
+use crate::scene::{Dash, Scene, Stroke};
 use crate::series::Marker;
 use crate::style::{FRAME_WIDTH, SMALL_SIZE};
 use crate::text::{Anchor, TextLayout};

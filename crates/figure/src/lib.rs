@@ -47,6 +47,7 @@ mod markers;
 mod markup;
 mod panel;
 mod panel3d;
+mod path;
 mod pdf;
 mod placement;
 mod png;

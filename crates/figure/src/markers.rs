@@ -2,7 +2,8 @@
 
 use crate::color::{Color, palette};
 use crate::geometry::Point;
-use crate::scene::{Dash, Item, Path, Scene, Stroke};
+use crate::path::Path;
+use crate::scene::{Dash, Item, Scene, Stroke};
 use crate::series::{Marker, MarkerShape};
 
 /// Width of the rim of a marker, and of hatching and its spacing, in points.
@@ -61,7 +62,7 @@ pub(crate) fn draw_hatching(scene: &mut Scene, corners: &[Point], color: Color, 
 mod tests {
     use super::*;
     use crate::geometry::Rect;
-    use crate::scene::Segment;
+    use crate::path::Segment;
 
     #[test]
     fn hatching_stays_inside_at_every_angle() {

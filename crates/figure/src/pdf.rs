@@ -6,7 +6,8 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 use crate::color::Color;
 use crate::font::UNITS_PER_EM;
 use crate::geometry::Point;
-use crate::scene::{Item, Path, Raster, Scene, Segment};
+use crate::path::{Path, Segment};
+use crate::scene::{Item, Raster, Scene};
 
 /// Effort of the deflate compression, from 0 to 10.
 const COMPRESSION: u8 = 6;

@@ -10,7 +10,8 @@ use crate::color::Color;
 use crate::error::FigureError;
 use crate::font::{Glyph, UNITS_PER_EM};
 use crate::geometry::Rect;
-use crate::scene::{Item, Path, Raster, Scene, Segment, Stroke};
+use crate::path::{Path, Segment};
+use crate::scene::{Item, Raster, Scene, Stroke};
 
 /// Points per inch.
 const POINTS_PER_INCH: f64 = 72.0;

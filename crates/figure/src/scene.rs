@@ -3,6 +3,7 @@
 
 use crate::color::Color;
 use crate::geometry::{Point, Rect};
+use crate::path::Path;
 use crate::text::TextLayout;
 
 /// A picture ready for a writer.
@@ -19,21 +20,6 @@ pub(crate) enum Item {
     Shape { path: Path, fill: Option<Color>, stroke: Option<Stroke> },
     Raster { frame: Rect, raster: Raster },
     Text { layout: TextLayout, at: Point, degrees: f64, color: Color, halo: Option<Halo> },
-}
-
-/// An outline of any number of pieces.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Path {
-    pub segments: Vec<Segment>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Segment {
-    Move(Point),
-    Line(Point),
-    Quad(Point, Point),
-    Cubic(Point, Point, Point),
-    Close,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,46 +74,6 @@ pub(crate) struct Raster {
     pub rows: usize,
     /// Red, green, blue and opacity of each pixel, row by row.
     pub pixels: Vec<[u8; 4]>,
-}
-
-impl Path {
-    pub fn polyline(points: &[Point]) -> Self {
-        let mut path = Path::default();
-        path.add_polyline(points);
-        path
-    }
-
-    pub fn polygon(points: &[Point]) -> Self {
-        let mut path = Path::polyline(points);
-        path.segments.push(Segment::Close);
-        path
-    }
-
-    pub fn rectangle(rect: &Rect) -> Self {
-        Path::polygon(&rect.corners())
-    }
-
-    pub fn circle(center: Point, radius: f64) -> Self {
-        // Control points at this distance make a cubic deviate from a quarter circle by at most 0.03 %.
-        let k = 0.552_284_749_8 * radius;
-        let (c, r) = (center, radius);
-        Path {
-            segments: vec![
-                Segment::Move(c.offset(r, 0.0)),
-                Segment::Cubic(c.offset(r, k), c.offset(k, r), c.offset(0.0, r)),
-                Segment::Cubic(c.offset(-k, r), c.offset(-r, k), c.offset(-r, 0.0)),
-                Segment::Cubic(c.offset(-r, -k), c.offset(-k, -r), c.offset(0.0, -r)),
-                Segment::Cubic(c.offset(k, -r), c.offset(r, -k), c.offset(r, 0.0)),
-                Segment::Close,
-            ],
-        }
-    }
-
-    pub fn add_polyline(&mut self, points: &[Point]) {
-        for (i, &p) in points.iter().enumerate() {
-            self.segments.push(if i == 0 { Segment::Move(p) } else { Segment::Line(p) });
-        }
-    }
 }
 
 impl Scene {

@@ -12,8 +12,9 @@ use crate::color::Color;
 use crate::error::FigureError;
 use crate::font::{Font, Glyph, UNITS_PER_EM};
 use crate::geometry::Point;
+use crate::path::{Path, Segment};
 use crate::png::encode;
-use crate::scene::{Item, Path, Scene, Segment, Stroke};
+use crate::scene::{Item, Scene, Stroke};
 use crate::text::TextLayout;
 
 /// Steps per point on the page.

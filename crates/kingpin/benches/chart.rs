@@ -1,8 +1,8 @@
 //! Charts of 600 x 400 points in the plane of figure 3, and a boundary in it.
 
+use arclength::control::Control;
 use divan::{Bencher, counter::ItemsCount};
 use kingpin::{Axis, Key, Plane, Wheel};
-use std::ops::ControlFlow;
 
 fn main() {
     divan::main();
@@ -24,7 +24,7 @@ fn on_threads(bencher: Bencher, threads: usize, chart: impl Fn() + Sync) {
 #[divan::bench(args = [1, 2], sample_count = 20)]
 fn growth_rate(bencher: Bencher, threads: usize) {
     on_threads(bencher, threads, || {
-        let chart = Wheel::default().growth_rate_chart(&plane(), POINTS, &|_| ControlFlow::Continue(()));
+        let chart = Wheel::default().growth_rate_chart(&plane(), POINTS, &Control::none());
         divan::black_box(chart.expect("computed"));
     });
 }
@@ -33,7 +33,7 @@ fn growth_rate(bencher: Bencher, threads: usize) {
 fn growth_rate_with_damping(bencher: Bencher, threads: usize) {
     on_threads(bencher, threads, || {
         let wheel = Wheel::default().with(Key::CQ, 0.1).expect("allowed");
-        let chart = wheel.growth_rate_chart(&plane(), POINTS, &|_| ControlFlow::Continue(()));
+        let chart = wheel.growth_rate_chart(&plane(), POINTS, &Control::none());
         divan::black_box(chart.expect("computed"));
     });
 }
@@ -41,12 +41,12 @@ fn growth_rate_with_damping(bencher: Bencher, threads: usize) {
 #[divan::bench(args = [1, 2], sample_count = 50)]
 fn stability(bencher: Bencher, threads: usize) {
     on_threads(bencher, threads, || {
-        let chart = Wheel::default().stability_chart(&plane(), POINTS, &|_| ControlFlow::Continue(()));
+        let chart = Wheel::default().stability_chart(&plane(), POINTS, &Control::none());
         divan::black_box(chart.expect("computed"));
     });
 }
 
 #[divan::bench(sample_count = 20)]
 fn boundary(bencher: Bencher) {
-    bencher.bench_local(|| Wheel::default().stability_boundary(&plane()));
+    bencher.bench_local(|| Wheel::default().stability_boundary(&plane(), &Control::none()));
 }

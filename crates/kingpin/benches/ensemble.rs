@@ -5,6 +5,7 @@
 //! machine counts as little as possible. Errors are those of the final states against the Runge-Kutta integrator
 //! at a tolerance of 1e-13. `KINGPIN_PYTHON` names another interpreter than `python3`.
 
+use arclength::control::Control;
 use arclength::integration::{Integrator, autonomous};
 use kingpin::ensemble::Ensemble;
 use kingpin::{Key, Wheel};
@@ -95,7 +96,7 @@ fn run_ensemble(
     for _ in 0..REPETITIONS {
         let (ends, time) = pool.install(|| {
             let start = ThreadTime::now();
-            let ends = ensemble.integrate(initial, DURATION);
+            let ends = ensemble.integrate(initial, DURATION, &Control::none());
             (ends, start.elapsed())
         });
         best = best.min(time);

@@ -2,9 +2,9 @@
 //!
 //! Everything that no active parameter changes is computed once, in `f64`, so that derivatives are not carried through it.
 
+use crate::body::Body;
 use crate::error::KingpinError;
 use crate::parameters::Key;
-use crate::rolling::Body;
 use crate::wheel::Wheel;
 use arclength::Scalar;
 

@@ -8,6 +8,7 @@ use crate::parameters::Key;
 use crate::plane::Plane;
 use crate::tracing::{Traced, trace_zero_set};
 use crate::wheel::Wheel;
+use arclength::control::{Control, Interrupted};
 
 /// A boundary in the plane of two parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,41 +23,59 @@ impl Wheel {
     /// The curves in the plane on which the uniform motion changes its stability. They end where the plane or the motion
     /// does.
     ///
+    /// # Errors
+    /// [`Interrupted`].
+    ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::{Axis, Key, Plane, Wheel};
     /// let plane = Plane::new(Axis::new(Key::V, 0.0..=10.0)?, Axis::new(Key::L, 0.02..=0.2)?)?;
     /// let wheel = Wheel::default();
-    /// for [v, l] in &wheel.stability_boundary(&plane)[0].points {
+    /// for [v, l] in &wheel.stability_boundary(&plane, &Control::none())?[0].points {
     ///     let critical = wheel.with(Key::L, *l)?.critical_yaw_rate().unwrap();
     ///     assert!((v * v - critical * critical).abs() < 1e-9);
     /// }
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
-    pub fn stability_boundary(&self, plane: &Plane) -> Vec<Curve> {
-        let mut boundary = self.zero_set(plane, Wheel::flutter_margin);
-        boundary.extend(self.zero_set(plane, Wheel::divergence_margin));
-        boundary
+    pub fn stability_boundary(
+        &self,
+        plane: &Plane,
+        control: &Control<'_>,
+    ) -> Result<Vec<Curve>, Interrupted> {
+        let mut boundary = self.zero_set(plane, Wheel::flutter_margin, &control.part(0.0..0.5))?;
+        boundary.extend(self.zero_set(plane, Wheel::divergence_margin, &control.part(0.5..1.0))?);
+        Ok(boundary)
     }
 
     /// The curves in the plane on which the ground can just hold the wheel in its uniform motion, `F_f = mu_s N`.
-    pub fn rolling_limit(&self, plane: &Plane) -> Vec<Curve> {
-        self.zero_set(plane, |wheel| {
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub fn rolling_limit(&self, plane: &Plane, control: &Control<'_>) -> Result<Vec<Curve>, Interrupted> {
+        let reserve = |wheel: &Wheel| {
             let force = wheel.contact_force(&wheel.uniform_state().ok()?);
             Some(force.friction() - force.limit)
-        })
+        };
+        self.zero_set(plane, reserve, control)
     }
 
-    fn zero_set(&self, plane: &Plane, function: impl Fn(&Wheel) -> Option<f64>) -> Vec<Curve> {
+    fn zero_set(
+        &self,
+        plane: &Plane,
+        function: impl Fn(&Wheel) -> Option<f64>,
+        control: &Control<'_>,
+    ) -> Result<Vec<Curve>, Interrupted> {
         let parameters = |[x, y]: [f64; 2]| [plane.x().at(x), plane.y().at(y)];
         let keys: [Key; 2] = [plane.x().key(), plane.y().key()];
-        let curves = trace_zero_set(|point| {
+        let at_point = |point| {
             let [x, y] = parameters(point);
             function(&self.with(keys[0], x).ok()?.with(keys[1], y).ok()?)
-        });
+        };
+        let curves = trace_zero_set(at_point, control)?;
         let in_units = |Traced { points, closed }| Curve {
             points: points.into_iter().map(parameters).collect(),
             closed,
         };
-        curves.into_iter().map(in_units).collect()
+        Ok(curves.into_iter().map(in_units).collect())
     }
 }

@@ -1,27 +1,27 @@
 //! Charts over a grid in the plane of two parameters, on all cores.
 //!
 //! A growth-rate chart takes the roots of the characteristic polynomial at every point. Where only stability is asked
-//! for, a plain wheel needs no root: the Routh-Hurwitz conditions are evaluated eight points at a time, with the widest
-//! vector instructions that the processor has.
+//! for, a plain wheel needs no root: the Routh-Hurwitz conditions are evaluated eight points at a time, with the vector
+//! instructions of the processor, but no fused ones, so that the chart does not depend on it.
 
+use crate::body::Body;
 use crate::error::KingpinError;
 use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomial};
-use crate::lanes::{LANES, Lanes};
 use crate::parameters::Key;
 use crate::plane::Plane;
-use crate::rolling::Body;
 use crate::wheel::Wheel;
+use arclength::control::Control;
+use arclength::lanes::{self, Kernel};
 use rayon::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Most points of a grid.
 pub const MOST_POINTS: usize = 100_000_000;
 /// Points that one core computes before it asks for more, at least.
 const POINTS_PER_CHUNK: usize = 4096;
+/// Points of a row that are taken together.
+const LANES: usize = 8;
 
-/// Told the part of the chart that is done, from 0 to 1, from any thread; `Break` cancels the computation.
-pub type Observer<'a> = dyn Fn(f64) -> ControlFlow<()> + Sync + 'a;
+type Lanes = lanes::Lanes<LANES>;
 
 /// Stability and rolling on a grid. The rows of the grid follow each other: point `(column, row)` has the index
 /// `row * x.len() + column`.
@@ -57,20 +57,20 @@ impl Wheel {
     ///
     /// ```
     /// use kingpin::{Axis, Key, Plane, Wheel};
-    /// use std::ops::ControlFlow::Continue;
+    /// use arclength::control::Control;
     /// let plane = Plane::new(Axis::new(Key::V, 1.0..=10.0)?, Axis::new(Key::L, 0.05..=0.2)?)?;
-    /// let chart = Wheel::default().growth_rate_chart(&plane, [10, 4], &|_| Continue(()))?;
+    /// let chart = Wheel::default().growth_rate_chart(&plane, [10, 4], &Control::none())?;
     /// assert!(chart.stable[0] && !chart.stable[9]);
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     ///
     /// # Errors
-    /// [`GridSize`](KingpinError::GridSize) and [`Cancelled`](KingpinError::Cancelled).
+    /// [`GridSize`](KingpinError::GridSize) and [`Interrupted`](KingpinError::Interrupted).
     pub fn growth_rate_chart(
         &self,
         plane: &Plane,
         points: [usize; 2],
-        observer: &Observer,
+        control: &Control<'_>,
     ) -> Result<GrowthRateChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
         let mut growth_rate = vec![None; x.len() * y.len()];
@@ -80,7 +80,7 @@ impl Wheel {
         let (x_key, y_key) = (plane.x().key(), plane.y().key());
         let width = x.len();
         let chunk = rows_per_chunk(width) * width;
-        let progress = Progress::new(y.len(), observer);
+        let progress = control.count(y.len());
         (rows.0.par_chunks_mut(chunk), rows.1.par_chunks_mut(chunk), rows.2.par_chunks_mut(chunk))
             .into_par_iter()
             .zip(y.par_chunks(rows_per_chunk(width)))
@@ -88,11 +88,13 @@ impl Wheel {
                 let points = y.iter().flat_map(|&y| x.iter().map(move |&x| (x, y)));
                 let results = growth_rate.iter_mut().zip(stable).zip(rolls);
                 for ((x, y), ((growth_rate, stable), rolls)) in points.zip(results) {
+                    control.check()?;
                     let wheel = self.with(y_key, y).and_then(|wheel| wheel.with(x_key, x))?;
                     let Some((rate, holds)) = wheel.growth_rate_and_rolling() else { continue };
                     (*growth_rate, *stable, *rolls) = (Some(rate), rate < 0.0, holds);
                 }
-                progress.advance(y.len())
+                progress.advance(y.len());
+                Ok::<_, KingpinError>(())
             })?;
         Ok(GrowthRateChart { x, y, growth_rate, stable, rolls })
     }
@@ -105,7 +107,7 @@ impl Wheel {
         &self,
         plane: &Plane,
         points: [usize; 2],
-        observer: &Observer,
+        control: &Control<'_>,
     ) -> Result<StabilityChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
         let keys = [plane.x().key(), plane.y().key()];
@@ -116,24 +118,25 @@ impl Wheel {
         let corner = self.with(keys[0], x[0])?.with(keys[1], y[0])?;
         if !(corner.is_plain() && stays_plain) {
             let GrowthRateChart { x, y, stable, rolls, .. } =
-                self.growth_rate_chart(plane, points, observer)?;
+                self.growth_rate_chart(plane, points, control)?;
             return Ok(StabilityChart { x, y, stable, rolls });
         }
         let mut stable = vec![false; x.len() * y.len()];
         let mut rolls = vec![false; x.len() * y.len()];
         let width = x.len();
         let chunk = rows_per_chunk(width) * width;
-        let progress = Progress::new(y.len(), observer);
-        let processor = pulp::Arch::new();
+        let progress = control.count(y.len());
         (stable.par_chunks_mut(chunk), rolls.par_chunks_mut(chunk))
             .into_par_iter()
             .zip(y.par_chunks(rows_per_chunk(width)))
             .try_for_each(|((stable, rolls), y)| {
                 for ((stable, rolls), &y) in stable.chunks_mut(width).zip(rolls.chunks_mut(width)).zip(y) {
+                    control.check()?;
                     let row = corner.with(keys[1], y)?;
-                    processor.dispatch(PlainRow { row: &row, key: keys[0], x: &x, stable, rolls });
+                    lanes::run(PlainRow { row: &row, key: keys[0], x: &x, stable, rolls });
                 }
-                progress.advance(y.len())
+                progress.advance(y.len());
+                Ok::<_, KingpinError>(())
             })?;
         Ok(StabilityChart { x, y, stable, rolls })
     }
@@ -151,31 +154,6 @@ fn rows_per_chunk(width: usize) -> usize {
     POINTS_PER_CHUNK.div_ceil(width)
 }
 
-/// Counts the rows that are done, and stops all threads when the observer says so.
-struct Progress<'a> {
-    rows: usize,
-    done: AtomicUsize,
-    cancelled: AtomicBool,
-    observer: &'a Observer<'a>,
-}
-
-impl<'a> Progress<'a> {
-    fn new(rows: usize, observer: &'a Observer<'a>) -> Self {
-        Self { rows, done: AtomicUsize::new(0), cancelled: AtomicBool::new(false), observer }
-    }
-
-    fn advance(&self, rows: usize) -> Result<(), KingpinError> {
-        let done = self.done.fetch_add(rows, Ordering::Relaxed) + rows;
-        if self.cancelled.load(Ordering::Relaxed)
-            || (self.observer)(done as f64 / self.rows as f64).is_break()
-        {
-            self.cancelled.store(true, Ordering::Relaxed);
-            return Err(KingpinError::Cancelled);
-        }
-        Ok(())
-    }
-}
-
 /// One row of a stability chart of plain wheels.
 struct PlainRow<'a> {
     row: &'a Wheel,
@@ -185,16 +163,16 @@ struct PlainRow<'a> {
     rolls: &'a mut [bool],
 }
 
-impl pulp::WithSimd for PlainRow<'_> {
+impl Kernel for PlainRow<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
+    fn run<const FUSED: bool>(self) {
         let results = self.stable.chunks_mut(LANES).zip(self.rolls.chunks_mut(LANES));
         for (x, (stable, rolls)) in self.x.chunks(LANES).zip(results) {
             // The last lanes repeat the last point where the row ends before them.
-            let lanes = Lanes(std::array::from_fn(|lane| x[lane.min(x.len() - 1)]));
-            let [stability, adhesion] = plain_margins(self.row, self.key, lanes);
+            let points = Lanes::from(std::array::from_fn(|lane| x[lane.min(x.len() - 1)]));
+            let [stability, adhesion] = plain_margins(self.row, self.key, points);
             for (lane, (stable, rolls)) in stable.iter_mut().zip(rolls).enumerate() {
                 (*stable, *rolls) = (stability.0[lane] > 0.0, adhesion.0[lane] > 0.0);
             }

@@ -1,6 +1,7 @@
 //! Everything that can go wrong, said so that it can be put right.
 
 use crate::parameters::Key;
+use arclength::control::Interrupted;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -226,9 +227,9 @@ pub enum KingpinError {
         /// Most points.
         most: usize,
     },
-    /// The observer asked to stop.
-    #[error("cancelled")]
-    Cancelled,
+    /// The computation was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
     /// There is no uniform motion.
     #[error("no uniform motion at v = {v} m/s, l = {l} m, r = {r} m: {reason}")]
     NoUniformMotion {

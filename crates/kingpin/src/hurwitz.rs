@@ -9,8 +9,8 @@
 //! five conditions. `D4` is moreover a positive multiple of `-omega^2 (N + D omega^2)` with `N` and `D` functions of the
 //! caster length, so that no root need be taken to decide stability and rectilinear towing is no special case.
 
-use crate::lanes::Arithmetic;
-use crate::rolling::Body;
+use crate::arithmetic::Arithmetic;
+use crate::body::Body;
 
 /// The coefficients `c1 ... c5`.
 pub(crate) type Quintic<T> = [T; 5];

@@ -14,10 +14,10 @@
 //! constraints leave `V` free and the field is not defined: motions that pass through lose digits there.
 
 use crate::active::ActiveParameters;
+use crate::body::Body;
 use crate::contact::ContactForce;
 use crate::error::{KingpinError, NoUniformMotion};
 use crate::parameters::Key;
-use crate::rolling::Body;
 use crate::wheel::Wheel;
 use arclength::{Dual, Scalar, VectorField};
 use std::ops::Mul;

@@ -16,7 +16,9 @@
 //! ```
 
 mod active;
+mod arithmetic;
 pub mod basin;
+mod body;
 pub mod boundary;
 pub mod branches;
 pub mod characteristic;
@@ -25,7 +27,7 @@ pub mod contact;
 pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
-mod lanes;
+mod keys;
 pub mod lateral;
 pub mod linear_stability;
 pub mod parameters;

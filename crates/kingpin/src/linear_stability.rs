@@ -12,11 +12,11 @@
 //! With lateral elasticity only, `k_u = inf`, there are three eigenvalues; in rectilinear towing they are those of the same
 //! cubic.
 
+use crate::body::Body;
 use crate::characteristic::{characteristic_polynomial, largest_real_part_first, roots};
 use crate::hurwitz::{self, determinants, hopf_condition, plain_characteristic_polynomial};
 use crate::lateral::characteristic_cubic;
 use crate::parameters::Key;
-use crate::rolling::Body;
 use crate::uniform_motion::{UniformMotion, jacobian};
 use crate::wheel::Wheel;
 use num_complex::Complex64;

@@ -5,6 +5,8 @@
 //! (Allgower and Georg, *Introduction to Numerical Continuation Methods*, chapter 3). Only the starting points depend on
 //! the grid, so a closed curve or a strip narrower than a cell may be missed.
 
+use arclength::control::{Control, Interrupted};
+
 /// A point of the unit square.
 pub(crate) type Point = [f64; 2];
 
@@ -35,38 +37,47 @@ pub(crate) struct Traced {
 }
 
 /// The curves on which the function vanishes. Where it has no value the curves end.
-pub(crate) fn trace_zero_set(function: impl Fn(Point) -> Option<f64>) -> Vec<Traced> {
+pub(crate) fn trace_zero_set(
+    function: impl Fn(Point) -> Option<f64>,
+    control: &Control<'_>,
+) -> Result<Vec<Traced>, Interrupted> {
     let tracer = Tracer {
+        control,
         function: |point: Point| {
             let inside = point.iter().all(|coordinate| (0.0..=1.0).contains(coordinate));
             if inside { function(point).filter(|value| value.is_finite()) } else { None }
         },
     };
     let mut curves: Vec<Traced> = Vec::new();
-    for start in tracer.starting_points() {
+    let starts = tracer.starting_points()?;
+    let progress = control.count(starts.len());
+    for start in starts {
         let known = |curve: &Traced| curve.points.windows(2).any(|ends| distance(start, ends) < SAME_CURVE);
         if !curves.iter().any(known) {
-            curves.extend(tracer.trace(start));
+            curves.extend(tracer.trace(start)?);
         }
+        progress.advance(1);
     }
-    curves
+    Ok(curves)
 }
 
-struct Tracer<F> {
+struct Tracer<'a, F> {
+    control: &'a Control<'a>,
     function: F,
 }
 
-impl<F: Fn(Point) -> Option<f64>> Tracer<F> {
+impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
     /// Zeros on the edges of the coarse grid, row by row.
-    fn starting_points(&self) -> Vec<Point> {
+    fn starting_points(&self) -> Result<Vec<Point>, Interrupted> {
         let at = |index: usize| index as f64 / CELLS as f64;
         let nodes: Vec<Option<f64>> = (0..=CELLS)
             .flat_map(|row| (0..=CELLS).map(move |column| [at(column), at(row)]))
-            .map(|node| (self.function)(node))
-            .collect();
+            .map(|node| self.control.check().map(|()| (self.function)(node)))
+            .collect::<Result<_, _>>()?;
         let mut zeros = Vec::new();
         for row in 0..=CELLS {
             for column in 0..=CELLS {
+                self.control.check()?;
                 for (right, up) in [(1, 0), (0, 1)] {
                     if column + right > CELLS || row + up > CELLS {
                         continue;
@@ -82,7 +93,7 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<F> {
                 }
             }
         }
-        zeros
+        Ok(zeros)
     }
 
     /// Bisection until Newton's method takes over.
@@ -137,27 +148,29 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<F> {
         None
     }
 
-    fn trace(&self, start: Point) -> Option<Traced> {
-        let (start, tangent) = self.correct(start)?;
-        let (mut forward, closed) = self.follow(start, tangent);
+    /// The curve through a starting point; `None` where Newton's method does not get back to it.
+    fn trace(&self, start: Point) -> Result<Option<Traced>, Interrupted> {
+        let Some((start, tangent)) = self.correct(start) else { return Ok(None) };
+        let (mut forward, closed) = self.follow(start, tangent)?;
         if closed {
             forward.insert(0, start);
             forward.push(start);
-            return Some(Traced { points: forward, closed });
+            return Ok(Some(Traced { points: forward, closed }));
         }
-        let (mut points, _) = self.follow(start, tangent.map(|component| -component));
+        let (mut points, _) = self.follow(start, tangent.map(|component| -component))?;
         points.reverse();
         points.push(start);
         points.append(&mut forward);
-        Some(Traced { points, closed })
+        Ok(Some(Traced { points, closed }))
     }
 
     /// The points after the start, and whether the curve came back to it.
-    fn follow(&self, start: Point, mut tangent: Point) -> (Vec<Point>, bool) {
+    fn follow(&self, start: Point, mut tangent: Point) -> Result<(Vec<Point>, bool), Interrupted> {
         let mut points = Vec::new();
         let (mut point, mut step) = (start, LONGEST_STEP);
         let first_tangent = tangent;
         while step > SHORTEST_STEP && points.len() < MOST_POINTS {
+            self.control.check()?;
             let predicted = [point[0] + step * tangent[0], point[1] + step * tangent[1]];
             let accepted = self.correct(predicted).and_then(|(next, direction)| {
                 let cosine = direction[0] * tangent[0] + direction[1] * tangent[1];
@@ -175,7 +188,7 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<F> {
             };
             let same_way = first_tangent[0] * direction[0] + first_tangent[1] * direction[1] > 0.0;
             if points.len() > 2 && same_way && distance(start, &[point, next]) < 0.1 * step {
-                return (points, true);
+                return Ok((points, true));
             }
             points.push(next);
             (point, tangent) = (next, direction);
@@ -183,7 +196,7 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<F> {
                 step = (2.0 * step).min(LONGEST_STEP);
             }
         }
-        (points, false)
+        Ok((points, false))
     }
 }
 
@@ -203,7 +216,8 @@ mod tests {
 
     #[test]
     fn a_circle_is_one_closed_curve() {
-        let curves = trace_zero_set(|[x, y]| Some((x - 0.5).powi(2) + (y - 0.4).powi(2) - 0.09));
+        let circle = |[x, y]: Point| Some((x - 0.5).powi(2) + (y - 0.4).powi(2) - 0.09);
+        let curves = trace_zero_set(circle, &Control::none()).unwrap();
         let [circle] = &curves[..] else { panic!("{} curves", curves.len()) };
         assert!(circle.closed);
         let radius = |point: &Point| (point[0] - 0.5).hypot(point[1] - 0.4);
@@ -219,7 +233,8 @@ mod tests {
     #[test]
     fn open_curves_reach_the_edges() {
         // Two branches of a hyperbola, and no value in a corner.
-        let curves = trace_zero_set(|[x, y]| (x + y < 1.9).then_some((x - 0.5) * (y - 0.5) - 0.01));
+        let hyperbola = |[x, y]: Point| (x + y < 1.9).then_some((x - 0.5) * (y - 0.5) - 0.01);
+        let curves = trace_zero_set(hyperbola, &Control::none()).unwrap();
         assert_eq!(curves.len(), 2);
         for curve in &curves {
             assert!(!curve.closed);

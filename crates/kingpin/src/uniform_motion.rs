@@ -14,10 +14,11 @@
 //! either and the formulas hold for every `k_u` with `k = k_q`. With both `k_psi` and `k_u != k_q` Newton's method follows
 //! the motion from the isotropic wheel. With `k_u = inf` the motion is that of the [`lateral`](crate::lateral) model.
 
+use crate::body::Body;
 use crate::contact::ContactForce;
 use crate::error::{KingpinError, NoUniformMotion};
 use crate::parameters::Key;
-use crate::rolling::{Body, right_hand_side};
+use crate::rolling::right_hand_side;
 use crate::wheel::Wheel;
 use arclength::Dual;
 

@@ -1,8 +1,9 @@
 //! Charts and traced boundaries against the closed form, and against each other.
 
+use arclength::control::{Control, Progress};
 use kingpin::{Axis, Key, KingpinError, Plane, Wheel};
-use std::ops::ControlFlow::{Break, Continue};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 fn plane(x: (Key, f64, f64), y: (Key, f64, f64)) -> Plane {
     Plane::new(Axis::new(x.0, x.1..=x.2).unwrap(), Axis::new(y.0, y.1..=y.2).unwrap()).unwrap()
@@ -29,8 +30,8 @@ fn both_charts_agree_with_single_points() {
     ] {
         let wheel = wheel(settings);
         let plane = plane(x, y);
-        let growth = wheel.growth_rate_chart(&plane, [45, 31], &|_| Continue(())).unwrap();
-        let stability = wheel.stability_chart(&plane, [45, 31], &|_| Continue(())).unwrap();
+        let growth = wheel.growth_rate_chart(&plane, [45, 31], &Control::none()).unwrap();
+        let stability = wheel.stability_chart(&plane, [45, 31], &Control::none()).unwrap();
         assert_eq!((&growth.x, &growth.y), (&stability.x, &stability.y));
         let mut kinds = [0; 2];
         for (index, rate) in growth.growth_rate.iter().enumerate() {
@@ -71,8 +72,8 @@ fn charts_do_not_depend_on_the_number_of_threads() {
         pool.install(|| {
             let wheel = Wheel::default();
             (
-                wheel.growth_rate_chart(&plane, [301, 77], &|_| Continue(())).unwrap(),
-                wheel.stability_chart(&plane, [301, 77], &|_| Continue(())).unwrap(),
+                wheel.growth_rate_chart(&plane, [301, 77], &Control::none()).unwrap(),
+                wheel.stability_chart(&plane, [301, 77], &Control::none()).unwrap(),
             )
         })
     };
@@ -81,18 +82,20 @@ fn charts_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn the_observer_sees_progress_and_cancels() {
+fn the_observer_sees_progress_and_stops() {
     let plane = plane(SPEED_AND_LENGTH.0, SPEED_AND_LENGTH.1);
     let seen = Mutex::new(Vec::new());
-    let record = |part: f64| {
+    let record = |progress: Progress<'_>| {
+        let Progress::Done(part) = progress else { panic!("{progress:?}") };
         seen.lock().unwrap().push(part);
-        Continue(())
     };
-    Wheel::default().growth_rate_chart(&plane, [500, 40], &record).unwrap();
+    let stop = AtomicBool::new(false);
+    Wheel::default().growth_rate_chart(&plane, [500, 40], &Control::new(&stop, &record)).unwrap();
     let seen = seen.into_inner().unwrap();
     assert!(seen.len() > 2 && seen.iter().all(|part| (0.0..=1.0).contains(part)) && seen.contains(&1.0));
-    let cancelled = Wheel::default().stability_chart(&plane, [500, 40], &|_| Break(()));
-    assert!(matches!(cancelled, Err(KingpinError::Cancelled)));
+    let at_once = |_: Progress<'_>| stop.store(true, Ordering::Relaxed);
+    let stopped = Wheel::default().stability_chart(&plane, [500, 40], &Control::new(&stop, &at_once));
+    assert!(matches!(stopped, Err(KingpinError::Interrupted(_))));
 }
 
 #[test]
@@ -105,7 +108,7 @@ fn bad_axes_and_grids_are_refused() {
     assert!(message(Key::KU, 1.0, f64::INFINITY).contains("a finite end"));
     let plane = plane(SPEED_AND_LENGTH.0, SPEED_AND_LENGTH.1);
     for points in [[1, 5], [5, 0], [usize::MAX, 2], [100_000, 100_000]] {
-        let refused = Wheel::default().growth_rate_chart(&plane, points, &|_| Continue(()));
+        let refused = Wheel::default().growth_rate_chart(&plane, points, &Control::none());
         assert!(matches!(refused, Err(KingpinError::GridSize { .. })));
     }
 }
@@ -116,7 +119,7 @@ fn stability_boundary_is_the_closed_form() {
     for r in [0.5, 1.0, 2.0, 5.0] {
         let wheel = wheel(&[(Key::TurningRadius, r)]);
         let plane = plane((Key::V, 0.0, 12.0), (Key::L, 0.02, 0.2));
-        let curves = wheel.stability_boundary(&plane);
+        let curves = wheel.stability_boundary(&plane, &Control::none()).unwrap();
         // At r = 5 m the boundary leaves the plane at v = 12 m/s.
         assert_eq!(curves.len(), 1, "r = {r}");
         for curve in &curves {
@@ -140,7 +143,8 @@ fn stability_boundary_is_the_closed_form() {
 fn rectilinear_boundary_is_the_critical_caster_length() {
     let wheel = wheel(&[(Key::TurningRadius, f64::INFINITY)]);
     let critical = wheel.critical_caster_length().unwrap();
-    let curves = wheel.stability_boundary(&plane((Key::L, 0.02, 0.2), (Key::V, 0.0, 12.0)));
+    let curves =
+        wheel.stability_boundary(&plane((Key::L, 0.02, 0.2), (Key::V, 0.0, 12.0)), &Control::none()).unwrap();
     assert_eq!(curves.len(), 1);
     let points = &curves[0].points;
     assert!(points.iter().all(|[l, _]| (l - critical).abs() < 1e-9));
@@ -156,7 +160,7 @@ fn boundary_of_a_damped_wheel() {
     let wheel = wheel(&[(Key::CQ, 0.05), (Key::CU, 0.05)]);
     for axes in [((Key::V, 0.1, 12.0), (Key::L, 0.02, 0.2)), ((Key::V, 0.1, 12.0), (Key::CQ, 0.0, 0.5))] {
         let plane = plane(axes.0, axes.1);
-        let curves = wheel.stability_boundary(&plane);
+        let curves = wheel.stability_boundary(&plane, &Control::none()).unwrap();
         assert!(!curves.is_empty());
         for &[x, y] in curves.iter().flat_map(|curve| &curve.points) {
             let here = wheel.with(axes.0.0, x).unwrap().with(axes.1.0, y).unwrap();
@@ -172,7 +176,8 @@ fn rolling_limit_for_several_loads() {
     let mut fastest = 0.0;
     for load in [0.0, -10.0, -20.0, -50.0] {
         let wheel = wheel(&[(Key::FAz, load)]);
-        let curves = wheel.rolling_limit(&plane((Key::V, 0.0, 14.0), (Key::L, 0.02, 0.2)));
+        let curves =
+            wheel.rolling_limit(&plane((Key::V, 0.0, 14.0), (Key::L, 0.02, 0.2)), &Control::none()).unwrap();
         assert_eq!(curves.len(), 1, "{load}");
         let mut at_8_centimetres: f64 = 0.0;
         for &[v, l] in &curves[0].points {

@@ -1,5 +1,6 @@
 //! Limit cycles of random wheels: the promise of the error estimate, and agreement with integration.
 
+use arclength::control::Control;
 use arclength::cycle::Resolution;
 use arclength::integration::{Integrator, autonomous};
 use kingpin::branches::{Along, CycleOptions, WheelCycles};
@@ -11,7 +12,7 @@ use std::ops::ControlFlow;
 fn branch(wheel: &Wheel, tolerance: f64, degree: usize) -> Option<(WheelCycles, f64)> {
     let radius = wheel.get(Key::TurningRadius);
     let along = Along::new(Key::V, 0.5, 12.0 * radius).ok()?;
-    let hopf = wheel.hopf_points(along).ok()?.points.into_iter().next()?;
+    let hopf = wheel.hopf_points(along, &Control::none()).ok()?.points.into_iter().next()?;
     let half = 0.5 * (0.5 + hopf.value);
     let options = CycleOptions {
         at: vec![half],

@@ -2,6 +2,7 @@
 //! and motions, against published values, integration, and the five-state model with a stiff longitudinal spring.
 
 use arclength::continuation::Stop;
+use arclength::control::Control;
 use arclength::cycle::{CyclePoint, Role, Special};
 use kingpin::branches::{Along, CycleOptions, WheelCycles};
 use kingpin::simulation::SimulationError;
@@ -27,7 +28,7 @@ fn along(key: Key, start: f64, end: f64) -> Along {
 }
 
 fn cycles(wheel: &Wheel, along: Along, at: &[f64]) -> WheelCycles {
-    let hopf = wheel.hopf_points(along).unwrap().points.pop().unwrap();
+    let hopf = wheel.hopf_points(along, &Control::none()).unwrap().points.pop().unwrap();
     let options = CycleOptions { at: at.to_vec(), ..CycleOptions::default() };
     hopf.cycles(along, &options, |_, _| Continue(())).unwrap()
 }
@@ -45,7 +46,7 @@ fn close(found: f64, expected: f64, tolerance: f64) {
 #[test]
 fn hopf_points_of_the_short_caster() {
     let interval = along(Key::V, 0.1, 20.0);
-    let search = short_caster(0.05).hopf_points(interval).unwrap();
+    let search = short_caster(0.05).hopf_points(interval, &Control::none()).unwrap();
     let [slow, fast] = &search.points[..] else { panic!("{} Hopf points", search.points.len()) };
     close(slow.value, 0.788_629_146_247_029_7, 1e-10);
     close(fast.value, 4.338_830_220_750_628, 1e-10);
@@ -57,7 +58,7 @@ fn hopf_points_of_the_short_caster() {
         assert!(motion.growth_rate().abs() < 1e-9);
         close(motion.eigenvalues()[0].im, hopf.frequency, 1e-10);
     }
-    let damped = short_caster(0.1).hopf_points(interval).unwrap();
+    let damped = short_caster(0.1).hopf_points(interval, &Control::none()).unwrap();
     assert!(damped.points.is_empty());
     assert_eq!(damped.stable_at_ends, (Some(true), Some(true)));
 }
@@ -126,7 +127,7 @@ fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
             let wheel = branch.wheel.with(interval.key(), cycle.value).unwrap();
             let model = wheel.rolling_model(&[]).unwrap();
             let initial = model.full_state(&cycle.orbit.state_at(0.0), &[]);
-            let history = wheel.simulate_from(&initial, cycle.period, 20_001).unwrap();
+            let history = wheel.simulate_from(&initial, cycle.period, 20_001, &Control::none()).unwrap();
             let allowed = f64::max(10.0 * cycle.error_estimate, 1e-8);
             for index in 0..5 {
                 let values: Vec<f64> = history.states.iter().map(|state| state[index]).collect();
@@ -148,7 +149,7 @@ fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
 fn growth_rates_are_the_limit_of_a_stiff_longitudinal_spring() {
     let plane =
         Plane::new(Axis::new(Key::V, 1.0..=9.0).unwrap(), Axis::new(Key::L, 0.03..=0.2).unwrap()).unwrap();
-    let chart = |wheel: Wheel| wheel.growth_rate_chart(&plane, [12, 9], &|_| Continue(())).unwrap();
+    let chart = |wheel: Wheel| wheel.growth_rate_chart(&plane, [12, 9], &Control::none()).unwrap();
     let rigid = wheel(&[(Key::CQ, 0.05), (Key::CPsi, 1e-4)]);
     let limit = chart(rigid);
     assert!(limit.stable.contains(&true) && limit.stable.contains(&false));
@@ -190,7 +191,8 @@ fn boundaries_and_critical_speeds_are_zeros_of_the_growth_rate() {
         );
         let keys = [Key::V, Key::CQ];
         let axes = [Axis::new(keys[0], 0.3..=9.0).unwrap(), Axis::new(keys[1], 0.01..=0.1).unwrap()];
-        let curves = damped.stability_boundary(&Plane::new(axes[0], axes[1]).unwrap());
+        let curves =
+            damped.stability_boundary(&Plane::new(axes[0], axes[1]).unwrap(), &Control::none()).unwrap();
         assert!(!curves.is_empty());
         for &[x, y] in curves.iter().flat_map(|curve| &curve.points) {
             let here = damped.with(keys[0], x).unwrap().with(keys[1], y).unwrap();
@@ -204,21 +206,27 @@ fn boundaries_and_critical_speeds_are_zeros_of_the_growth_rate() {
 fn states_that_follow_from_others_cannot_be_chosen() {
     let wheel = wheel(&[]);
     for name in ["u", "V"] {
-        let error = wheel.simulate(1.0, &[(name, 0.1)], 11).unwrap_err();
+        let error = wheel.simulate(1.0, &[(name, 0.1)], 11, &Control::none()).unwrap_err();
         assert!(matches!(error, SimulationError::DependentState { .. }));
         assert!(error.to_string().ends_with("q, psi, Omega"), "{error}");
     }
-    assert!(matches!(wheel.simulate(1.0, &[("phi", 0.1)], 11), Err(SimulationError::UnknownState { .. })));
+    assert!(matches!(
+        wheel.simulate(1.0, &[("phi", 0.1)], 11, &Control::none()),
+        Err(SimulationError::UnknownState { .. })
+    ));
     let start = wheel.perturbed_uniform_motion(&[("psi", 0.1)]).unwrap();
-    assert!(wheel.simulate_from(&start, 1.0, 11).is_ok());
+    assert!(wheel.simulate_from(&start, 1.0, 11, &Control::none()).is_ok());
     let across = std::f64::consts::FRAC_PI_2 - start[2];
     assert!(wheel.perturbed_uniform_motion(&[("psi", 0.1 + across)]).is_ok_and(|state| {
-        wheel.simulate_from(&state, 1.0, 11).unwrap_err().to_string().contains("not pi/2")
+        wheel.simulate_from(&state, 1.0, 11, &Control::none()).unwrap_err().to_string().contains("not pi/2")
     }));
     for index in [0, 3] {
         let mut other = start;
         other[index] += 0.01;
-        assert!(matches!(wheel.simulate_from(&other, 1.0, 11), Err(SimulationError::OutOfRange { .. })));
+        assert!(matches!(
+            wheel.simulate_from(&other, 1.0, 11, &Control::none()),
+            Err(SimulationError::OutOfRange { .. })
+        ));
     }
 }
 
@@ -235,7 +243,7 @@ fn what_needs_a_longitudinal_elasticity_says_so() {
     }
     refused(wheel.sliding().map(|_| ()));
     assert!(matches!(Along::new(Key::KU, 50.0, f64::INFINITY), Err(KingpinError::InfiniteEnd { .. })));
-    let damping = wheel.hopf_points(along(Key::CU, 0.0, 1.0));
+    let damping = wheel.hopf_points(along(Key::CU, 0.0, 1.0), &Control::none());
     assert!(matches!(damping, Err(KingpinError::NoLongitudinalMotion { key: Key::CU })));
 }
 

@@ -8,7 +8,8 @@
 
 use super::cyclic::{Blocks, Cyclic};
 use super::gauss::Gauss;
-use crate::linear::lanes::{self, Exchange, LANES, Lanes};
+use crate::lanes::{Kernel, run};
+use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
@@ -43,9 +44,6 @@ pub(super) struct Condensation {
     rows: Vec<f64>,
     states: Vec<f64>,
     cyclic: Cyclic,
-    /// Whether the processor has vectors of four numbers and fused operations.
-    #[cfg(target_arch = "x86_64")]
-    vectorized: bool,
 }
 
 impl Condensation {
@@ -69,8 +67,6 @@ impl Condensation {
             rows: Vec::new(),
             states: Vec::new(),
             cyclic: Cyclic::default(),
-            #[cfg(target_arch = "x86_64")]
-            vectorized: is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
         }
     }
 
@@ -121,18 +117,7 @@ impl Condensation {
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
     pub(super) fn factorize(&mut self, mesh: &[f64]) -> f64 {
-        #[cfg(target_arch = "x86_64")]
-        if self.vectorized {
-            // SAFETY: the processor has these instructions.
-            return unsafe { self.factorize_vectorized(mesh) };
-        }
-        self.factorize_kernel::<false>(mesh)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn factorize_vectorized(&mut self, mesh: &[f64]) -> f64 {
-        self.factorize_kernel::<true>(mesh)
+        run(Factorization(self, mesh))
     }
 
     #[inline(always)]
@@ -193,7 +178,7 @@ impl Condensation {
             for (i, entries) in target.chunks_exact_mut(n).enumerate() {
                 for k in 0..degree {
                     let slope = &self.scaled[(k * columns + n + scalar) * n..][..n];
-                    let factor = Lanes([self.gauss.integration[i * degree + k]; LANES]);
+                    let factor = Lanes::from(self.gauss.integration[i * degree + k]);
                     for (entry, value) in entries.iter_mut().zip(slope) {
                         *entry = entry.plus::<FUSED>(factor, *value);
                     }
@@ -201,7 +186,7 @@ impl Condensation {
             }
         }
         let exchanges = &mut self.exchanges[group * inner..(group + 1) * inner];
-        match lanes::factorize_and_solve::<FUSED>(matrix, inner, exchanges) {
+        match lu_in_lanes::factorize_and_solve::<FUSED>(matrix, inner, exchanges) {
             Some(exchanged) => {
                 self.exchanged[group] = exchanged;
                 true
@@ -219,9 +204,9 @@ impl Condensation {
         for (column, interior) in response.chunks_exact(inner).enumerate() {
             for row in 0..n {
                 let start = if row == column { self.gauss.end[0] } else { 0.0 };
-                let mut sum = Lanes([start; LANES]);
+                let mut sum = Lanes::from(start);
                 for (value, weight) in interior[row..].iter().step_by(n).zip(&self.gauss.end[1..]) {
-                    sum = sum.plus::<FUSED>(*value, Lanes([*weight; LANES]));
+                    sum = sum.plus::<FUSED>(*value, Lanes::from(*weight));
                 }
                 for (interval, lane) in lanes_of(group, self.intervals) {
                     if column < n {
@@ -268,18 +253,7 @@ impl Condensation {
 
     /// Solves with the last factorisation, in place; the last entry belongs to the border.
     pub(super) fn solve(&mut self, right_hand_side: &mut [f64]) {
-        #[cfg(target_arch = "x86_64")]
-        if self.vectorized {
-            // SAFETY: the processor has these instructions.
-            return unsafe { self.solve_vectorized(right_hand_side) };
-        }
-        self.solve_kernel::<false>(right_hand_side);
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2,fma")]
-    fn solve_vectorized(&mut self, right_hand_side: &mut [f64]) {
-        self.solve_kernel::<true>(right_hand_side);
+        run(Solution(self, right_hand_side));
     }
 
     #[inline(always)]
@@ -299,11 +273,11 @@ impl Condensation {
             let factors = &self.systems[group * system..][..inner * inner];
             let exchanges =
                 self.exchanged[group].then(|| &self.exchanges[group * inner..(group + 1) * inner]);
-            lanes::solve::<FUSED>(factors, inner, exchanges, values);
+            lu_in_lanes::solve::<FUSED>(factors, inner, exchanges, values);
             for component in 0..n {
                 let mut sum = Lanes::ZERO;
                 for (value, weight) in values[component..].iter().step_by(n).zip(&self.gauss.end[1..]) {
-                    sum = sum.plus::<FUSED>(*value, Lanes([*weight; LANES]));
+                    sum = sum.plus::<FUSED>(*value, Lanes::from(*weight));
                 }
                 for (lane, block) in here.chunks_exact(size).enumerate() {
                     self.states[(group * LANES + lane) * n + component] = block[component] + sum.0[lane];
@@ -326,9 +300,9 @@ impl Condensation {
             let response = &self.systems[group * system + inner * inner..(group + 1) * system];
             for (column, interior) in response.chunks_exact(inner).enumerate() {
                 let coefficient = if column < n {
-                    Lanes(std::array::from_fn(|lane| starts[lane.min(count - 1) * n + column]))
+                    Lanes::from(std::array::from_fn(|lane| starts[lane.min(count - 1) * n + column]))
                 } else {
-                    Lanes([scalars[column - n]; LANES])
+                    Lanes::from(scalars[column - n])
                 };
                 for (entry, value) in values.iter_mut().zip(interior) {
                     *entry = entry.plus::<FUSED>(coefficient, *value);
@@ -343,6 +317,30 @@ impl Condensation {
                 }
             }
         }
+    }
+}
+
+/// [`Condensation::factorize`] with the vector instructions of the processor.
+struct Factorization<'a>(&'a mut Condensation, &'a [f64]);
+
+impl Kernel for Factorization<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> f64 {
+        self.0.factorize_kernel::<FUSED>(self.1)
+    }
+}
+
+/// [`Condensation::solve`] with the vector instructions of the processor.
+struct Solution<'a>(&'a mut Condensation, &'a mut [f64]);
+
+impl Kernel for Solution<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.0.solve_kernel::<FUSED>(self.1);
     }
 }
 

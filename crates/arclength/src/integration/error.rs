@@ -1,5 +1,6 @@
 //! What can go wrong in an integration.
 
+use crate::control::Interrupted;
 use thiserror::Error;
 
 /// Why an integration stopped early or could not start.
@@ -31,6 +32,9 @@ pub enum IntegrationError {
         /// Number of steps that were taken.
         steps: usize,
     },
+    /// Whoever waits for the solution asked for the end.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
     /// A tolerance or limit is out of range.
     #[error("{name} = {value} is not allowed: {allowed}")]
     BadSetting {

@@ -25,6 +25,7 @@ mod chebyshev;
 mod error;
 mod event;
 mod integrator;
+mod solution;
 mod stepper;
 mod system;
 mod tableau;
@@ -35,7 +36,8 @@ mod tests;
 
 pub use error::IntegrationError;
 pub use event::{Crossing, Direction, Event};
-pub use integrator::{Integrator, Solution};
+pub use integrator::Integrator;
+pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
 pub use system::{Autonomous, ClosureSystem, System, autonomous, from_fn};
 pub use variational::{StateTransition, VariationalEquations, state_transition_matrix};

@@ -1,6 +1,7 @@
 //! Integration against published values, closed forms and conserved quantities.
 
 use super::*;
+use crate::control::{Control, Interrupted, Progress};
 use crate::{Scalar, VectorField};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -309,4 +310,21 @@ proptest! {
         prop_assume!((0.1..0.9).contains(&((60.0 + phase) / TAU + 0.5).fract()));
         prop_assert_eq!(solution.crossings.len(), 2 * turns as usize);
     }
+}
+
+#[test]
+fn a_control_sees_the_time_pass_and_stops() {
+    let told = std::sync::Mutex::new(Vec::new());
+    let stop = std::sync::atomic::AtomicBool::new(false);
+    let observer = |progress: Progress<'_>| {
+        let Progress::Done(part) = progress else { panic!("{progress:?}") };
+        told.lock().unwrap().push(part);
+        stop.store(part > 0.7, std::sync::atomic::Ordering::Relaxed);
+    };
+    let control = Control::new(&stop, &observer);
+    let integrator = Integrator::default();
+    let run = |end| integrator.under(&control).integrate(from_fn(4, kepler), 0.0, &pericentre(0.5), end);
+    assert_eq!(run(-1000.0), Err(IntegrationError::Interrupted(Interrupted)));
+    let told = told.lock().unwrap();
+    assert!(told.is_sorted() && told.len() > 50 && told[..told.len() - 1].iter().all(|&part| part <= 0.7));
 }

@@ -8,7 +8,7 @@
 use num_complex::Complex64;
 
 use super::multiplier::Multiplier;
-use super::periodic_schur::HOPELESS_SHIFT;
+use super::periodic_sweep::HOPELESS_SHIFT;
 use super::wide_range::WideRange;
 
 /// Sweeps before the iteration gives up; three are usual.

@@ -28,8 +28,6 @@ const PATIENCE: usize = 30;
 /// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they
 /// may have grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
 const LARGEST_AMPLIFICATION: f64 = 256.0;
-/// Shifts that turn the first column by less than this would underflow on their way through the factors.
-pub(super) const HOPELESS_SHIFT: f64 = 1e-100;
 
 /// Eigenvalues of the product `R_count ... R_2 R_1` of n-by-n matrices, by descending modulus.
 ///

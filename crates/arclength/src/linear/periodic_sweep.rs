@@ -5,13 +5,15 @@
 //! other. Only the window of rows and columns `first..=last` is transformed, because only eigenvalues are
 //! wanted.
 
-use super::periodic_schur::HOPELESS_SHIFT;
 use super::reflector::SmallReflector;
 use super::wide_range::WideRange;
 
 /// After this many sweeps without deflation an exceptional shift is tried, after twice as many an unshifted
 /// sweep.
 const EXCEPTIONAL_SHIFT_INTERVAL: usize = 10;
+
+/// Shifts that turn the first column by less than this would underflow on their way through the factors.
+pub(super) const HOPELESS_SHIFT: f64 = 1e-100;
 
 type Wide = WideRange<f64>;
 

@@ -8,6 +8,7 @@ use crate::sliding::model::Equations;
 use crate::sliding::{HybridState, SlidingWheel};
 use crate::wheel::Wheel;
 use arclength::VectorField;
+use arclength::control::Control;
 use arclength::integration::{Integrator, autonomous};
 use std::f64::consts::TAU;
 
@@ -52,6 +53,7 @@ impl<'a> Course<'a> {
         duration: f64,
         spacing: f64,
         nodes: &mut Vec<Node>,
+        control: &Control<'_>,
     ) -> Result<(), SimulationError> {
         let count = (duration / spacing).round().max(1.0) as usize;
         let times: Vec<f64> = (0..=count).map(|index| duration * (index as f64 / count as f64)).collect();
@@ -60,7 +62,7 @@ impl<'a> Course<'a> {
             Self::Rolling { field, state } => {
                 let field = &*field;
                 let integrator = Integrator::with_tolerance(SIMULATION_TOLERANCE);
-                let solution = integrator.sample(autonomous(field, &[]), &*state, &times)?;
+                let solution = integrator.under(control).sample(autonomous(field, &[]), &*state, &times)?;
                 nodes.extend(solution.samples().map(|(time, state)| {
                     let mut rate = [0.0; 5];
                     field.evaluate(state, &[], &mut rate);
@@ -70,7 +72,7 @@ impl<'a> Course<'a> {
                 *state = std::array::from_fn(|i| solution.state[i]);
             }
             Self::Sliding { wheel, equations, state } => {
-                let (passages, end) = passages(wheel, *state, duration, &times[1..count])?;
+                let (passages, end) = passages(wheel, *state, duration, &times[1..count], control)?;
                 for passage in &passages {
                     nodes.extend(passage.nodes().map(|(time, inside)| {
                         let mut rate = [0.0; 7];

@@ -5,10 +5,13 @@ use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use rayon::prelude::*;
 
 /// Magnitudes that are tried, at equal distances, before the first failure is narrowed down.
 const SCAN: usize = 64;
+/// What that is of the whole time, roughly.
+const PART_OF_SCAN: f64 = 0.7;
 /// The magnitude is narrowed down to this, relative to the largest one.
 const RESOLUTION: f64 = 1e-6;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
@@ -64,6 +67,7 @@ impl Disturbance {
         magnitude: f64,
         duration: f64,
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<DisturbedMotion, SimulationError> {
         let (wheel, state) = self.apply(wheel, model, magnitude)?;
         let [u, q, psi, speed, _, yaw, _] = state;
@@ -71,7 +75,7 @@ impl Disturbance {
         for _ in 0..SHORTENINGS {
             let motion = match model {
                 ContactModel::Rolling => {
-                    wheel.simulate_from(&[u, q, psi, speed, yaw], duration, samples).map(|history| {
+                    wheel.simulate_from(&[u, q, psi, speed, yaw], duration, samples, control).map(|history| {
                         let widen = |&[u, q, psi, speed, yaw]: &[f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
                         let states = history.states.iter().map(widen).collect();
                         DisturbedMotion { times: history.times, states }
@@ -79,7 +83,7 @@ impl Disturbance {
                 }
                 ContactModel::Sliding => wheel
                     .sliding()?
-                    .simulate_from(&state, duration, samples)
+                    .simulate_from(&state, duration, samples, control)
                     .map(|history| DisturbedMotion { times: history.times, states: history.states }),
             };
             match motion {
@@ -170,13 +174,15 @@ impl SafeKick {
     /// the fate at the edge tells whether that time was too short.
     ///
     /// # Errors
-    /// A largest magnitude that is zero or not finite, or a magnitude on the way at which there is no uniform motion.
+    /// A largest magnitude that is zero or not finite, or a magnitude on the way at which there is no uniform motion;
+    /// [`SimulationError::Interrupted`].
     pub fn find(
         wheel: &Wheel,
         model: ContactModel,
         settings: ClassificationSettings,
         disturbance: Disturbance,
         largest: f64,
+        control: &Control<'_>,
     ) -> Result<Option<Self>, SimulationError> {
         if !largest.is_finite() || largest == 0.0 {
             return Err(SimulationError::out_of_range("largest disturbance", largest, "finite and not 0"));
@@ -184,7 +190,7 @@ impl SafeKick {
         let fate = |magnitude: f64| -> Result<Option<Fate>, SimulationError> {
             let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
             match Destinations::new(&wheel, model, settings) {
-                Ok(destinations) => destinations.of_sliding_state(&state).map(Some),
+                Ok(destinations) => destinations.of_sliding_state(&state, &control.quiet()).map(Some),
                 Err(error) if disturbance == Disturbance::StepSteer && magnitude != 0.0 => match error {
                     SimulationError::UniformMotionSlides { .. }
                     | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => Ok(None),
@@ -194,20 +200,30 @@ impl SafeKick {
             }
         };
         let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
-        let scanned: Vec<Option<Fate>> =
-            (0..=SCAN).into_par_iter().map(|index| fate(magnitude(index))).collect::<Result<_, _>>()?;
+        let progress = control.part(0.0..PART_OF_SCAN).count(SCAN + 1);
+        let scanned: Vec<Option<Fate>> = (0..=SCAN)
+            .into_par_iter()
+            .map(|index| {
+                let fate = fate(magnitude(index))?;
+                progress.advance(1);
+                Ok(fate)
+            })
+            .collect::<Result<_, SimulationError>>()?;
         let Some(first) = scanned.iter().position(|&fate| fate != Some(Fate::UniformMotion)) else {
             return Ok(None);
         };
         let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
         // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
         let mut beyond = scanned[first.max(1)];
+        let halvings = (SCAN as f64 * RESOLUTION).recip().log2().ceil() as usize;
+        let progress = control.part(PART_OF_SCAN..1.0).count(halvings);
         while (fails - returns).abs() > RESOLUTION * largest.abs() {
             let middle = 0.5 * (returns + fails);
             match fate(middle)? {
                 Some(Fate::UniformMotion) => returns = middle,
                 other => (fails, beyond) = (middle, other),
             }
+            progress.advance(1);
         }
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
         Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))

@@ -9,6 +9,7 @@ use super::course::{Course, Node};
 use super::fate::{Fate, PATIENCE, Target, Watch};
 use crate::shimmy::extrema::extremum;
 use crate::simulation::SimulationError;
+use arclength::control::Control;
 use arclength::integration::IntegrationError;
 
 /// Nodes in one natural period of the springs: enough for maxima of motions with sliding phases to be right to a part of `REPEATED`.
@@ -78,19 +79,21 @@ impl<'a> Lasting<'a> {
     /// Follows the motion until its fate is known or a time is reached.
     ///
     /// # Errors
-    /// A motion that cannot be followed for another reason than that it grows without bound or takes too many steps.
+    /// A motion that cannot be followed for another reason than that it grows without bound or takes too many steps;
+    /// [`SimulationError::Interrupted`].
     pub fn follow(
         &mut self,
         until: f64,
         target: &Target,
         watch: &mut Watch,
+        control: &Control<'_>,
     ) -> Result<Seen, SimulationError> {
         let piece = PERIODS_AT_A_TIME * target.natural_period;
         let spacing = target.natural_period / NODES_PER_PERIOD;
         let mut nodes = Vec::new();
         while self.time < until {
             let duration = piece.min(until - self.time);
-            match self.course.follow(duration, spacing, &mut nodes) {
+            match self.course.follow(duration, spacing, &mut nodes, control) {
                 Ok(()) => {}
                 Err(error) => return ended_by(error, watch).map(Seen::Ends),
             }
@@ -106,7 +109,7 @@ impl<'a> Lasting<'a> {
                 && let Some(cycle) = self.maxima.cycle()
             {
                 let patience = watch.duration().max(BRIEF * target.natural_period);
-                if self.comes_back(&cycle, patience, target)? {
+                if self.comes_back(&cycle, patience, target, control)? {
                     return Ok(Seen::Ends(Fate::Shimmy));
                 }
                 // It lingers at a cycle that does not attract, and may leave it yet.
@@ -120,9 +123,14 @@ impl<'a> Lasting<'a> {
     ///
     /// # Errors
     /// As [`follow`](Self::follow).
-    pub fn until_the_end(mut self, target: &Target, mut watch: Watch) -> Result<Fate, SimulationError> {
+    pub fn until_the_end(
+        mut self,
+        target: &Target,
+        mut watch: Watch,
+        control: &Control<'_>,
+    ) -> Result<Fate, SimulationError> {
         let until = PATIENCE * watch.duration();
-        match self.follow(until, target, &mut watch)? {
+        match self.follow(until, target, &mut watch, control)? {
             Seen::Ends(fate) => Ok(fate),
             Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Shimmy),
             Seen::Swings => Ok(Fate::Undecided),
@@ -130,7 +138,13 @@ impl<'a> Lasting<'a> {
     }
 
     /// Whether it comes back to the maxima of its cycle, pushed outwards and inwards.
-    fn comes_back(&self, cycle: &Cycle, patience: f64, target: &Target) -> Result<bool, SimulationError> {
+    fn comes_back(
+        &self,
+        cycle: &Cycle,
+        patience: f64,
+        target: &Target,
+        control: &Control<'_>,
+    ) -> Result<bool, SimulationError> {
         for factor in [1.0 + PUSH, 1.0 - PUSH] {
             let mut course = self.course.pushed(target, factor);
             let mut maxima = Maxima::default();
@@ -139,8 +153,11 @@ impl<'a> Lasting<'a> {
             let (mut time, mut known) = (0.0, 0);
             let mut is_back = false;
             while time < patience && !is_back {
-                if course.follow(piece, target.natural_period / NODES_PER_PERIOD, &mut nodes).is_err() {
-                    return Ok(false);
+                let spacing = target.natural_period / NODES_PER_PERIOD;
+                match course.follow(piece, spacing, &mut nodes, control) {
+                    Ok(()) => {}
+                    Err(SimulationError::Interrupted(interrupted)) => return Err(interrupted.into()),
+                    Err(_) => return Ok(false),
                 }
                 nodes.iter().for_each(|node| maxima.take(time, node, f64::INFINITY));
                 time += piece;

@@ -3,8 +3,8 @@
 use super::{ContactModel, Destinations, Fate};
 use crate::rolling::STATE_NAMES;
 use crate::simulation::SimulationError;
+use arclength::control::Control;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Initial states in one tile: those of a rolling wheel fill the registers, those of one that may slide are few, since each takes
 /// long and a tile that was not finished is lost.
@@ -81,15 +81,15 @@ pub struct Fraction {
 /// A tile depends on nothing but its states, so tiles can be computed in any order, in several runs.
 ///
 /// ```
+/// use arclength::control::Control;
 /// use kingpin::Wheel;
 /// use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
-/// use std::sync::atomic::AtomicBool;
 ///
 /// let settings = ClassificationSettings { duration: 20.0 };
 /// let destinations = Destinations::new(&Wheel::default(), ContactModel::Rolling, settings)?;
 /// let axes = [Axis::new("psi", -0.2, 0.2)?, Axis::new("Omega", -5.0, 5.0)?];
 /// let map = BasinMap::grid(&destinations, &axes, [6, 4])?;
-/// let fates = map.run(&AtomicBool::new(false), |_| false, |_tile| {})?;
+/// let fates = map.run(&Control::none(), |_| false, |_tile| {})?;
 /// assert_eq!(fates.len(), 1);
 /// assert_eq!(fates[0].fates, vec![Fate::UniformMotion; 24]);
 /// # Ok::<(), kingpin::simulation::SimulationError>(())
@@ -177,29 +177,36 @@ impl<'a> BasinMap<'a> {
         self.initial.len().div_ceil(self.tile)
     }
 
-    /// Computes the tiles that are not `finished` on all cores, until all are done or `cancelled` is set. Every new tile is
-    /// handed to `on_tile` as soon as it is known, for progress and for keeping; all new tiles are returned in order.
+    /// Computes the tiles that are not `finished` on all cores, until all are done or the control stops it. Every new tile is
+    /// handed to `on_tile` as soon as it is known, for keeping; all new tiles are returned in order. Those that are missing
+    /// after an interruption were not computed.
     ///
     /// # Errors
     /// A motion that cannot be followed.
     pub fn run(
         &self,
-        cancelled: &AtomicBool,
+        control: &Control<'_>,
         finished: impl Fn(usize) -> bool + Sync,
         on_tile: impl Fn(&Tile) + Sync,
     ) -> Result<Vec<Tile>, SimulationError> {
-        let compute = |index: usize| {
-            if cancelled.load(Ordering::Relaxed) {
+        let wanted: Vec<usize> = (0..self.tiles()).filter(|&index| !finished(index)).collect();
+        let known = self.tiles() - wanted.len();
+        let progress = control.part(known as f64 / self.tiles() as f64..1.0).count(wanted.len());
+        let compute = |&index: &usize| {
+            if control.is_stopped() {
                 return None;
             }
             let first = index * self.tile;
-            let tile = self.destinations.of(self.states_of(index)).map(|fates| Tile { index, first, fates });
-            if let Ok(tile) = &tile {
-                on_tile(tile);
-            }
-            Some(tile)
+            let tile = match self.destinations.of(self.states_of(index), &control.quiet()) {
+                Ok(fates) => Tile { index, first, fates },
+                Err(SimulationError::Interrupted(_)) => return None,
+                Err(error) => return Some(Err(error)),
+            };
+            on_tile(&tile);
+            progress.advance(1);
+            Some(Ok(tile))
         };
-        (0..self.tiles()).into_par_iter().filter(|&index| !finished(index)).filter_map(compute).collect()
+        wanted.par_iter().filter_map(compute).collect()
     }
 }
 

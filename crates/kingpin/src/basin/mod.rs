@@ -23,6 +23,7 @@ use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::sliding::SlidingWheel;
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use course::Course;
 use fate::{PATIENCE, Target, Watch};
 use lasting::{BRIEF, Lasting, Seen, THOROUGH};
@@ -55,13 +56,14 @@ impl ContactModel {
 /// Tells where motions of one wheel end.
 ///
 /// ```
+/// use arclength::control::Control;
 /// use kingpin::{Wheel, basin::{ContactModel, ClassificationSettings, Destinations, Fate}};
 ///
 /// let wheel = Wheel::default();
 /// let near = wheel.perturbed_uniform_motion(&[("psi", 0.1)])?;
 /// let far = wheel.perturbed_uniform_motion(&[("Omega", 80.0)])?;
 /// let destinations = Destinations::new(&wheel, ContactModel::Rolling, ClassificationSettings::default())?;
-/// let fates = destinations.of(&[near, far])?;
+/// let fates = destinations.of(&[near, far], &Control::none())?;
 /// assert_eq!(fates, [Fate::UniformMotion, Fate::Tumbling]);
 /// # Ok::<(), kingpin::simulation::SimulationError>(())
 /// ```
@@ -132,17 +134,18 @@ impl Destinations {
     /// Fates of the motions from states `(u, q, psi, V, Omega)` without slip.
     ///
     /// # Errors
-    /// A motion that cannot be followed for another reason than that it grows without bound.
-    pub fn of(&self, initial: &[[f64; 5]]) -> Result<Vec<Fate>, SimulationError> {
+    /// A motion that cannot be followed for another reason than that it grows without bound;
+    /// [`SimulationError::Interrupted`].
+    pub fn of(&self, initial: &[[f64; 5]], control: &Control<'_>) -> Result<Vec<Fate>, SimulationError> {
         match &self.follower {
-            Follower::Ensemble(ensemble) => self.of_ensemble(ensemble, initial),
+            Follower::Ensemble(ensemble) => self.of_ensemble(ensemble, initial, control),
             Follower::Rolling => {
-                let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?);
+                let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?, control);
                 initial.par_iter().map(fate).collect()
             }
             Follower::Sliding(sliding) => {
                 let fate = |state: &[f64; 5]| {
-                    self.of_course(Course::sliding(sliding, sliding.rolling_state(state))?)
+                    self.of_course(Course::sliding(sliding, sliding.rolling_state(state))?, control)
                 };
                 initial.par_iter().map(fate).collect()
             }
@@ -153,27 +156,37 @@ impl Destinations {
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    pub fn of_sliding_state(&self, initial: &[f64; 7]) -> Result<Fate, SimulationError> {
+    pub fn of_sliding_state(
+        &self,
+        initial: &[f64; 7],
+        control: &Control<'_>,
+    ) -> Result<Fate, SimulationError> {
         match &self.follower {
             Follower::Sliding(sliding) => {
-                self.of_course(Course::sliding(sliding, sliding.slipping_state(initial))?)
+                self.of_course(Course::sliding(sliding, sliding.slipping_state(initial))?, control)
             }
             _ => {
                 let [u, q, psi, speed, _, yaw, _] = *initial;
-                Ok(self.of(&[[u, q, psi, speed, yaw]])?.first().copied().unwrap_or(Fate::Undecided))
+                Ok(self.of(&[[u, q, psi, speed, yaw]], control)?.first().copied().unwrap_or(Fate::Undecided))
             }
         }
     }
 
     /// One motion by itself.
-    fn of_course(&self, course: Course<'_>) -> Result<Fate, SimulationError> {
+    fn of_course(&self, course: Course<'_>, control: &Control<'_>) -> Result<Fate, SimulationError> {
         let watch = Watch::new(&self.target, &self.settings, &course.state());
-        Lasting::new(course, 0.0).until_the_end(&self.target, watch)
+        Lasting::new(course, 0.0).until_the_end(&self.target, watch, &control.quiet())
     }
 
     /// Many motions at once. Those that swing to and fro at the end of the duration are looked at one by one, in passing;
     /// those that do not repeat themselves then go on together to the end of the patience.
-    fn of_ensemble(&self, ensemble: &Ensemble, initial: &[[f64; 5]]) -> Result<Vec<Fate>, SimulationError> {
+    fn of_ensemble(
+        &self,
+        ensemble: &Ensemble,
+        initial: &[[f64; 5]],
+        control: &Control<'_>,
+    ) -> Result<Vec<Fate>, SimulationError> {
+        let control = &control.quiet();
         let mut motions: Vec<Followed> = initial
             .iter()
             .map(|state| Followed {
@@ -184,15 +197,18 @@ impl Destinations {
             })
             .collect();
         let duration = self.settings.duration;
-        self.go_on(ensemble, &mut motions, duration)?;
+        self.go_on(ensemble, &mut motions, duration, control)?;
         let brief = BRIEF * self.target.natural_period;
-        self.look_at(&mut motions, (duration + brief).min(PATIENCE * duration))?;
+        self.look_at(&mut motions, (duration + brief).min(PATIENCE * duration), control)?;
         let thorough = (THOROUGH * self.target.natural_period).min(0.5 * PATIENCE * duration);
-        self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough)?;
+        self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough, control)?;
         let fate = |motion: Followed| match motion.fate {
             Some(fate) => Ok(fate),
-            None => Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time)
-                .until_the_end(&self.target, motion.watch),
+            None => Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time).until_the_end(
+                &self.target,
+                motion.watch,
+                control,
+            ),
         };
         motions.into_par_iter().map(fate).collect()
     }
@@ -203,6 +219,7 @@ impl Destinations {
         ensemble: &Ensemble,
         motions: &mut [Followed],
         until: f64,
+        control: &Control<'_>,
     ) -> Result<(), SimulationError> {
         let mut open: Vec<&mut Followed> =
             motions.iter_mut().filter(|motion| motion.fate.is_none()).collect();
@@ -221,7 +238,7 @@ impl Destinations {
                 watch.observe(start + progress.time, &progress.state())
             }
         };
-        let outcomes = ensemble.integrate_watched(&states, until - start, monitor)?;
+        let outcomes = ensemble.integrate_watched(&states, until - start, control, monitor)?;
         drop(watches);
         for (motion, Outcome { state, ending, .. }) in open.into_iter().zip(outcomes) {
             motion.state = state;
@@ -236,10 +253,15 @@ impl Destinations {
     }
 
     /// Looks at all motions whose fates are not known, to a time.
-    fn look_at(&self, motions: &mut [Followed], until: f64) -> Result<(), SimulationError> {
+    fn look_at(
+        &self,
+        motions: &mut [Followed],
+        until: f64,
+        control: &Control<'_>,
+    ) -> Result<(), SimulationError> {
         motions.par_iter_mut().filter(|motion| motion.fate.is_none()).try_for_each(|motion| {
             let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time);
-            if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch)? {
+            if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch, control)? {
                 motion.fate = Some(fate);
             }
             (motion.state, motion.time) = (lasting.state(), lasting.time());

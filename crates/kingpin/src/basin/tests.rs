@@ -1,6 +1,7 @@
 //! Fates and margins against what is known of the limit cycles.
 
 use super::*;
+use arclength::control::Control;
 use proptest::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,8 +20,9 @@ fn the_two_sides_of_the_unstable_cycle() {
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
     let centre = wheel.uniform_motion().unwrap().state();
     let at = |part: f64| std::array::from_fn(|i| centre[i] + part * (UNSTABLE_CYCLE[i] - centre[i]));
-    let fates =
-        destinations(&wheel, ContactModel::Rolling, 60.0).of(&[at(0.5), at(0.9), at(1.1), at(1.5)]).unwrap();
+    let fates = destinations(&wheel, ContactModel::Rolling, 60.0)
+        .of(&[at(0.5), at(0.9), at(1.1), at(1.5)], &Control::none())
+        .unwrap();
     assert_eq!(fates, [Fate::UniformMotion, Fate::UniformMotion, Fate::Tumbling, Fate::Tumbling]);
 }
 
@@ -38,11 +40,11 @@ fn followers_agree() {
     let sticky =
         wheel.with(Key::MuS, 100.0).unwrap().with(Key::MuD, 100.0).unwrap().with(Key::FAz, -1e5).unwrap();
     let sliding = destinations(&sticky, ContactModel::Sliding, 20.0);
-    let expected = ensemble.of(&initial).unwrap();
+    let expected = ensemble.of(&initial, &Control::none()).unwrap();
     assert_eq!(expected[0], Fate::UniformMotion);
     assert_eq!(expected[2], Fate::Tumbling);
-    assert_eq!(stepwise.of(&initial).unwrap(), expected);
-    assert_eq!(sliding.of(&initial[..2]).unwrap(), expected[..2]);
+    assert_eq!(stepwise.of(&initial, &Control::none()).unwrap(), expected);
+    assert_eq!(sliding.of(&initial[..2], &Control::none()).unwrap(), expected[..2]);
 }
 
 #[test]
@@ -52,9 +54,9 @@ fn slow_motions_near_an_unstable_cycle_are_no_shimmy() {
     let [u, q, _, speed, _] = wheel.uniform_motion().unwrap().state();
     let slow = [u, q, -0.199, speed, -46.8];
     let mut of = destinations(&wheel, ContactModel::Rolling, 30.0);
-    assert_eq!(of.of(&[slow]).unwrap(), [Fate::UniformMotion]);
+    assert_eq!(of.of(&[slow], &Control::none()).unwrap(), [Fate::UniformMotion]);
     of.follower = Follower::Rolling;
-    assert_eq!(of.of(&[slow]).unwrap(), [Fate::UniformMotion]);
+    assert_eq!(of.of(&[slow], &Control::none()).unwrap(), [Fate::UniformMotion]);
 }
 
 #[test]
@@ -62,7 +64,7 @@ fn the_unstable_cycle_itself_is_no_shimmy() {
     // It repeats itself to nine digits for many periods, but a push sends it away.
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
     let of = destinations(&wheel, ContactModel::Rolling, 2.0);
-    assert_ne!(of.of(&[UNSTABLE_CYCLE]).unwrap(), [Fate::Shimmy]);
+    assert_ne!(of.of(&[UNSTABLE_CYCLE], &Control::none()).unwrap(), [Fate::Shimmy]);
 }
 
 #[test]
@@ -73,7 +75,11 @@ fn straight_running_is_judged_by_the_lateral_motion() {
     let destinations = Destinations::new(&wheel, ContactModel::Rolling, settings).unwrap();
     for impulse in [0.19, 0.191, 0.3, 0.5] {
         let (_, state) = Disturbance::Impulse.apply(&wheel, ContactModel::Rolling, impulse).unwrap();
-        assert_eq!(destinations.of_sliding_state(&state).unwrap(), Fate::UniformMotion, "{impulse} N s");
+        assert_eq!(
+            destinations.of_sliding_state(&state, &Control::none()).unwrap(),
+            Fate::UniformMotion,
+            "{impulse} N s"
+        );
     }
     // The longitudinal damper does not change how fast the lateral motion decays.
     let damped = wheel.with(Key::CU, 0.005).unwrap();
@@ -89,8 +95,15 @@ fn motions_that_take_too_many_steps_are_told_by_what_they_did() {
             .try_fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value))
             .unwrap();
         let settings = ClassificationSettings::for_wheel(&wheel).unwrap();
-        let kick =
-            SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 1.0).unwrap();
+        let kick = SafeKick::find(
+            &wheel,
+            ContactModel::Rolling,
+            settings,
+            Disturbance::Impulse,
+            1.0,
+            &Control::none(),
+        )
+        .unwrap();
         let fate = kick.and_then(|kick| kick.fate);
         assert!(matches!(fate, None | Some(Fate::Tumbling | Fate::Escape)), "{damping}: {fate:?}");
     }
@@ -99,7 +112,7 @@ fn motions_that_take_too_many_steps_are_told_by_what_they_did() {
     let Follower::Ensemble(ensemble) = &hurried.follower else { panic!("the wheel is isotropic") };
     hurried.follower = Follower::Ensemble(ensemble.clone().maximum_steps(1500));
     let start = |amount: f64| wheel.perturbed_uniform_motion(&[("Omega", amount)]).unwrap();
-    assert_eq!(hurried.of(&[start(80.0)]).unwrap(), [Fate::Tumbling]);
+    assert_eq!(hurried.of(&[start(80.0)], &Control::none()).unwrap(), [Fate::Tumbling]);
 }
 
 #[test]
@@ -110,12 +123,12 @@ fn shimmy_with_sliding_phases_is_found() {
         .try_fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value))
         .unwrap();
     let kicked = [0.05, 0.2].map(|angle| wheel.perturbed_uniform_motion(&[("psi", angle)]).unwrap());
-    let fates = destinations(&wheel, ContactModel::Sliding, 10.0).of(&kicked).unwrap();
+    let fates = destinations(&wheel, ContactModel::Sliding, 10.0).of(&kicked, &Control::none()).unwrap();
     assert_eq!(fates, [Fate::Shimmy, Fate::Shimmy]);
     // Large shimmy with three swings in a period, beside a stable uniform motion; its largest multiplier is 0.23.
     let loaded = Wheel::default().with(Key::V, 8.4).unwrap().with(Key::FAz, -100.0).unwrap();
     let kicked = loaded.perturbed_uniform_motion(&[("psi", 1.2)]).unwrap();
-    let fates = destinations(&loaded, ContactModel::Sliding, 15.0).of(&[kicked]).unwrap();
+    let fates = destinations(&loaded, ContactModel::Sliding, 15.0).of(&[kicked], &Control::none()).unwrap();
     assert_eq!(fates, [Fate::Shimmy]);
 }
 
@@ -127,7 +140,9 @@ fn a_damped_kick_dies_out_and_a_wild_one_counts_as_escape() {
         .try_fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value))
         .unwrap();
     let kicked = |rate| wheel.perturbed_uniform_motion(&[("Omega", rate)]).unwrap();
-    let fates = destinations(&wheel, ContactModel::Rolling, 60.0).of(&[kicked(120.0), kicked(1e5)]).unwrap();
+    let fates = destinations(&wheel, ContactModel::Rolling, 60.0)
+        .of(&[kicked(120.0), kicked(1e5)], &Control::none())
+        .unwrap();
     assert_eq!(fates, [Fate::UniformMotion, Fate::Escape]);
 }
 
@@ -137,15 +152,14 @@ fn tiles_can_be_stopped_and_resumed() {
     let destinations = destinations(&wheel, ContactModel::Rolling, 10.0);
     let axes = [Axis::new("psi", -0.5, 0.5).unwrap(), Axis::new("Omega", -60.0, 60.0).unwrap()];
     let map = BasinMap::grid(&destinations, &axes, [20, 13]).unwrap();
-    let never = AtomicBool::new(false);
-    let whole = map.run(&never, |_| false, |_| {}).unwrap();
+    let whole = map.run(&Control::none(), |_| false, |_| {}).unwrap();
     assert_eq!(whole.len(), 5);
     assert_eq!(whole.iter().map(|tile| tile.fates.len()).sum::<usize>(), 260);
     // Stop after the first tile, then do the rest.
     let stop = AtomicBool::new(false);
     let kept = Mutex::new(Vec::new());
     map.run(
-        &stop,
+        &Control::unobserved(&stop),
         |_| false,
         |tile| {
             kept.lock().unwrap().push(tile.clone());
@@ -156,7 +170,7 @@ fn tiles_can_be_stopped_and_resumed() {
     let mut kept = kept.into_inner().unwrap();
     assert!(!kept.is_empty() && kept.len() < 5);
     let done: Vec<usize> = kept.iter().map(|tile| tile.index).collect();
-    kept.extend(map.run(&never, |index| done.contains(&index), |_| {}).unwrap());
+    kept.extend(map.run(&Control::none(), |index| done.contains(&index), |_| {}).unwrap());
     kept.sort_by_key(|tile| tile.index);
     assert_eq!(kept, whole);
 }
@@ -175,7 +189,7 @@ fn samples_are_reproducible_and_counted() {
         map.initial_states(),
         BasinMap::samples(&destinations, &axes, 200, 8).unwrap().initial_states()
     );
-    let tiles = map.run(&AtomicBool::new(false), |_| false, |_| {}).unwrap();
+    let tiles = map.run(&Control::none(), |_| false, |_| {}).unwrap();
     let fractions = Fraction::of(&tiles);
     assert_eq!(fractions.iter().map(|fraction| fraction.count).sum::<usize>(), 200);
     assert!(fractions.iter().all(|f| f.interval.0 <= f.share && f.share <= f.interval.1));
@@ -208,7 +222,9 @@ fn smallest_kick_lies_between_return_and_failure() {
     let wheel = Wheel::default().with(Key::V, 6.0).unwrap();
     let settings = ClassificationSettings::for_wheel(&wheel).unwrap();
     let kick =
-        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 1.0).unwrap().unwrap();
+        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 1.0, &Control::none())
+            .unwrap()
+            .unwrap();
     assert!(kick.returns < kick.fails && kick.fails - kick.returns < 2e-6);
     assert_eq!(kick.fate, Some(Fate::Tumbling));
     // The blow turns the caster by R I/J.
@@ -218,12 +234,22 @@ fn smallest_kick_lies_between_return_and_failure() {
     // Near the edge the motion lingers for longer than 20 s: what looks like the edge then is none.
     let hasty = ClassificationSettings { duration: 2.0 };
     let hasty =
-        SafeKick::find(&wheel, ContactModel::Rolling, hasty, Disturbance::Impulse, 1.0).unwrap().unwrap();
+        SafeKick::find(&wheel, ContactModel::Rolling, hasty, Disturbance::Impulse, 1.0, &Control::none())
+            .unwrap()
+            .unwrap();
     assert_eq!(hasty.fate, Some(Fate::Undecided));
-    let none =
-        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::ReleaseAngle, 0.05).unwrap();
+    let none = SafeKick::find(
+        &wheel,
+        ContactModel::Rolling,
+        settings,
+        Disturbance::ReleaseAngle,
+        0.05,
+        &Control::none(),
+    )
+    .unwrap();
     assert!(none.is_none());
-    let bad = SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 0.0);
+    let bad =
+        SafeKick::find(&wheel, ContactModel::Rolling, settings, Disturbance::Impulse, 0.0, &Control::none());
     assert!(bad.unwrap_err().to_string().contains("largest disturbance = 0"));
 }
 
@@ -234,14 +260,14 @@ fn rest_at_the_uniform_motion_is_return_unless_it_is_unstable() {
     for wheel in [Wheel::default(), straight] {
         let rest = wheel.uniform_motion().unwrap().state();
         assert_eq!(
-            destinations(&wheel, ContactModel::Rolling, 30.0).of(&[rest]).unwrap(),
+            destinations(&wheel, ContactModel::Rolling, 30.0).of(&[rest], &Control::none()).unwrap(),
             [Fate::UniformMotion]
         );
     }
     let unstable = Wheel::default().with(Key::V, 9.0).unwrap();
     let near = unstable.perturbed_uniform_motion(&[("psi", 1e-3)]).unwrap();
     assert_ne!(
-        destinations(&unstable, ContactModel::Rolling, 30.0).of(&[near]).unwrap(),
+        destinations(&unstable, ContactModel::Rolling, 30.0).of(&[near], &Control::none()).unwrap(),
         [Fate::UniformMotion]
     );
 }
@@ -261,7 +287,8 @@ fn a_wheel_that_may_slide_needs_a_uniform_motion_that_rolls() {
 fn histories_begin_with_the_disturbance() {
     let wheel = Wheel::default().with(Key::Curvature, 0.0).unwrap().with(Key::CU, 0.1).unwrap();
     for model in [ContactModel::Rolling, ContactModel::Sliding] {
-        let motion = Disturbance::ReleaseAngle.history(&wheel, model, 0.1, 0.5, 11).unwrap();
+        let motion =
+            Disturbance::ReleaseAngle.history(&wheel, model, 0.1, 0.5, 11, &Control::none()).unwrap();
         assert_eq!((motion.times.len(), motion.states.len()), (11, 11));
         assert_eq!(motion.states[0][2], 0.1);
     }

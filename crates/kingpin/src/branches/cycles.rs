@@ -43,10 +43,11 @@ impl HopfPoint {
     /// [`KingpinError::Continuation`].
     ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::{Key, Wheel, branches::{Along, CycleOptions}};
     /// use std::ops::ControlFlow;
     /// let along = Along::new(Key::V, 1.0, 12.0)?;
-    /// let hopf = Wheel::default().hopf_points(along)?.points.remove(0);
+    /// let hopf = Wheel::default().hopf_points(along, &Control::none())?.points.remove(0);
     /// let options = CycleOptions { at: vec![4.0], ..CycleOptions::default() };
     /// let branch = hopf.cycles(along, &options, |_, _| ControlFlow::Continue(()))?;
     /// let cycle = branch.points.iter().find(|cycle| cycle.value == 4.0).unwrap();

@@ -3,6 +3,7 @@
 use super::Along;
 use crate::{KingpinError, Wheel};
 use arclength::branch::Criticality;
+use arclength::control::Control;
 use arclength::equilibrium::Equilibria;
 
 /// A Hopf point of the uniform motion.
@@ -42,18 +43,20 @@ impl Wheel {
     ///
     /// # Errors
     /// [`KingpinError::NoUniformMotion`] when there is none anywhere in the interval (the reason is that at its
-    /// start), [`KingpinError::Continuation`] when the branch cannot be followed.
+    /// start), [`KingpinError::Continuation`] when the branch cannot be followed, [`KingpinError::Interrupted`].
     ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::{Key, Wheel, branches::Along};
-    /// let search = Wheel::default().hopf_points(Along::new(Key::V, 1.0, 12.0)?)?;
+    /// let search = Wheel::default().hopf_points(Along::new(Key::V, 1.0, 12.0)?, &Control::none())?;
     /// assert!((search.points[0].value - 8.43103697014).abs() < 1e-9);
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
-    pub fn hopf_points(&self, along: Along) -> Result<HopfSearch, KingpinError> {
+    pub fn hopf_points(&self, along: Along, control: &Control<'_>) -> Result<HopfSearch, KingpinError> {
         let mut first_error = None;
         let key = along.followed();
         for candidate in along.candidates(self) {
+            control.check()?;
             let wheel = self.with(key, candidate)?;
             let motion = match wheel.uniform_motion() {
                 Ok(motion) => motion,
@@ -67,7 +70,8 @@ impl Wheel {
                 .start(&model.free_state(&motion.state()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
-                .run()?;
+                .observed(&mut |_, _| control.flow())?;
+            control.check()?;
             let mut points = branch
                 .hopf_points()
                 .map(|point| {

@@ -13,6 +13,7 @@ mod tests;
 
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
+use arclength::control::{Control, Interrupted};
 use quadratic::QuadraticWheel;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -111,12 +112,13 @@ impl Monitor for Unwatched {
 /// An integrator of many trajectories of one wheel.
 ///
 /// ```
+/// use arclength::control::Control;
 /// use kingpin::{Wheel, ensemble::Ensemble};
 ///
 /// let wheel = Wheel::default();
 /// let ensemble = Ensemble::new(&wheel)?.tolerance(1e-10);
 /// let start = wheel.perturbed_uniform_motion(&[("psi", 0.2)])?;
-/// let ends = ensemble.integrate(&[start, start], 10.0)?;
+/// let ends = ensemble.integrate(&[start, start], 10.0, &Control::none())?;
 /// assert_eq!(ends[0], ends[1]);
 /// # Ok::<(), kingpin::simulation::SimulationError>(())
 /// ```
@@ -152,10 +154,15 @@ impl Ensemble {
     /// Follows a trajectory from each of the initial states `(u, q, psi, V, Omega)` for `duration` seconds.
     ///
     /// # Errors
-    /// A tolerance or duration that is out of range. A trajectory that grows without bound is not an error
+    /// A tolerance or duration that is out of range, [`SimulationError::Interrupted`]. A trajectory that grows without bound is not an error
     /// but an [`Ending`].
-    pub fn integrate(&self, initial: &[[f64; 5]], duration: f64) -> Result<Vec<Outcome>, SimulationError> {
-        self.integrate_watched(initial, duration, |_| Unwatched)
+    pub fn integrate(
+        &self,
+        initial: &[[f64; 5]],
+        duration: f64,
+        control: &Control<'_>,
+    ) -> Result<Vec<Outcome>, SimulationError> {
+        self.integrate_watched(initial, duration, control, |_| Unwatched)
     }
 
     /// As [`integrate`](Self::integrate), with a monitor made for each trajectory from its index.
@@ -166,6 +173,7 @@ impl Ensemble {
         &self,
         initial: &[[f64; 5]],
         duration: f64,
+        control: &Control<'_>,
         monitor: impl Fn(usize) -> M + Sync,
     ) -> Result<Vec<Outcome>, SimulationError> {
         if !(duration >= 0.0 && duration.is_finite()) {
@@ -177,7 +185,8 @@ impl Ensemble {
         let mut outcomes =
             vec![Outcome { time: 0.0, state: [0.0; 5], steps: 0, ending: Ending::NotFinite }; initial.len()];
         let arch = pulp::Arch::new();
-        outcomes.par_chunks_mut(CHUNK).zip(initial.par_chunks(CHUNK)).enumerate().for_each(
+        let progress = control.count(initial.len());
+        outcomes.par_chunks_mut(CHUNK).zip(initial.par_chunks(CHUNK)).enumerate().try_for_each(
             |(chunk, (outcomes, initial))| {
                 arch.dispatch(queue::Queue {
                     ensemble: self,
@@ -185,10 +194,13 @@ impl Ensemble {
                     first: chunk * CHUNK,
                     duration,
                     monitor: &monitor,
+                    control,
                     outcomes,
-                });
+                })?;
+                progress.advance(initial.len());
+                Ok::<_, Interrupted>(())
             },
-        );
+        )?;
         Ok(outcomes)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::taylor::{Series, TaylorMethod, lanes, lanes_mut};
 use super::{Ending, Ensemble, Monitor, Outcome, Progress, QuadraticWheel};
+use arclength::control::{Control, Interrupted};
 use pulp::{Simd, WithSimd};
 use std::ops::ControlFlow;
 
@@ -16,6 +17,7 @@ pub(super) struct Queue<'a, F> {
     pub first: usize,
     pub duration: f64,
     pub monitor: &'a F,
+    pub control: &'a Control<'a>,
     pub outcomes: &'a mut [Outcome],
 }
 
@@ -28,11 +30,11 @@ struct Lane<M> {
 }
 
 impl<M: Monitor, F: Fn(usize) -> M> WithSimd for Queue<'_, F> {
-    type Output = ();
+    type Output = Result<(), Interrupted>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { ensemble, initial, first, duration, monitor, outcomes } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { ensemble, initial, first, duration, monitor, control, outcomes } = self;
         let method = TaylorMethod::new(simd, &ensemble.wheel, ensemble.tolerance);
         let mut series = Series::new(simd);
         let mut waiting = 0..initial.len();
@@ -45,6 +47,7 @@ impl<M: Monitor, F: Fn(usize) -> M> WithSimd for Queue<'_, F> {
             running += usize::from(slot.is_some());
         }
         while running > 0 {
+            control.check()?;
             method.expand(&mut series);
             method.propose_steps(&series, &mut steps);
             for (step, slot) in lanes_mut(&mut steps).iter_mut().zip(slots.iter()) {
@@ -85,6 +88,7 @@ impl<M: Monitor, F: Fn(usize) -> M> WithSimd for Queue<'_, F> {
                 }
             }
         }
+        Ok(())
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The coefficients of the solution follow from recurrences in which a product becomes a convolution (Jorba and
 //! Zou, Experimental Mathematics 14, 2005). Every lane has its own step size; no operation crosses lanes, so a
-//! trajectory does not depend on its neighbours.
+//! trajectory does not depend on its neighbours. Registers are named here, unlike in `arclength::lanes`, where the
+//! compiler finds them: the steps that are proposed lane by lane made that 6 to 11 % slower.
 
 use super::quadratic::{A, B, COSINE, QuadraticWheel, SINE, SPEED, STATES, YAW};
 use pulp::Simd;

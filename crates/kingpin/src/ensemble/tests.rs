@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Key;
+use arclength::control::Control;
 use arclength::integration::{Integrator, autonomous};
 
 /// Initial states around the uniform motion, from a low-discrepancy sequence.
@@ -43,7 +44,11 @@ fn agrees_with_runge_kutta_and_converges() {
             .collect();
         let mut last = f64::INFINITY;
         for tolerance in [1e-6, 1e-9, 1e-12] {
-            let ends = Ensemble::new(wheel).unwrap().tolerance(tolerance).integrate(&initial, 1.0).unwrap();
+            let ends = Ensemble::new(wheel)
+                .unwrap()
+                .tolerance(tolerance)
+                .integrate(&initial, 1.0, &Control::none())
+                .unwrap();
             let error = ends
                 .iter()
                 .zip(&exact)
@@ -74,12 +79,12 @@ fn a_trajectory_does_not_depend_on_its_company() {
     };
     let run = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| ensemble.integrate_watched(&initial, 0.3, stop)).unwrap()
+        pool.install(|| ensemble.integrate_watched(&initial, 0.3, &Control::none(), stop)).unwrap()
     };
     let together = run(1);
     assert_eq!(together, run(3));
     for index in [0, 1, 7, 300, 599] {
-        let alone = ensemble.integrate(&initial[index..=index], 0.3).unwrap();
+        let alone = ensemble.integrate(&initial[index..=index], 0.3, &Control::none()).unwrap();
         let expected = if index % 3 == 0 { Ending::Stopped } else { Ending::Completed };
         assert_eq!(together[index].ending, expected);
         if expected == Ending::Completed {
@@ -93,21 +98,22 @@ fn endings_are_told_apart() {
     let wheel = Wheel::default();
     let state = wheel.uniform_motion().unwrap().state();
     let ensemble = Ensemble::new(&wheel).unwrap();
-    let ending = |ensemble: &Ensemble, state| ensemble.integrate(&[state], 1.0).unwrap()[0].ending;
+    let ending =
+        |ensemble: &Ensemble, state| ensemble.integrate(&[state], 1.0, &Control::none()).unwrap()[0].ending;
     assert_eq!(ending(&ensemble, [f64::NAN, 0.0, 0.0, 1.0, 0.0]), Ending::NotFinite);
     assert_eq!(ending(&ensemble, [0.0, 0.0, 0.0, 1.0, 1e300]), Ending::NotFinite);
     assert_eq!(ending(&ensemble.clone().maximum_steps(3), state), Ending::TooManySteps);
     assert_eq!(ending(&ensemble, state), Ending::Completed);
-    assert_eq!(ensemble.integrate(&[state], 0.0).unwrap()[0].time, 0.0);
-    assert!(ensemble.integrate(&[], 1.0).unwrap().is_empty());
+    assert_eq!(ensemble.integrate(&[state], 0.0, &Control::none()).unwrap()[0].time, 0.0);
+    assert!(ensemble.integrate(&[], 1.0, &Control::none()).unwrap().is_empty());
 }
 
 #[test]
 fn bad_input_is_refused() {
     let wheel = Wheel::default();
     let ensemble = Ensemble::new(&wheel).unwrap();
-    assert!(ensemble.integrate(&[], -1.0).is_err());
-    assert!(ensemble.clone().tolerance(f64::NAN).integrate(&[], 1.0).is_err());
+    assert!(ensemble.integrate(&[], -1.0, &Control::none()).is_err());
+    assert!(ensemble.clone().tolerance(f64::NAN).integrate(&[], 1.0, &Control::none()).is_err());
     for key in [Key::KU, Key::CU] {
         let error = Ensemble::new(&wheel.with(key, 1.0).unwrap()).unwrap_err();
         assert!(error.to_string().contains("equal to"));

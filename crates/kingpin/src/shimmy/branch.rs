@@ -7,6 +7,7 @@ use super::error::{Grazing, Refusal, ShimmyError};
 use crate::branches::Along;
 use crate::error::KingpinError;
 use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, follow};
+use arclength::control::Control;
 use std::ops::ControlFlow;
 
 /// Motions whose period and extrema differ by less than this part are the same.
@@ -104,12 +105,13 @@ pub struct SlidingBranch {
 
 impl PeriodicSliding {
     /// The branch of periodic motions through this one, followed both ways over the interval until the sequence of phases
-    /// changes. `observer` is told value and motion and may end the run.
+    /// changes. `observer` is told value and motion and may end the run, as the control does: the branch then ends there.
     ///
     /// # Errors
     /// An interval without the value of this motion, or a start from which nothing can be followed.
     ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::{Key, Wheel, branches::Along, shimmy::{SlidingBranchOptions, SlidingMotionSearch}};
     /// use std::ops::ControlFlow;
     ///
@@ -119,9 +121,9 @@ impl PeriodicSliding {
     /// }
     /// let start = wheel.perturbed_uniform_motion(&[("psi", 0.2)])?;
     /// let search = SlidingMotionSearch { settling_time: 5.0, ..SlidingMotionSearch::default() };
-    /// let motion = wheel.sliding_motion(&start, &search)?;
+    /// let motion = wheel.sliding_motion(&start, &search, &Control::none())?;
     /// let along = Along::new(Key::V, 0.49, 0.51)?;
-    /// let branch = motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(()))?;
+    /// let branch = motion.along(along, &SlidingBranchOptions::default(), &Control::none(), |_, _| ControlFlow::Continue(()))?;
     /// assert_eq!(branch.points[0].value, 0.49);
     /// # Ok::<(), kingpin::shimmy::ShimmyError>(())
     /// ```
@@ -129,6 +131,7 @@ impl PeriodicSliding {
         &self,
         along: Along,
         options: &SlidingBranchOptions,
+        control: &Control<'_>,
         mut observer: impl FnMut(f64, &PeriodicSliding) -> ControlFlow<()>,
     ) -> Result<SlidingBranch, ShimmyError> {
         let value = self.wheel.get(along.key());
@@ -138,11 +141,10 @@ impl PeriodicSliding {
         }
         let mut halves = Vec::with_capacity(2);
         for direction in [-1.0, 1.0] {
-            halves.push(self.half(along, direction, options, &mut observer)?);
+            halves.push(self.half(along, direction, options, control, &mut observer)?);
         }
-        let [(backward, first), (forward, last)] = <[_; 2]>::try_from(halves)
-            .map_err(|_| Refusal::Singular)
-            .map_err(|cause| ShimmyError::NotConverged { cause })?;
+        let [(backward, first), (forward, last)] =
+            <[_; 2]>::try_from(halves).map_err(|_| Refusal::Singular)?;
         let mut points: Vec<SlidingBranchPoint> = backward;
         points.reverse();
         points.pop();
@@ -156,13 +158,14 @@ impl PeriodicSliding {
         along: Along,
         direction: f64,
         options: &SlidingBranchOptions,
+        control: &Control<'_>,
         observer: &mut dyn FnMut(f64, &PeriodicSliding) -> ControlFlow<()>,
     ) -> Result<(Vec<SlidingBranchPoint>, SlidingBranchEnd), ShimmyError> {
         let range = along.range();
         let (lower, upper) = (*range.start(), *range.end());
         let value = along.convert(self.wheel.get(along.key()));
         let mut curve =
-            SlidingCurve::new(self.map.clone(), along.followed(), upper - lower, options.settings);
+            SlidingCurve::new(self.map.clone(), along.followed(), upper - lower, options.settings, control);
         let mut unknown = curve.unknown(&self.start, value);
         let mut tangent = vec![0.0; unknown.len()];
         if let Some(last) = tangent.last_mut() {
@@ -179,11 +182,13 @@ impl PeriodicSliding {
         for _ in 0..MOST_SEGMENTS {
             let mut watch = |solution: &Solution<CurvePoint>| {
                 let value = along.convert(solution.unknown[solution.unknown.len() - 1]);
-                let flow = observer(value, &solution.point.motion);
-                interrupted = flow.is_break();
-                flow
+                interrupted = control.is_stopped() || observer(value, &solution.point.motion).is_break();
+                if interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
-            let followed = follow(&mut curve, unknown, tangent, &request, &mut watch)?;
+            let followed = match follow(&mut curve, unknown, tangent, &request, &mut watch) {
+                Err(_) if control.is_stopped() => break,
+                followed => followed?,
+            };
             // A renewed start repeats the last motion.
             let first = usize::from(!points.is_empty() && !std::mem::take(&mut crosses));
             points.extend(
@@ -196,6 +201,9 @@ impl PeriodicSliding {
             let Some((last, _)) = followed.solutions.last() else { break };
             let end = match followed.stop {
                 Stop::Interrupted if curve.wants_new_start && !interrupted => None,
+                Stop::StepTooSmall { .. } | Stop::Failed(_) if control.is_stopped() => {
+                    Some(SlidingBranchEnd::Continuation(Stop::Interrupted))
+                }
                 Stop::StepTooSmall { .. } => match curve.refusal.take() {
                     Some(Refusal::Grazing(change)) => {
                         let at = last.unknown[last.unknown.len() - 1];
@@ -228,9 +236,18 @@ impl PeriodicSliding {
             if let Some(end) = end {
                 return Ok((points, end));
             }
-            (unknown, tangent) = curve.renew(last).map_err(|cause| ShimmyError::NotConverged { cause })?;
+            (unknown, tangent) = match curve.renew(last) {
+                Err(Refusal::Interrupted(_)) => break,
+                renewed => renewed?,
+            };
         }
-        Ok((points, SlidingBranchEnd::Continuation(Stop::MostSteps)))
+        if points.is_empty() {
+            // Stopped before the first step.
+            let value = self.wheel.get(along.key());
+            points.push(SlidingBranchPoint { value, motion: self.clone(), role: SlidingRole::Step });
+        }
+        let stop = if control.is_stopped() { Stop::Interrupted } else { Stop::MostSteps };
+        Ok((points, SlidingBranchEnd::Continuation(stop)))
     }
 }
 

@@ -10,6 +10,7 @@ use super::{PeriodicSliding, SAMPLES_PER_PERIOD, middle_of_longest_passage, sear
 use crate::parameters::Key;
 use crate::sliding::model::SlipState;
 use arclength::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use arclength::control::Control;
 use arclength::error::Error;
 use arclength::linear::lu;
 use num_complex::Complex64;
@@ -81,7 +82,7 @@ pub(super) struct CurvePoint {
 }
 
 /// The curve, with the memory of its last linear equations.
-pub(super) struct SlidingCurve {
+pub(super) struct SlidingCurve<'a> {
     pub map: ReturnMap,
     pub key: Key,
     /// Length of the range of the parameter.
@@ -96,10 +97,11 @@ pub(super) struct SlidingCurve {
     /// Whether the start has to be moved away from the events.
     pub wants_new_start: bool,
     settings: Settings,
+    control: &'a Control<'a>,
 }
 
-impl SlidingCurve {
-    pub fn new(map: ReturnMap, key: Key, range: f64, settings: Settings) -> Self {
+impl<'a> SlidingCurve<'a> {
+    pub fn new(map: ReturnMap, key: Key, range: f64, settings: Settings, control: &'a Control<'a>) -> Self {
         let map = ReturnMap { parameter: Some((key, 1.0)), ..map };
         Self {
             map,
@@ -112,6 +114,7 @@ impl SlidingCurve {
             is_defined: false,
             wants_new_start: false,
             settings,
+            control,
         }
     }
 
@@ -136,7 +139,7 @@ impl SlidingCurve {
             self.map.wheel.with(self.key, value).map_err(|error| Refusal::from_wheel(&error)).and_then(
                 |wheel| {
                     self.map.wheel = wheel;
-                    self.map.evaluate(&self.start(unknown), with_derivatives)
+                    self.map.evaluate(&self.start(unknown), with_derivatives, self.control)
                 },
             );
         self.is_defined = image.is_ok();
@@ -158,21 +161,21 @@ impl SlidingCurve {
         let mut map = solution.point.motion.map.clone();
         map.parameter = Some((self.key, slope[slope.len() - 1]));
         let start = self.start(&solution.unknown);
-        let (passages, _) = map.follow(&start, &[])?;
+        let (passages, _) = map.follow(&start, &[], self.control)?;
         let time = middle_of_longest_passage(&passages, start.period);
         let mut columns = [[0.0; DIRECTIONS]; STATES];
         for (&i, slope) in free.iter().zip(slope) {
             columns[i][PARAMETER] = slope * map.scales[i];
         }
         if time > 0.0 {
-            let (way, _) = map.follow(&Start { period: time, ..start.clone() }, &[])?;
+            let (way, _) = map.follow(&Start { period: time, ..start.clone() }, &[], self.control)?;
             map.carry(&way, &mut columns)?;
         }
-        let start = map.start_after(&start, time)?;
+        let start = map.start_after(&start, time, self.control)?;
         let sampling: Vec<f64> =
             (0..SAMPLES_PER_PERIOD).map(|i| start.period * i as f64 / SAMPLES_PER_PERIOD as f64).collect();
         let samples: Vec<SlipState> = map
-            .follow(&start, &sampling)?
+            .follow(&start, &sampling, self.control)?
             .0
             .iter()
             .flat_map(|passage| passage.samples.iter().map(|s| s.1))
@@ -181,7 +184,7 @@ impl SlidingCurve {
         map.scales = search::sizes(&map.wheel, &samples);
         map.period_scale = start.period;
         map.set_reference(start.state)?;
-        map.expected = Some(map.follow(&start, &[])?.0);
+        map.expected = Some(map.follow(&start, &[], self.control)?.0);
         // The tangent lies in the new plane across the flow.
         let rate = map.sliding()?.rate(&start.state);
         let normal = |vector: &dyn Fn(usize) -> f64| -> f64 {
@@ -221,7 +224,7 @@ impl SlidingCurve {
                 let mut map =
                     ReturnMap { wheel, expected: None, parameter: None, ..solution.point.motion.map.clone() };
                 let start = self.start(&solution.unknown);
-                let Ok((found, image)) = map.solve(&start) else { continue };
+                let Ok((found, image)) = map.solve(&start, self.control) else { continue };
                 let far = map.free().iter().any(|&i| {
                     ((found.state.state[i] - start.state.state[i]) / map.scales[i]).abs() > NEAR_GRAZING
                 });
@@ -229,7 +232,9 @@ impl SlidingCurve {
                 if far || unchanged || (found.period / start.period - 1.0).abs() > NEAR_GRAZING {
                     continue;
                 }
-                let Ok(motion) = PeriodicSliding::describe(&map, &found, &image) else { continue };
+                let Ok(motion) = PeriodicSliding::describe(&map, &found, &image, self.control) else {
+                    continue;
+                };
                 if known(value, &motion) {
                     continue;
                 }
@@ -256,7 +261,7 @@ impl Refusal {
     }
 }
 
-impl Curve for SlidingCurve {
+impl Curve for SlidingCurve<'_> {
     type Point = CurvePoint;
 
     fn unknowns(&self) -> usize {
@@ -320,7 +325,7 @@ impl Curve for SlidingCurve {
         };
         let Some((at, image)) = self.last.take() else { return Err(invalid("not computed".into())) };
         debug_assert_eq!(at, unknown);
-        let motion = PeriodicSliding::describe(&self.map, &self.start(unknown), &image)
+        let motion = PeriodicSliding::describe(&self.map, &self.start(unknown), &image, self.control)
             .map_err(|refusal| invalid(refusal.to_string()))?;
         self.map.expected = Some(image.passages.clone());
         self.last = Some((at, image));

@@ -2,6 +2,7 @@
 
 use crate::error::KingpinError;
 use crate::simulation::SimulationError;
+use arclength::control::Interrupted;
 use arclength::integration::IntegrationError;
 
 /// Why a periodic motion was not found or could not be followed.
@@ -50,15 +51,36 @@ pub enum ShimmyError {
     },
     /// A motion could not be simulated.
     #[error(transparent)]
-    Simulation(#[from] SimulationError),
+    Simulation(SimulationError),
+    /// The computation was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
     /// A branch could not be followed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),
 }
 
+impl From<SimulationError> for ShimmyError {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            error => Self::Simulation(error),
+        }
+    }
+}
+
 impl From<KingpinError> for ShimmyError {
     fn from(error: KingpinError) -> Self {
-        Self::Simulation(error.into())
+        SimulationError::from(error).into()
+    }
+}
+
+impl From<Refusal> for ShimmyError {
+    fn from(cause: Refusal) -> Self {
+        match cause {
+            Refusal::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            cause => Self::NotConverged { cause },
+        }
     }
 }
 
@@ -71,6 +93,9 @@ pub enum Refusal {
     /// The motion cannot be followed.
     #[error("{0}")]
     Integration(String),
+    /// The computation was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
     /// The linear equations of Newton's method are singular.
     #[error("the linear equations are singular")]
     Singular,
@@ -84,13 +109,19 @@ pub enum Refusal {
 
 impl From<SimulationError> for Refusal {
     fn from(error: SimulationError) -> Self {
-        Self::Integration(error.to_string())
+        match error {
+            SimulationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            error => Self::Integration(error.to_string()),
+        }
     }
 }
 
 impl From<IntegrationError> for Refusal {
     fn from(error: IntegrationError) -> Self {
-        Self::Integration(error.to_string())
+        match error {
+            IntegrationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            error => Self::Integration(error.to_string()),
+        }
     }
 }
 

@@ -30,6 +30,7 @@ use crate::simulation::SimulationError;
 use crate::sliding::model::Equations;
 use crate::sliding::{Contact, Phase, SlidingHistory};
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use arclength::linear::eigenvalues::eigenvalues;
 use num_complex::Complex64;
 use passage::{Passage, Regime};
@@ -94,9 +95,14 @@ impl PeriodicSliding {
     ///
     /// # Errors
     /// As [`SlidingWheel::simulate`](crate::sliding::SlidingWheel::simulate).
-    pub fn history(&self, periods: f64, samples: usize) -> Result<SlidingHistory, SimulationError> {
+    pub fn history(
+        &self,
+        periods: f64,
+        samples: usize,
+        control: &Control<'_>,
+    ) -> Result<SlidingHistory, SimulationError> {
         let wheel = self.wheel.sliding()?.tolerance(self.map.tolerance);
-        wheel.simulate_hybrid(self.start.state, periods * self.period, samples)
+        wheel.simulate_hybrid(self.start.state, periods * self.period, samples, control)
     }
 
     fn nontrivial(&self) -> impl Iterator<Item = Complex64> + '_ {
@@ -109,9 +115,14 @@ impl PeriodicSliding {
     }
 
     /// What is to be known about a solution of the map.
-    fn describe(map: &ReturnMap, start: &Start, image: &Return) -> Result<Self, Refusal> {
+    fn describe(
+        map: &ReturnMap,
+        start: &Start,
+        image: &Return,
+        control: &Control<'_>,
+    ) -> Result<Self, Refusal> {
         let (multipliers, trivial_multiplier_error) = multipliers(map, image)?;
-        let range = angles(map, start)?;
+        let range = angles(map, start, control)?;
         let mut motion = Self {
             wheel: map.wheel,
             period: start.period,
@@ -129,7 +140,7 @@ impl PeriodicSliding {
         let undecided = |multiplier: Complex64| (multiplier.norm() - 1.0).abs() <= trivial_multiplier_error;
         let undecided = motion.nontrivial().any(undecided);
         motion.stable = (!undecided).then(|| motion.unstable_multipliers() == 0);
-        motion.error_estimate = error_estimate(map, start, image, range)?;
+        motion.error_estimate = error_estimate(map, start, image, range, control)?;
         Ok(motion)
     }
 }
@@ -159,23 +170,29 @@ fn multipliers(map: &ReturnMap, image: &Return) -> Result<(Vec<Complex64>, f64),
 }
 
 /// Smallest and largest caster angle over a period.
-fn angles(map: &ReturnMap, start: &Start) -> Result<[f64; 2], Refusal> {
+fn angles(map: &ReturnMap, start: &Start, control: &Control<'_>) -> Result<[f64; 2], Refusal> {
     let interval = start.period / SAMPLES_PER_PERIOD as f64;
     let times: Vec<f64> = (1..SAMPLES_PER_PERIOD).map(|index| index as f64 * interval).collect();
-    let (passages, _) = map.follow(start, &times)?;
+    let (passages, _) = map.follow(start, &times, control)?;
     Ok(extrema::caster_angles(&Equations::new(&map.wheel)?, &passages))
 }
 
 /// How far period and extrema move when the tolerance is looser.
-fn error_estimate(map: &ReturnMap, start: &Start, image: &Return, range: [f64; 2]) -> Result<f64, Refusal> {
+fn error_estimate(
+    map: &ReturnMap,
+    start: &Start,
+    image: &Return,
+    range: [f64; 2],
+    control: &Control<'_>,
+) -> Result<f64, Refusal> {
     let mut loose = map.clone();
     loose.tolerance *= LOOSER;
     // Near a grazing the looser tolerance may pass it.
     loose.expected = None;
-    let residual = loose.evaluate(start, false)?.residual;
+    let residual = loose.evaluate(start, false, control)?.residual;
     let update = newton_update(&Return { residual, ..image.clone() })?;
     let moved = loose.moved(start, &update, -1.0);
-    let loose_range = angles(&loose, &moved)?;
+    let loose_range = angles(&loose, &moved, control)?;
     let size = range[1] - range[0];
     Ok((moved.period / start.period - 1.0)
         .abs()

@@ -5,6 +5,7 @@ use crate::simulation::SimulationError;
 use crate::sliding::model::{Equations, SlipState};
 use crate::sliding::{Contact, HybridState, SlidingWheel, as_slip_state};
 use arclength::Scalar;
+use arclength::control::Control;
 
 /// Which equations hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,17 +71,18 @@ impl Passage {
 /// Follows a motion and cuts it into passages, with samples at `times`.
 ///
 /// # Errors
-/// A motion that cannot be followed.
+/// A motion that cannot be followed; [`SimulationError::Interrupted`].
 pub(crate) fn passages(
     wheel: &SlidingWheel,
     initial: HybridState,
     duration: f64,
     times: &[f64],
+    control: &Control<'_>,
 ) -> Result<(Vec<Passage>, HybridState), SimulationError> {
     let mut list: Vec<Passage> = Vec::new();
     let mut present = initial.state;
     let mut slides = initial.contact == Contact::Sliding;
-    let end = wheel.follow(initial, duration, times, |phase, resumes, solution| {
+    let end = wheel.follow(initial, duration, times, control, |phase, resumes, solution| {
         let regime = match phase.contact {
             Contact::Rolling => Regime::Rolling,
             Contact::Sliding if resumes || slides => Regime::Sliding,

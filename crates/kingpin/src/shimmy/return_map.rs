@@ -10,6 +10,7 @@ use crate::parameters::Key;
 use crate::sliding::model::SlipState;
 use crate::sliding::{Contact, HybridState, SlidingWheel};
 use crate::wheel::Wheel;
+use arclength::control::{Control, Interrupted};
 use arclength::linear::lu;
 use std::f64::consts::TAU;
 
@@ -121,44 +122,64 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn follow(&self, start: &Start, times: &[f64]) -> Result<(Vec<Passage>, HybridState), Refusal> {
+    pub fn follow(
+        &self,
+        start: &Start,
+        times: &[f64],
+        control: &Control<'_>,
+    ) -> Result<(Vec<Passage>, HybridState), Refusal> {
         if !(start.period > 0.0 && start.period.is_finite()) {
             return Err(Refusal::Integration(format!("the period became {} s", start.period)));
         }
-        Ok(passages(&self.sliding()?, start.state, start.period, times)?)
+        Ok(passages(&self.sliding()?, start.state, start.period, times, &control.quiet())?)
     }
 
     /// The start of the same motion that lies later by `time`.
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn start_after(&self, start: &Start, time: f64) -> Result<Start, Refusal> {
+    pub fn start_after(&self, start: &Start, time: f64, control: &Control<'_>) -> Result<Start, Refusal> {
         if time <= 0.0 {
             return Ok(start.clone());
         }
-        let state = self.follow(&Start { period: time, ..start.clone() }, &[])?.1;
+        let state = self.follow(&Start { period: time, ..start.clone() }, &[], control)?.1;
         Ok(Start { state, period: start.period })
     }
 
     /// How often the motion repeats itself in what is taken for its period, where that is more than once.
-    pub fn repetitions(&self, start: &Start) -> Option<i32> {
-        (2..=MOST_REPETITIONS).rev().filter(|parts| self.turns % parts == 0).find(|&parts| {
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    pub fn repetitions(&self, start: &Start, control: &Control<'_>) -> Result<Option<i32>, Interrupted> {
+        for parts in (2..=MOST_REPETITIONS).rev().filter(|parts| self.turns % parts == 0) {
             let part = Start { period: start.period / f64::from(parts), ..start.clone() };
-            let Ok((_, end)) = self.follow(&part, &[]) else { return false };
-            end.contact == start.state.contact
-                && self.free().iter().all(|&i| {
-                    let turn = if i == PSI { TAU * f64::from(self.turns / parts) } else { 0.0 };
-                    ((end.state[i] - start.state.state[i] - turn) / self.scales[i]).abs() < SAME
-                })
-        })
+            let end = match self.follow(&part, &[], control) {
+                Ok((_, end)) => end,
+                Err(Refusal::Interrupted(interrupted)) => return Err(interrupted),
+                Err(_) => continue,
+            };
+            let is_same = |&i: &usize| {
+                let turn = if i == PSI { TAU * f64::from(self.turns / parts) } else { 0.0 };
+                ((end.state[i] - start.state.state[i] - turn) / self.scales[i]).abs() < SAME
+            };
+            if end.contact == start.state.contact && self.free().iter().all(is_same) {
+                return Ok(Some(parts));
+            }
+        }
+        Ok(None)
     }
 
     /// The map at a start, with the derivatives unless only the residual is wanted.
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn evaluate(&self, start: &Start, with_derivatives: bool) -> Result<Return, Refusal> {
-        let (passages, end) = self.follow(start, &[])?;
+    pub fn evaluate(
+        &self,
+        start: &Start,
+        with_derivatives: bool,
+        control: &Control<'_>,
+    ) -> Result<Return, Refusal> {
+        let (passages, end) = self.follow(start, &[], control)?;
         if let Some(expected) = &self.expected
             && let Some(grazing) = difference(expected, &passages)
         {
@@ -234,11 +255,11 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn solve(&mut self, start: &Start) -> Result<(Start, Return), Refusal> {
+    pub fn solve(&mut self, start: &Start, control: &Control<'_>) -> Result<(Start, Return), Refusal> {
         let mut start = start.clone();
         let mut previous = f64::INFINITY;
         for _ in 0..MOST_UPDATES {
-            let image = self.evaluate(&start, true)?;
+            let image = self.evaluate(&start, true, control)?;
             let update = newton_update(&image)?;
             let length = update.iter().map(|x| x * x).sum::<f64>().sqrt();
             if !length.is_finite() {

@@ -1,6 +1,6 @@
 //! Finding a periodic motion: let it settle, see that it repeats itself, refine it.
 
-use super::error::{Refusal, ShimmyError};
+use super::error::ShimmyError;
 use super::return_map::{PSI, ReturnMap, Start};
 use super::variation::STATES;
 use super::{MOTION_TOLERANCE, PeriodicSliding, middle_of_longest_passage};
@@ -9,10 +9,13 @@ use crate::simulation::SimulationError;
 use crate::sliding::model::{S1, SlipState};
 use crate::sliding::{HybridState, SlidingWheel, as_slip_state};
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use std::f64::consts::{PI, TAU};
 
 /// Tolerance while a motion settles: what is left is for Newton's method.
 const SETTLING_TOLERANCE: f64 = 1e-9;
+/// What settling is of the whole time, roughly.
+const PART_OF_SETTLING: f64 = 0.8;
 /// Samples of a natural period of the springs while returns are looked for.
 const SAMPLES_PER_NATURAL_PERIOD: f64 = 400.0;
 /// A return this near, relative to the size of the motion, is tried.
@@ -60,9 +63,10 @@ impl Wheel {
     /// Whole turns that the caster has made before are taken off, so that it swings about an angle between -pi and pi.
     ///
     /// # Errors
-    /// [`ShimmyError`]: the motion dies out, does not repeat itself, or cannot be followed.
+    /// [`ShimmyError`]: the motion dies out, does not repeat itself, cannot be followed, or was not waited for.
     ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::{Key, Wheel, shimmy::SlidingMotionSearch};
     ///
     /// // A short caster shimmies by itself; the friction bounds the amplitude.
@@ -74,7 +78,7 @@ impl Wheel {
     ///     .with(Key::CQ, 0.1)?;
     /// let start = wheel.perturbed_uniform_motion(&[("psi", 0.2)])?;
     /// let search = SlidingMotionSearch { settling_time: 10.0, ..SlidingMotionSearch::default() };
-    /// let motion = wheel.sliding_motion(&start, &search)?;
+    /// let motion = wheel.sliding_motion(&start, &search, &Control::none())?;
     /// assert_eq!(motion.stable, Some(true));
     /// assert!((motion.period - 0.1423).abs() < 1e-4 && (motion.psi_max - 0.645).abs() < 1e-3);
     /// # Ok::<(), kingpin::shimmy::ShimmyError>(())
@@ -83,29 +87,29 @@ impl Wheel {
         &self,
         initial: &[f64; 5],
         search: &SlidingMotionSearch,
+        control: &Control<'_>,
     ) -> Result<PeriodicSliding, ShimmyError> {
         search.check()?;
+        let (settling, control) = (control.part(0.0..PART_OF_SETTLING), &control.quiet());
         let sliding = self.sliding()?.tolerance(SETTLING_TOLERANCE);
         let initial = sliding.rolling_state(initial);
-        let settled = sliding.follow(initial, search.settling_time, &[], |_, _, _| true)?;
-        let recurrence = self.recurrence(&sliding, settled, search)?;
-        let refused = |cause: Refusal| ShimmyError::NotConverged { cause };
+        let settled = sliding.follow(initial, search.settling_time, &[], &settling, |_, _, _| true)?;
+        let recurrence = self.recurrence(&sliding, settled, search, control)?;
         let Recurrence { start, scales, turns } = recurrence;
-        let map = ReturnMap::new(self, &start, scales, turns, search.tolerance).map_err(refused)?;
-        let (passages, _) = map.follow(&start, &[]).map_err(refused)?;
-        let start =
-            map.start_after(&start, middle_of_longest_passage(&passages, start.period)).map_err(refused)?;
-        let mut map = ReturnMap::new(self, &start, scales, turns, search.tolerance).map_err(refused)?;
-        let (mut start, mut image) = map.solve(&start).map_err(refused)?;
-        if let Some(parts) = map.repetitions(&start) {
+        let map = ReturnMap::new(self, &start, scales, turns, search.tolerance)?;
+        let (passages, _) = map.follow(&start, &[], control)?;
+        let start = map.start_after(&start, middle_of_longest_passage(&passages, start.period), control)?;
+        let mut map = ReturnMap::new(self, &start, scales, turns, search.tolerance)?;
+        let (mut start, mut image) = map.solve(&start, control)?;
+        if let Some(parts) = map.repetitions(&start, control)? {
             // The return that was found is not the first.
             map.turns /= parts;
             map.expected = None;
             start.period /= f64::from(parts);
             map.period_scale = start.period;
-            (start, image) = map.solve(&start).map_err(refused)?;
+            (start, image) = map.solve(&start, control)?;
         }
-        let motion = PeriodicSliding::describe(&map, &start, &image).map_err(refused)?;
+        let motion = PeriodicSliding::describe(&map, &start, &image, control)?;
         let range = motion.psi_max - motion.psi_min;
         if range < AT_REST {
             return Err(ShimmyError::DiesOut { window: search.longest_period, range });
@@ -123,6 +127,7 @@ impl Wheel {
         sliding: &SlidingWheel,
         settled: HybridState,
         search: &SlidingMotionSearch,
+        control: &Control<'_>,
     ) -> Result<Recurrence, ShimmyError> {
         let body = self.body();
         let natural_period = TAU * (body.rolling_mass / body.lateral_stiffness).sqrt();
@@ -130,7 +135,7 @@ impl Wheel {
         let count = (window / natural_period * SAMPLES_PER_NATURAL_PERIOD).ceil();
         let times: Vec<f64> = (0..=count as usize).map(|index| window * (index as f64 / count)).collect();
         let mut samples: Vec<(f64, HybridState)> = Vec::with_capacity(times.len());
-        sliding.follow(settled, window, &times, |phase, _, solution| {
+        sliding.follow(settled, window, &times, control, |phase, _, solution| {
             samples.extend(solution.samples().map(|(time, state)| {
                 (time, HybridState { contact: phase.contact, state: as_slip_state(state) })
             }));

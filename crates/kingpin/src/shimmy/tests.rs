@@ -26,7 +26,7 @@ fn loaded(v: f64) -> Wheel {
 
 fn settled(wheel: &Wheel, kick: f64, search: &SlidingMotionSearch) -> PeriodicSliding {
     let start = wheel.perturbed_uniform_motion(&[("psi", kick)]).unwrap();
-    wheel.sliding_motion(&start, search).unwrap()
+    wheel.sliding_motion(&start, search, &Control::none()).unwrap()
 }
 
 fn short_caster_motion() -> PeriodicSliding {
@@ -54,17 +54,17 @@ fn quick() -> SlidingBranchOptions {
 
 /// The motion with another start.
 fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) {
-    let (list, _) = motion.map.follow(&motion.start, &[]).unwrap();
+    let (list, _) = motion.map.follow(&motion.start, &[], &Control::none()).unwrap();
     let inside = list[1..list.len() - 1]
         .iter()
         .filter(|passage| passage.regime != Regime::Onset && passage.regime.contact() == contact)
         .max_by(|a, b| a.duration().total_cmp(&b.duration()))
         .unwrap();
     let middle = 0.5 * (inside.start + inside.end);
-    let start = motion.map.start_after(&motion.start, middle).unwrap();
+    let start = motion.map.start_after(&motion.start, middle, &Control::none()).unwrap();
     let mut map = ReturnMap { expected: None, ..motion.map.clone() };
     map.set_reference(start.state).unwrap();
-    let (start, _) = map.solve(&start).unwrap();
+    let (start, _) = map.solve(&start, &Control::none()).unwrap();
     (map, start)
 }
 
@@ -79,7 +79,7 @@ fn long_simulation_settles_on_the_motion() {
             .wheel
             .sliding()
             .unwrap()
-            .simulate(&start, settling + 2.0 * motion.period, count + 1)
+            .simulate(&start, settling + 2.0 * motion.period, count + 1, &Control::none())
             .unwrap();
         let last: Vec<f64> =
             (0..=count).filter(|&i| history.times[i] >= settling).map(|i| history.states[i][PSI]).collect();
@@ -105,7 +105,8 @@ fn perturbations_decay_as_the_multipliers_say() {
     let periods = 12;
     // The perturbation ends on the orbit, a little earlier or later: its distance is measured across the flow.
     let distance = |periods: i32| {
-        let (_, end) = passages(&sliding, perturbed, f64::from(periods) * motion.period, &[]).unwrap();
+        let (_, end) =
+            passages(&sliding, perturbed, f64::from(periods) * motion.period, &[], &Control::none()).unwrap();
         let rate = sliding.rate(&motion.start.state);
         let scaled = |i: usize| (end.state[i] - motion.start.state.state[i]) / motion.map.scales[i];
         let flow = |i: usize| rate[i] / motion.map.scales[i];
@@ -126,7 +127,7 @@ fn derivatives_of_the_return_map_are_those_of_finite_differences() {
             let (mut map, start) = started_in(&motion, contact);
             map.parameter = Some((Key::V, 1.0));
             map.tolerance = 1e-12;
-            let exact = map.evaluate(&start, true).unwrap();
+            let exact = map.evaluate(&start, true, &Control::none()).unwrap();
             let rows = exact.residual.len();
             let d = rows - 1;
             let step = 1e-6;
@@ -141,7 +142,7 @@ fn derivatives_of_the_return_map_are_those_of_finite_differences() {
                         let v = map.wheel.get(Key::V);
                         map.wheel = map.wheel.with(Key::V, v + sign * step).unwrap();
                     }
-                    map.evaluate(&map.moved(&start, &change, sign), false).unwrap().residual
+                    map.evaluate(&map.moved(&start, &change, sign), false, &Control::none()).unwrap().residual
                 };
                 for (row, (plus, minus)) in shifted(1.0).iter().zip(shifted(-1.0)).enumerate() {
                     let found = (plus - minus) / (2.0 * step);
@@ -161,8 +162,13 @@ fn multipliers_do_not_depend_on_the_start() {
     for motion in [short_caster_motion(), loaded_motion()] {
         for contact in [Contact::Rolling, Contact::Sliding] {
             let (map, start) = started_in(&motion, contact);
-            let other =
-                PeriodicSliding::describe(&map, &start, &map.evaluate(&start, true).unwrap()).unwrap();
+            let other = PeriodicSliding::describe(
+                &map,
+                &start,
+                &map.evaluate(&start, true, &Control::none()).unwrap(),
+                &Control::none(),
+            )
+            .unwrap();
             assert_eq!(other.multipliers.len(), 5);
             for (a, b) in other.multipliers.iter().zip(&motion.multipliers) {
                 assert!((a - b).norm() < 1e-6, "{:?} {:?}", other.multipliers, motion.multipliers);
@@ -177,7 +183,7 @@ fn multipliers_do_not_depend_on_the_start() {
 #[test]
 fn where_slip_vanishes_two_directions_are_lost() {
     let (map, start) = started_in(&short_caster_motion(), Contact::Sliding);
-    let image = map.evaluate(&start, true).unwrap();
+    let image = map.evaluate(&start, true, &Control::none()).unwrap();
     assert_eq!(map.free().len(), STATES);
     let mut monodromy = Vec::new();
     for (column, entries) in image.jacobian.chunks_exact(STATES + 1).take(STATES).enumerate() {
@@ -215,7 +221,9 @@ fn converges_with_the_tolerance_and_the_estimate_holds() {
 fn branch_meets_motions_found_otherwise() {
     let along = Along::new(Key::V, 0.45, 0.5).unwrap();
     let options = SlidingBranchOptions { at: vec![0.47], ..SlidingBranchOptions::default() };
-    let branch = short_caster_motion().along(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
+    let branch = short_caster_motion()
+        .along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(()))
+        .unwrap();
     assert_eq!((branch.points[0].value, branch.points.last().unwrap().value), (0.45, 0.5));
     let asked = branch.points.iter().find(|point| point.role == SlidingRole::Requested).unwrap();
     let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
@@ -230,8 +238,9 @@ fn branch_meets_motions_found_otherwise() {
 fn grazing_ends_the_branch_where_simulation_changes() {
     let along = Along::new(Key::V, 6.9, 7.1).unwrap();
     let motion = loaded_motion();
-    let branch =
-        motion.along(along, &SlidingBranchOptions::default(), |_, _| ControlFlow::Continue(())).unwrap();
+    let branch = motion
+        .along(along, &SlidingBranchOptions::default(), &Control::none(), |_, _| ControlFlow::Continue(()))
+        .unwrap();
     let SlidingBranchEnd::Grazing { change, value, located_within } = branch.ends[1] else {
         panic!("{:?}", branch.ends)
     };
@@ -241,13 +250,13 @@ fn grazing_ends_the_branch_where_simulation_changes() {
     let last = &branch.points.last().unwrap().motion;
     let over_a_period = |v: f64| {
         let sliding = last.wheel.with(Key::V, v).unwrap().sliding().unwrap();
-        let list = passages(&sliding, last.start.state, last.period, &[]).unwrap().0;
+        let list = passages(&sliding, last.start.state, last.period, &[], &Control::none()).unwrap().0;
         list.iter().map(|passage| passage.regime).collect::<Vec<_>>()
     };
     assert_eq!(over_a_period(value - 1e-4), over_a_period(value));
     assert_eq!(over_a_period(value + 1e-4).len(), over_a_period(value).len() + 3);
     // The rolling phase that is about to break has hardly any reserve of friction left.
-    let history = last.history(1.0, 20_001).unwrap();
+    let history = last.history(1.0, 20_001, &Control::none()).unwrap();
     let limit = history.normal_force * last.wheel.get(Key::MuS);
     let mut touches = 0;
     let reserve: Vec<f64> = history
@@ -272,7 +281,8 @@ fn grazing_ends_the_branch_where_simulation_changes() {
 fn branch_goes_on_beyond_grazings() {
     let along = Along::new(Key::V, 7.0, 7.02).unwrap();
     let options = SlidingBranchOptions { through_grazings: true, ..quick() };
-    let branch = loaded_motion().along(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
+    let branch =
+        loaded_motion().along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(())).unwrap();
     let grazings = branch.points.iter().filter(|point| matches!(point.role, SlidingRole::Grazing(_)));
     assert!(grazings.count() >= 1);
     let last = branch.points.last().unwrap();
@@ -291,7 +301,7 @@ fn branch_goes_on_beyond_grazings() {
 fn energy_is_balanced_along_every_passage() {
     let motion = loaded_motion();
     let equations = Equations::new(&motion.wheel).unwrap();
-    let (list, _) = motion.map.follow(&motion.start, &[]).unwrap();
+    let (list, _) = motion.map.follow(&motion.start, &[], &Control::none()).unwrap();
     assert!(list.len() > 6);
     for passage in &list {
         let count = 2000;
@@ -307,7 +317,7 @@ fn energy_is_balanced_along_every_passage() {
             continue;
         }
         sliding
-            .follow(initial, passage.duration(), &times, |_, _, solution| {
+            .follow(initial, passage.duration(), &times, &Control::none(), |_, _, solution| {
                 inside.extend(solution.samples().map(|(_, state)| as_slip_state(state)));
                 true
             })
@@ -339,7 +349,7 @@ fn refusals_say_why() {
     let message = |wheel: &Wheel, kick: f64, settling_time: f64| {
         let start = wheel.perturbed_uniform_motion(&[("psi", kick)]).unwrap();
         let search = SlidingMotionSearch { settling_time, ..SlidingMotionSearch::default() };
-        wheel.sliding_motion(&start, &search).unwrap_err().to_string()
+        wheel.sliding_motion(&start, &search, &Control::none()).unwrap_err().to_string()
     };
     let calm = wheel(&[(Key::FAz, -100.0), (Key::V, 2.0)]);
     assert!(message(&calm, 0.1, 40.0).contains("dies out"));
@@ -349,10 +359,12 @@ fn refusals_say_why() {
     let message = message(&wild, 0.8, 3.0);
     assert!(message.contains("does not repeat itself") || message.contains("does not converge"), "{message}");
     let motion = short_caster_motion();
-    let outside =
-        motion.along(Along::new(Key::V, 1.0, 2.0).unwrap(), &SlidingBranchOptions::default(), |_, _| {
-            ControlFlow::Continue(())
-        });
+    let outside = motion.along(
+        Along::new(Key::V, 1.0, 2.0).unwrap(),
+        &SlidingBranchOptions::default(),
+        &Control::none(),
+        |_, _| ControlFlow::Continue(()),
+    );
     assert!(outside.unwrap_err().to_string().contains("v = 0.5 is outside"));
 }
 
@@ -414,7 +426,7 @@ fn large_shimmy_of_the_papers_wheel_beside_stable_uniform_motion() {
     assert!((motion.sliding_fraction() - 0.4747).abs() < 1e-4);
     // It ends where the rolling phase is lost; there is no shimmy of this kind far below the boundary of stability.
     let along = Along::new(Key::V, 8.0, 8.5).unwrap();
-    let branch = motion.along(along, &quick(), |_, _| ControlFlow::Continue(())).unwrap();
+    let branch = motion.along(along, &quick(), &Control::none(), |_, _| ControlFlow::Continue(())).unwrap();
     let [first, last] = &branch.ends;
     assert!(matches!(first, SlidingBranchEnd::Grazing { change: Grazing::SlipVanishes, value, .. }
         if (value - 8.160952).abs() < 1e-5));

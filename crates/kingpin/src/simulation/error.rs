@@ -1,6 +1,7 @@
 //! What can go wrong in a simulation.
 
 use crate::error::KingpinError;
+use arclength::control::Interrupted;
 use arclength::integration::IntegrationError;
 
 /// Why a motion could not be simulated.
@@ -37,7 +38,7 @@ pub enum SimulationError {
     },
     /// The wheel itself is at fault, or it has no uniform motion to start from.
     #[error(transparent)]
-    Wheel(#[from] KingpinError),
+    Wheel(KingpinError),
     /// The uniform motion itself takes more than the static friction: a wheel that may slide has none.
     #[error(
         "the uniform motion needs {needed:.4} N of friction, the ground can supply {available:.4} N: a wheel that may slide has no \
@@ -51,7 +52,30 @@ pub enum SimulationError {
     },
     /// The motion could not be followed to its end.
     #[error("the motion cannot be followed: {0}")]
-    Integration(#[from] IntegrationError),
+    Integration(#[source] IntegrationError),
+    /// The computation was stopped.
+    #[error(transparent)]
+    Interrupted(#[from] Interrupted),
+}
+
+// What was interrupted is told as that, however deep inside it happened.
+
+impl From<KingpinError> for SimulationError {
+    fn from(error: KingpinError) -> Self {
+        match error {
+            KingpinError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            error => Self::Wheel(error),
+        }
+    }
+}
+
+impl From<IntegrationError> for SimulationError {
+    fn from(error: IntegrationError) -> Self {
+        match error {
+            IntegrationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            error => Self::Integration(error),
+        }
+    }
 }
 
 impl SimulationError {

@@ -13,6 +13,7 @@ pub use error::SimulationError;
 
 use crate::rolling::STATE_NAMES;
 use crate::{ContactForce, Key, Wheel};
+use arclength::control::Control;
 use arclength::integration::{Event, Integrator, Statistics, autonomous};
 
 /// Relative tolerance of a simulation; the absolute one is a hundredth of it in SI units.
@@ -88,12 +89,13 @@ impl Wheel {
     ///
     /// # Errors
     /// A perturbation, duration or number of samples that is not allowed, no uniform motion, or a motion that
-    /// grows without bound before the end.
+    /// grows without bound before the end; [`SimulationError::Interrupted`].
     ///
     /// ```
+    /// use arclength::control::Control;
     /// use kingpin::Wheel;
     ///
-    /// let history = Wheel::default().simulate(10.0, &[("psi", 0.1)], 1001)?;
+    /// let history = Wheel::default().simulate(10.0, &[("psi", 0.1)], 1001, &Control::none())?;
     /// let angle = history.state("psi").unwrap_or_default();
     /// assert!((angle[1000] - 0.0798).abs() < 1e-3); // back at the uniform motion
     /// assert!(history.rolling_lost_at.is_some_and(|time| time < 0.1)); // but ideal rolling is too much to ask
@@ -104,8 +106,9 @@ impl Wheel {
         duration: f64,
         perturbations: &[(&str, f64)],
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<TimeHistory, SimulationError> {
-        self.simulate_from(&self.perturbed_uniform_motion(perturbations)?, duration, samples)
+        self.simulate_from(&self.perturbed_uniform_motion(perturbations)?, duration, samples, control)
     }
 
     /// Simulates from a state `(u, q, psi, V, Omega)`; otherwise like [`simulate`](Self::simulate).
@@ -117,6 +120,7 @@ impl Wheel {
         initial: &[f64; 5],
         duration: f64,
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<TimeHistory, SimulationError> {
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
@@ -136,7 +140,7 @@ impl Wheel {
             force.limit * force.limit.abs() - force.longitudinal.powi(2) - force.lateral.powi(2)
         };
         let mut events = [Event::new(|_, state| reserve(state)).falling()];
-        let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).with_events(
+        let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).under(control).with_events(
             autonomous(&model, &[]),
             0.0,
             &free,

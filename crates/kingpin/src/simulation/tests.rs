@@ -2,6 +2,7 @@
 
 use crate::{Key, Wheel};
 use arclength::VectorField;
+use arclength::control::Control;
 use arclength::integration::{Integrator, from_fn};
 use proptest::prelude::*;
 
@@ -89,7 +90,7 @@ proptest! {
 fn the_uniform_motion_stays() {
     let wheel = Wheel::default();
     let motion = wheel.uniform_motion().unwrap();
-    let history = wheel.simulate(5.0, &[], 11).unwrap();
+    let history = wheel.simulate(5.0, &[], 11, &Control::none()).unwrap();
     assert_eq!((history.times.len(), history.times[10]), (11, 5.0));
     for (state, force) in history.states.iter().zip(history.friction_force()) {
         for (found, expected) in state.iter().zip(motion.state()) {
@@ -112,7 +113,7 @@ fn a_known_limit_cycle_closes() {
         6.416_290_737_262_749,
         6.0,
     ];
-    let history = wheel(&[(Key::V, 6.0)]).simulate_from(&start, period, 1001).unwrap();
+    let history = wheel(&[(Key::V, 6.0)]).simulate_from(&start, period, 1001, &Control::none()).unwrap();
     for (found, expected) in history.states[1000].iter().zip(start) {
         assert!((found - expected).abs() < 1e-9, "{found} {expected}");
     }
@@ -124,11 +125,11 @@ fn a_known_limit_cycle_closes() {
 #[test]
 fn the_loss_of_rolling_is_located() {
     let loaded = wheel(&[(Key::FAz, -20.0)]);
-    let history = loaded.simulate(1.0, &[("psi", 0.6)], 20_001).unwrap();
+    let history = loaded.simulate(1.0, &[("psi", 0.6)], 20_001, &Control::none()).unwrap();
     let lost = history.rolling_lost_at.unwrap();
     let first = history.contact_forces.iter().position(|force| !force.rolls()).unwrap();
     assert!(first > 0 && history.times[first - 1] < lost && lost <= history.times[first]);
-    assert!(loaded.simulate(1.0, &[("psi", 0.01)], 3).unwrap().rolling_lost_at.is_none());
+    assert!(loaded.simulate(1.0, &[("psi", 0.01)], 3, &Control::none()).unwrap().rolling_lost_at.is_none());
 }
 
 #[test]
@@ -136,10 +137,14 @@ fn bad_input_is_refused() {
     let wheel = Wheel::default();
     let message =
         |result: Result<super::TimeHistory, super::SimulationError>| result.unwrap_err().to_string();
-    assert!(message(wheel.simulate(1.0, &[("phi", 0.1)], 11)).contains("u, q, psi, V, Omega"));
-    assert!(message(wheel.simulate(1.0, &[("psi", f64::NAN)], 11)).contains("psi = NaN"));
-    assert!(message(wheel.simulate(0.0, &[], 11)).contains("duration = 0"));
-    assert!(message(wheel.simulate(f64::INFINITY, &[], 11)).contains("duration = inf"));
-    assert!(message(wheel.simulate(1.0, &[], 1)).contains("samples = 1"));
-    assert!(message(wheel.simulate(1.0, &[("Omega", 1e200)], 2)).contains("cannot be followed"));
+    assert!(
+        message(wheel.simulate(1.0, &[("phi", 0.1)], 11, &Control::none())).contains("u, q, psi, V, Omega")
+    );
+    assert!(message(wheel.simulate(1.0, &[("psi", f64::NAN)], 11, &Control::none())).contains("psi = NaN"));
+    assert!(message(wheel.simulate(0.0, &[], 11, &Control::none())).contains("duration = 0"));
+    assert!(message(wheel.simulate(f64::INFINITY, &[], 11, &Control::none())).contains("duration = inf"));
+    assert!(message(wheel.simulate(1.0, &[], 1, &Control::none())).contains("samples = 1"));
+    assert!(
+        message(wheel.simulate(1.0, &[("Omega", 1e200)], 2, &Control::none())).contains("cannot be followed")
+    );
 }

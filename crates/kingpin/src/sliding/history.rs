@@ -4,6 +4,7 @@ use super::model::{S1, S2, SlipState};
 use super::{Contact, HybridState, Phase, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state};
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
+use arclength::control::Control;
 
 /// A motion sampled at equal intervals. Everything is SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,14 +88,16 @@ impl SlidingWheel {
     /// to `duration`, both included.
     ///
     /// # Errors
-    /// A duration or number of samples that is not allowed, or a motion that cannot be followed.
+    /// A duration or number of samples that is not allowed, or a motion that cannot be followed;
+    /// [`SimulationError::Interrupted`].
     pub fn simulate(
         &self,
         initial: &[f64; 5],
         duration: f64,
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<SlidingHistory, SimulationError> {
-        self.simulate_hybrid(self.rolling_state(initial), duration, samples)
+        self.simulate_hybrid(self.rolling_state(initial), duration, samples, control)
     }
 
     /// Simulates from the states [`SLIDING_STATE_NAMES`]; otherwise like
@@ -107,8 +110,9 @@ impl SlidingWheel {
         initial: &[f64; 7],
         duration: f64,
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<SlidingHistory, SimulationError> {
-        self.simulate_hybrid(self.slipping_state(initial), duration, samples)
+        self.simulate_hybrid(self.slipping_state(initial), duration, samples, control)
     }
 
     pub(crate) fn simulate_hybrid(
@@ -116,6 +120,7 @@ impl SlidingWheel {
         initial: HybridState,
         duration: f64,
         samples: usize,
+        control: &Control<'_>,
     ) -> Result<SlidingHistory, SimulationError> {
         if !(duration > 0.0 && duration.is_finite()) {
             return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
@@ -136,7 +141,7 @@ impl SlidingWheel {
             phases: Vec::new(),
             energy_gained: 0.0,
         };
-        let end = self.follow(initial, duration, &times, |phase, resumes, solution| {
+        let end = self.follow(initial, duration, &times, control, |phase, resumes, solution| {
             for (time, state) in solution.samples() {
                 let state: SlipState = as_slip_state(state);
                 history.times.push(time);

@@ -43,6 +43,7 @@ pub use smoothed::SmoothedSlidingWheel;
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
+use arclength::control::Control;
 use arclength::integration::{
     Crossing, Direction, Event, Integrator, Solution, Stepper, autonomous, from_fn,
 };
@@ -90,11 +91,12 @@ pub struct Phase {
 /// A wheel that may roll or slide.
 ///
 /// ```
+/// use arclength::control::Control;
 /// use kingpin::{Key, Wheel, sliding::Contact};
 ///
 /// let wheel = Wheel::default().with(Key::FAz, -20.0)?;
 /// let start = wheel.perturbed_uniform_motion(&[("psi", 0.6)])?;
-/// let history = wheel.sliding()?.simulate(&start, 1.0, 101)?;
+/// let history = wheel.sliding()?.simulate(&start, 1.0, 101, &Control::none())?;
 /// assert_eq!(history.phases[0].contact, Contact::Rolling);
 /// assert_eq!(history.phases[1].contact, Contact::Sliding);
 /// # Ok::<(), kingpin::simulation::SimulationError>(())
@@ -168,6 +170,7 @@ impl SlidingWheel {
         initial: HybridState,
         duration: f64,
         times: &[f64],
+        control: &Control<'_>,
         mut visit: impl FnMut(Phase, bool, &Solution) -> bool,
     ) -> Result<HybridState, SimulationError> {
         let mut now = 0.0;
@@ -177,18 +180,19 @@ impl SlidingWheel {
             present.contact = Contact::Sliding;
         }
         for _ in 0..self.maximum_phases {
-            let due = |from: usize| &times[from..];
+            let due = &times[sampled..];
+            let rest = control.part(now / duration..1.0);
             let (contact, solution, next) = match present.contact {
                 Contact::Rolling if !self.holds(&present.state) => {
-                    let (solution, next) = self.start_slip(now, &present.state, duration, due(sampled))?;
+                    let (solution, next) = self.start_slip(now, &present.state, duration, due, &rest)?;
                     (Contact::Sliding, solution, next)
                 }
                 Contact::Rolling => {
-                    let (solution, next) = self.roll(now, &present.state, duration, due(sampled))?;
+                    let (solution, next) = self.roll(now, &present.state, duration, due, &rest)?;
                     (Contact::Rolling, solution, next)
                 }
                 Contact::Sliding => {
-                    let (solution, next) = self.slide(now, &present.state, duration, due(sampled))?;
+                    let (solution, next) = self.slide(now, &present.state, duration, due, &rest)?;
                     (Contact::Sliding, solution, next)
                 }
             };
@@ -196,6 +200,7 @@ impl SlidingWheel {
             let resumes = present.contact == Contact::Sliding && now > 0.0;
             let keep_on = visit(Phase { contact, start: now, end: solution.time }, resumes, &solution);
             now = solution.time;
+            control.done(now / duration);
             present = next;
             if now >= duration || !keep_on {
                 return Ok(present);
@@ -247,12 +252,13 @@ impl SlidingWheel {
         state: &SlipState,
         end: f64,
         times: &[f64],
+        control: &Control<'_>,
     ) -> Result<(Solution, HybridState), SimulationError> {
         let widen = |x: &[f64]| [x[0], x[1], x[2], x[3], 0.0, x[4], 0.0];
         let initial = [state[0], state[1], state[2], state[3], state[5]];
         let mut events = [Event::new(|_, x| self.equations.static_reserve(&widen(x))).falling().terminal()];
         let times = &times[..times.partition_point(|&time| time <= end)];
-        let mut solution = self.while_rolling.with_events(
+        let mut solution = self.while_rolling.under(control).with_events(
             autonomous(&self.rolling, &[]),
             start,
             &initial,
@@ -273,6 +279,7 @@ impl SlidingWheel {
         state: &SlipState,
         end: f64,
         times: &[f64],
+        control: &Control<'_>,
     ) -> Result<(Solution, HybridState), SimulationError> {
         let equations = &self.equations;
         let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
@@ -282,7 +289,8 @@ impl SlidingWheel {
             Event::new(|_, x| slip_squared(x) - ONSET_SLIP * ONSET_SLIP).rising().terminal(),
             Event::new(|_, x| equations.slip_along_limit_direction(x)).falling().terminal(),
         ];
-        let mut solution = self.while_sliding.with_events(system, start, state, end, times, &mut events)?;
+        let integrator = self.while_sliding.under(control);
+        let mut solution = integrator.with_events(system, start, state, end, times, &mut events)?;
         let state = as_slip_state(&solution.state);
         if solution.ended_by != Some(1) {
             let slips = slip_squared(&state) > 0.0;
@@ -301,6 +309,7 @@ impl SlidingWheel {
         state: &SlipState,
         end: f64,
         times: &[f64],
+        control: &Control<'_>,
     ) -> Result<(Solution, HybridState), SimulationError> {
         let equations = &self.equations;
         let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
@@ -325,6 +334,7 @@ impl SlidingWheel {
             if stepper.is_finished() || vanished {
                 break;
             }
+            control.check()?;
             stepper.advance()?;
             vanished = slip_squared(stepper.state()) < vanishing;
         }

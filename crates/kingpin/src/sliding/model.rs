@@ -1,7 +1,7 @@
 //! The equations of the wheel that slides, and the limit directions of its slip.
 
+use crate::body::Body;
 use crate::parameters::Key;
-use crate::rolling::Body;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
 use arclength::Scalar;

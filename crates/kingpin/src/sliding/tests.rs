@@ -3,6 +3,7 @@
 use super::model::Equations;
 use super::*;
 use crate::Key;
+use arclength::control::Control;
 use arclength::integration::{Integrator, from_fn};
 use proptest::prelude::*;
 
@@ -80,7 +81,7 @@ fn energy_balance_along_the_motion() {
     let sliding = wheel.sliding().unwrap();
     let duration = 0.5;
     let count = 200_000;
-    let history = sliding.simulate(&start(&wheel), duration, count + 1).unwrap();
+    let history = sliding.simulate(&start(&wheel), duration, count + 1, &Control::none()).unwrap();
     assert!(history.phases.len() > 4, "{:?}", history.phases);
     // Trapezoidal rule; the power has a few jumps.
     let mut work = 0.0;
@@ -99,7 +100,7 @@ fn energy_balance_along_the_motion() {
 #[test]
 fn rolling_and_sliding_limits_are_kept() {
     let wheel = loaded(1.0, 0.8);
-    let history = wheel.sliding().unwrap().simulate(&start(&wheel), 1.0, 5001).unwrap();
+    let history = wheel.sliding().unwrap().simulate(&start(&wheel), 1.0, 5001, &Control::none()).unwrap();
     let normal = history.normal_force;
     let mut kinds = [0, 0];
     for (time, (slip, friction)) in history.times.iter().zip(history.slip().iter().zip(&history.friction)) {
@@ -122,8 +123,12 @@ fn converges_with_the_tolerance() {
     for mu_d in [0.8, 1.0] {
         let wheel = loaded(1.0, mu_d);
         let run = |tolerance: f64| {
-            let history =
-                wheel.sliding().unwrap().tolerance(tolerance).simulate(&start(&wheel), 0.4, 2).unwrap();
+            let history = wheel
+                .sliding()
+                .unwrap()
+                .tolerance(tolerance)
+                .simulate(&start(&wheel), 0.4, 2, &Control::none())
+                .unwrap();
             (history.states[1], history.phases.len())
         };
         let (exact, phases) = run(1e-12);
@@ -144,7 +149,7 @@ fn without_friction_energy_is_conserved() {
     let wheel = wheel(&[(Key::V, 0.0), (Key::Curvature, 0.0), (Key::MuS, 0.0), (Key::MuD, 0.0)]);
     let sliding = wheel.sliding().unwrap().tolerance(1e-12);
     let initial = [0.01, -0.02, 0.7, 0.3, -0.2, 5.0, 0.1];
-    let history = sliding.simulate_from(&initial, 5.0, 3).unwrap();
+    let history = sliding.simulate_from(&initial, 5.0, 3, &Control::none()).unwrap();
     let equations = Equations::new(&wheel).unwrap();
     let energy = equations.energy(&[0.01, -0.02, 0.7, 0.3, -0.2, 5.0, 0.2]);
     assert!(history.energy_gained.abs() < 1e-9 * energy, "{}", history.energy_gained);
@@ -154,9 +159,9 @@ fn without_friction_energy_is_conserved() {
 #[test]
 fn large_friction_is_rolling() {
     let sticky = loaded(100.0, 100.0);
-    let hybrid = sticky.sliding().unwrap().simulate(&start(&sticky), 1.0, 11).unwrap();
+    let hybrid = sticky.sliding().unwrap().simulate(&start(&sticky), 1.0, 11, &Control::none()).unwrap();
     assert_eq!(hybrid.phases.len(), 1);
-    let rolling = sticky.simulate_from(&start(&sticky), 1.0, 11).unwrap();
+    let rolling = sticky.simulate_from(&start(&sticky), 1.0, 11, &Control::none()).unwrap();
     for (hybrid, rolling) in hybrid.states.iter().zip(&rolling.states) {
         for (a, b) in [0, 1, 2, 3, 5].into_iter().zip(0..5) {
             assert!((hybrid[a] - rolling[b]).abs() < 1e-7);
@@ -169,7 +174,7 @@ fn sliding_without_the_wheel_turning_away_stops_at_a_known_time() {
     // On rails: towed straight, caster straight, only W differs from V: W' = mu_d N R^2/J, V' = -mu_d N/m.
     let wheel = wheel(&[(Key::Curvature, 0.0), (Key::K, 1e-3), (Key::FAz, -5.0)]);
     let initial = [0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 3.9];
-    let history = wheel.sliding().unwrap().simulate_from(&initial, 0.01, 2).unwrap();
+    let history = wheel.sliding().unwrap().simulate_from(&initial, 0.01, 2, &Control::none()).unwrap();
     let force = 0.8 * wheel.normal_force();
     let (mass, rim) = (0.3519 + 0.0668, 4.63e-5 / 0.04f64.powi(2));
     let expected = 0.1 / (force / mass + force / rim);
@@ -188,12 +193,19 @@ fn onset_agrees_with_strongly_smoothed_friction() {
     // Friction rising over a small slip speed, from the same state: first order in that speed.
     let wheel = loaded(1.0, 0.8);
     let equations = Equations::new(&wheel).unwrap();
-    let history = wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 20_001).unwrap();
+    let history = wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 20_001, &Control::none()).unwrap();
     let first = history.phases.iter().find(|phase| phase.contact == Contact::Sliding).unwrap();
-    let roll = wheel.sliding().unwrap().simulate(&start(&wheel), first.start, 2).unwrap().states[1];
+    let roll =
+        wheel.sliding().unwrap().simulate(&start(&wheel), first.start, 2, &Control::none()).unwrap().states
+            [1];
     let initial = [roll[0], roll[1], roll[2], roll[3], roll[4], roll[5], 0.0];
     let later = 0.5 * (first.end - first.start);
-    let exact = wheel.sliding().unwrap().simulate(&start(&wheel), first.start + later, 2).unwrap().states[1];
+    let exact = wheel
+        .sliding()
+        .unwrap()
+        .simulate(&start(&wheel), first.start + later, 2, &Control::none())
+        .unwrap()
+        .states[1];
     let mut errors = Vec::new();
     for smoothing in [1e-3, 1e-4] {
         let system = from_fn(7, |_, x: &[f64], f: &mut [f64]| {
@@ -216,14 +228,14 @@ fn bad_input_is_refused() {
     assert!(message(&wheel(&[(Key::FAz, 10.0)])).contains("F_Az = 10"));
     assert!(message(&wheel(&[(Key::KU, f64::INFINITY)])).contains("k_u = inf"));
     let sliding = Wheel::default().sliding().unwrap();
-    assert!(sliding.simulate(&[0.0; 5], -1.0, 10).is_err());
-    assert!(sliding.simulate(&[0.0; 5], 1.0, 1).is_err());
-    assert!(sliding.simulate(&[f64::NAN; 5], 1.0, 2).is_err());
+    assert!(sliding.simulate(&[0.0; 5], -1.0, 10, &Control::none()).is_err());
+    assert!(sliding.simulate(&[0.0; 5], 1.0, 1, &Control::none()).is_err());
+    assert!(sliding.simulate(&[f64::NAN; 5], 1.0, 2, &Control::none()).is_err());
 }
 
 /// The largest rolling force, relative to the normal force, of a motion that would roll for 0.2 s, and when.
 fn largest_rolling_force(wheel: &Wheel) -> (f64, f64) {
-    let history = wheel.simulate_from(&start(wheel), 0.2, 2_000_001).unwrap();
+    let history = wheel.simulate_from(&start(wheel), 0.2, 2_000_001, &Control::none()).unwrap();
     let forces = history.contact_forces.iter().map(|force| force.friction() / force.normal);
     let (index, force) = forces.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
     (force, history.times[index])
@@ -235,7 +247,7 @@ fn a_force_that_just_misses_or_just_touches_the_static_limit() {
     assert!(time > 0.001 && time < 0.199);
     let run = |mu_s: f64, mu_d: f64| {
         let wheel = loaded(mu_s, mu_d);
-        wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2).unwrap()
+        wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2, &Control::none()).unwrap()
     };
     let rolling = run(100.0, 100.0);
     for distance in [1e-4, 1e-6, 1e-8] {
@@ -268,12 +280,15 @@ fn a_force_that_just_misses_or_just_touches_the_static_limit() {
 #[test]
 fn growing_friction_tends_to_rolling() {
     // The part of the time that is slid falls to zero and the motion becomes that of the rolling wheel.
-    let rolling =
-        loaded(100.0, 100.0).simulate_from(&start(&loaded(100.0, 100.0)), 0.2, 2).unwrap().states[1];
+    let rolling = loaded(100.0, 100.0)
+        .simulate_from(&start(&loaded(100.0, 100.0)), 0.2, 2, &Control::none())
+        .unwrap()
+        .states[1];
     let mut before = f64::INFINITY;
     for mu in [1.0, 1.5, 2.0, 4.0] {
         let wheel = loaded(mu, mu);
-        let end = wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2).unwrap().states[1];
+        let end =
+            wheel.sliding().unwrap().simulate(&start(&wheel), 0.2, 2, &Control::none()).unwrap().states[1];
         let distance = [0, 1, 2, 3, 5]
             .into_iter()
             .zip(0..5)

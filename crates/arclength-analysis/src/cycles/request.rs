@@ -1,0 +1,184 @@
+//! What a branch of limit cycles is asked for by, and how it is computed.
+
+use super::result::CyclesResult;
+use crate::branch::Origin;
+use crate::control::Control;
+use crate::error::Error;
+use crate::interval::Interval;
+use crate::labels::kind;
+use crate::model::ChosenModel;
+use crate::point_reference::PointReference;
+use crate::start::{LabelledPoint, What};
+use crate::steps::{Mesh, Steps};
+use arclength::branch::SpecialKind;
+use arclength::continuation::Settings;
+use arclength::cycle::{CycleStart, Cycles, Orbit, Role};
+use arclength::equilibrium::SpecialPoint;
+use kingpin_report::NamedNumbers;
+use kingpin_report::numbers::readable;
+use serde::{Deserialize, Serialize};
+
+/// A branch of limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result.
+///
+/// From a Hopf point (HB) the cycles that are born there are followed, from a period doubling (PD) the doubled ones, from a
+/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, and from the end (END) of a
+/// time history the cycle on which it has settled.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CyclesRequest {
+    /// The labelled point, with its model and parameters.
+    pub from: PointReference,
+    /// Values of parameters in place of those of the point.
+    #[serde(default)]
+    pub set: NamedNumbers,
+    /// Parameter and its interval.
+    pub along: Interval,
+    /// Values of the parameter at which cycles are wanted exactly.
+    #[serde(default)]
+    pub at: Vec<f64>,
+    /// Whether the branch of the labelled cycle itself is followed, not the one that bifurcates there.
+    #[serde(default)]
+    pub stay: bool,
+    /// How steps are taken.
+    #[serde(flatten)]
+    pub steps: Steps,
+    /// How finely cycles are resolved.
+    #[serde(flatten)]
+    pub mesh: Mesh,
+}
+
+/// A request that makes sense, with what the branch starts from.
+#[derive(Clone, Debug)]
+pub struct CyclesAnalysis {
+    chosen: ChosenModel,
+    start: CycleStart,
+    origin: Origin,
+    warnings: Vec<String>,
+    active: usize,
+    along: Interval,
+    at: Vec<f64>,
+    steps: Steps,
+    mesh: Mesh,
+}
+
+impl CyclesRequest {
+    /// A request with the default of everything else.
+    pub fn new(from: PointReference, along: Interval) -> Self {
+        Self {
+            from,
+            set: NamedNumbers::default(),
+            along,
+            at: Vec::new(),
+            stay: false,
+            steps: Steps::default(),
+            mesh: Mesh::default(),
+        }
+    }
+
+    /// Reads the labelled point and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the point or a field; a time history that has not settled on a cycle.
+    pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        let point = LabelledPoint::read(&self.from)?;
+        let mut chosen = point.chosen.clone();
+        chosen.set(&self.set)?;
+        let active = chosen.along(&["along"], &self.along)?;
+        chosen.starts_within(&["along"], &self.along, &point.label)?;
+        self.along.check_values(&self.at)?;
+        let (start, how) = self.start(&point, &chosen.parameters)?;
+        let itself = matches!(start, CycleStart::Orbit(_)) && matches!(point.what, What::Cycle { .. });
+        let warnings = (itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC")).then(|| {
+            format!(
+                "the branch of the cycle {} itself is followed, not the one that bifurcates there",
+                point.label
+            )
+        });
+        Ok(CyclesAnalysis {
+            start,
+            origin: Origin::labelled(&point.label, how),
+            warnings: warnings.into_iter().collect(),
+            chosen,
+            active,
+            along: self.along.clone(),
+            at: self.at.clone(),
+            steps: self.steps,
+            mesh: self.mesh,
+        })
+    }
+
+    /// What the branch starts from, in words too.
+    fn start(&self, point: &LabelledPoint, parameters: &[f64]) -> Result<(CycleStart, &'static str), Error> {
+        match &point.what {
+            What::Cycle { orbit, branching } => Ok(match branching {
+                // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
+                Some((branching, key)) if !self.stay && (branching.doubled || *key == self.along.key) => {
+                    let how =
+                        if branching.doubled { "the doubled cycles" } else { "the other branch through it" };
+                    (CycleStart::Branching(branching.clone()), how)
+                }
+                // At a branch point Newton's method alone could find either branch.
+                Some((branching, key))
+                    if *key == self.along.key
+                        && let Some(known) = branching.known_branch() =>
+                {
+                    (CycleStart::Branching(known), "the branch on which it was found")
+                }
+                _ => (CycleStart::Orbit(orbit.clone()), "the branch through it"),
+            }),
+            What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
+                Ok((CycleStart::from(hopf), "the cycles that are born there"))
+            }
+            What::Motion { duration } => {
+                let model = &point.chosen.model;
+                let orbit = Orbit::from_time_history(model, parameters, &point.chosen.start, *duration)?;
+                Ok((CycleStart::Orbit(orbit), "the cycle on which the time history has settled"))
+            }
+            What::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
+                Err(self.from.failure(format!(
+                    "no cycles can be started at {}: it is degenerate and only bracketed, either because several pairs of \
+                     eigenvalues cross there together or because a pair does not cross with a speed other than zero; start \
+                     at a regular Hopf point or from the end (END) of a time history on a cycle",
+                    point.label
+                )))
+            }
+            What::Equilibrium(_) => Err(self.from.failure(format!(
+                "no cycles start at {}; allowed: Hopf points (HB), cycles, and the end (END) of a time history on a cycle",
+                point.label
+            ))),
+        }
+    }
+}
+
+impl CyclesAnalysis {
+    /// What is worth knowing before it runs.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Follows the branch. Where the control stops it the result is the branch up to there.
+    ///
+    /// # Errors
+    /// [`Error::Continuation`].
+    pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
+        let name = &self.chosen.model.parameters()[self.active];
+        let mut branch = Cycles::of(&self.chosen.model, self.start.clone())
+            .parameters(&self.chosen.parameters)
+            .along(self.active, self.along.start..=self.along.end)
+            .at(&self.at)
+            .settings(self.steps.settings(Settings::default()))
+            .resolution(self.mesh.resolution())
+            .observer(|value, period| {
+                let (value, period) = (readable(value), readable(period));
+                control.at(&format!("cycles, {name} = {value}, period {period}"));
+                control.flow()
+            })
+            .run()?;
+        // The cycle at which the branch starts may be one of those asked for.
+        for cycle in &mut branch.points {
+            if cycle.role == Role::Step && self.at.contains(&cycle.value) {
+                cycle.role = Role::Requested;
+            }
+        }
+        Ok(CyclesResult::new(&self.chosen, self.active, &self.along, self.origin.clone(), branch))
+    }
+}

@@ -1,0 +1,129 @@
+//! What a branch of equilibria is asked for by, and how it is computed.
+
+use super::result::EquilibriaResult;
+use crate::branch::Origin;
+use crate::control::Control;
+use crate::error::Error;
+use crate::interval::Interval;
+use crate::model::ChosenModel;
+use crate::model_request::{ModelRequest, OpenedModel};
+use crate::start::{LabelledPoint, What};
+use crate::steps::Steps;
+use arclength::equilibrium::{BranchPoint, Equilibria, SpecialPoint, equilibrium_settings};
+use kingpin_report::numbers::readable;
+use serde::{Deserialize, Serialize};
+
+/// A branch of equilibria along a parameter.
+///
+/// It starts at the equilibrium near the initial state of the model, or at a labelled point of an earlier result: from a branch
+/// point the other branch is followed, from any other point the branch through it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EquilibriaRequest {
+    /// The model, or the labelled point.
+    pub model: ModelRequest,
+    /// Parameter and its interval.
+    pub along: Interval,
+    /// Values of the parameter at which equilibria are wanted exactly.
+    #[serde(default)]
+    pub at: Vec<f64>,
+    /// How steps are taken.
+    #[serde(flatten)]
+    pub steps: Steps,
+}
+
+/// A request that makes sense, with its model.
+#[derive(Clone, Debug)]
+pub struct EquilibriaAnalysis {
+    chosen: ChosenModel,
+    point: Option<LabelledPoint>,
+    warnings: Vec<String>,
+    /// Whether the model is as it was where the point was found.
+    unchanged: bool,
+    /// Name of the parameter as the model writes it.
+    name: String,
+    along: Interval,
+    at: Vec<f64>,
+    steps: Steps,
+}
+
+impl EquilibriaRequest {
+    /// A request with the default of everything else.
+    pub fn new(model: ModelRequest, along: Interval) -> Self {
+        Self { model, along, at: Vec::new(), steps: Steps::default() }
+    }
+
+    /// Reads the model and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the model or a field.
+    pub fn validate(&self) -> Result<EquilibriaAnalysis, Error> {
+        let OpenedModel { chosen, point, warnings } = self.model.open()?;
+        let active = chosen.along(&["along"], &self.along)?;
+        self.along.check_values(&self.at)?;
+        if let Some(point) = &point {
+            chosen.starts_within(&["along"], &self.along, &point.label)?;
+        }
+        Ok(EquilibriaAnalysis {
+            name: chosen.model.parameters()[active].clone(),
+            chosen,
+            point,
+            warnings,
+            unchanged: !self.model.changes_anything(),
+            along: self.along.clone(),
+            at: self.at.clone(),
+            steps: self.steps,
+        })
+    }
+}
+
+impl EquilibriaAnalysis {
+    /// What is worth knowing before it runs.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Follows the branch. Where the control stops it the result is the branch up to there.
+    ///
+    /// # Errors
+    /// [`Error::Continuation`].
+    pub fn run(&self, control: &Control<'_>) -> Result<EquilibriaResult, Error> {
+        let (branch_point, mut origin) = match &self.point {
+            Some(point) => {
+                (self.branch_point(point), Origin::labelled(&point.label, "the branch through it"))
+            }
+            None => (None, Origin::initial_state()),
+        };
+        let chosen = &self.chosen;
+        let equilibria = Equilibria::of(&chosen.model).start(&chosen.start).parameters(&chosen.parameters);
+        let exact = matches!(&self.point, Some(point) if matches!(point.what, What::Equilibrium(_)));
+        let equilibria = match branch_point {
+            Some(point) => equilibria.from_branch_point(point),
+            None if exact && self.unchanged => equilibria.through(&chosen.start),
+            None => equilibria,
+        };
+        let name = &self.name;
+        let branch = equilibria
+            .along(name, self.along.start..=self.along.end)
+            .at(&self.at)
+            .settings(self.steps.settings(equilibrium_settings()))
+            .observed(&mut |value, _| {
+                control.at(&format!("equilibria, {name} = {}", readable(value)));
+                control.flow()
+            })?;
+        // Whether branches cross there along this parameter too shows when they are followed.
+        let start = branch.points.get(branch.start).and_then(|point| point.special.as_deref());
+        if let (Some(point), Some(_), Some(SpecialPoint::BranchPoint(_))) = (&self.point, branch_point, start)
+        {
+            origin = Origin::labelled(&point.label, "the other branch through it");
+        }
+        Ok(EquilibriaResult::new(chosen, &self.along, origin, &branch))
+    }
+
+    /// The branch point whose other branch is followed.
+    fn branch_point<'a>(&self, point: &'a LabelledPoint) -> Option<&'a BranchPoint> {
+        match &point.what {
+            What::Equilibrium(Some(SpecialPoint::BranchPoint(known))) if self.unchanged => Some(known),
+            _ => None,
+        }
+    }
+}

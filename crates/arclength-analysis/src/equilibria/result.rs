@@ -1,0 +1,198 @@
+//! A branch of equilibria as a result.
+
+use crate::branch::{Origin, pairs, parameters, stability, tests};
+use crate::course::{self, Place};
+use crate::end::End;
+use crate::interval::Interval;
+use crate::labels::{self, is_bifurcation};
+use crate::model::ChosenModel;
+use crate::normal_form;
+use crate::picture::{self, Curve};
+use crate::stored_model::StoredModel;
+use crate::varying_parameter::VaryingParameter;
+use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
+use kingpin_figure::{Figure, FigureError, palette};
+use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// States that are shown in a table.
+const SHOWN_STATES: usize = 4;
+/// Digits of the parameter at labelled points.
+const DIGITS: usize = 12;
+
+/// An equilibrium in a result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EquilibriumResult {
+    /// Value of the parameter.
+    pub value: f64,
+    /// The equilibrium.
+    pub state: NamedNumbers,
+    /// Eigenvalues by descending real part.
+    pub eigenvalues: Vec<[Option<f64>; 2]>,
+    /// Nothing where that is not decided.
+    pub stable: Option<bool>,
+    /// Of special points, of values asked for, of the ends.
+    pub label: Option<String>,
+    /// Test functions by the label of the point at which each changes its sign.
+    pub tests: NamedNumbers,
+    /// The normal form.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub special: Option<SpecialPoint>,
+}
+
+/// A branch of equilibria.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EquilibriaResult {
+    /// The parameters that do not vary.
+    #[serde(skip_serializing)]
+    pub parameters: NamedNumbers,
+    /// The model.
+    pub model: StoredModel,
+    /// The parameter that varies.
+    pub along: VaryingParameter,
+    /// Where the branch starts.
+    pub from: Origin,
+    /// Why it ends, at its first and at its last point.
+    pub ends: [End; 2],
+    /// The equilibria in the order of the branch.
+    pub points: Vec<EquilibriumResult>,
+}
+
+impl EquilibriaResult {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "arclength.equilibria";
+
+    /// The result of a branch.
+    pub fn new(chosen: &ChosenModel, along: &Interval, from: Origin, branch: &EquilibriumBranch) -> Self {
+        let count = branch.points.len();
+        let point = |(index, point): (usize, &EquilibriumPoint)| EquilibriumResult {
+            value: point.parameter,
+            state: chosen.named_state(&point.state),
+            eigenvalues: pairs(&point.eigenvalues),
+            stable: point.stability.is_stable(),
+            label: point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count)),
+            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            special: point.special.as_deref().cloned(),
+        };
+        let points: Vec<EquilibriumResult> = branch.points.iter().enumerate().map(point).collect();
+        let last = |point: Option<&EquilibriumResult>| {
+            let value = point.map(|point| (along.key.clone(), point.value));
+            let states = point.iter().flat_map(|point| point.state.0.iter().cloned());
+            NamedNumbers(value.into_iter().chain(states).collect())
+        };
+        let ends = [
+            End::of(&branch.backward_stop, &[&along.key], last(points.first())),
+            End::of(&branch.forward_stop, &[&along.key], last(points.last())),
+        ];
+        Self {
+            parameters: chosen.named_parameters(&[branch.active]),
+            model: chosen.stored.clone(),
+            along: along.into(),
+            from,
+            ends,
+            points,
+        }
+    }
+
+    /// Names of the states.
+    pub fn states(&self) -> Vec<&str> {
+        let first = self.points.first();
+        first.iter().flat_map(|point| point.state.0.iter().map(|(name, _)| name.as_str())).collect()
+    }
+
+    /// What is drawn of a state over the parameter.
+    pub fn curves(&self, state: &str) -> Vec<Curve> {
+        let height = |point: &EquilibriumResult| point.state.named(state);
+        vec![Curve::of(
+            "equilibrium",
+            palette::BLUE,
+            self.points.iter().filter_map(|point| {
+                Some(((point.value, height(point)?), point.stable, point.label.as_deref()))
+            }),
+        )]
+    }
+}
+
+impl Report for EquilibriaResult {
+    fn schema(&self) -> Schema {
+        Schema::first(Self::SCHEMA)
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        self.parameters.clone()
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "equilibria of {} at {}", self.model.name, parameters(&self.parameters.0))?;
+        writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
+        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
+        let states = self.states().into_iter().take(SHOWN_STATES);
+        let headings = ["label", self.along.key.as_str()].into_iter().chain(states);
+        let mut table = Table::new(headings.chain(["", ""]));
+        for point in self.points.iter().filter(|point| point.label.is_some()) {
+            let mut cells: Vec<Cell> = vec![point.label.clone().into(), Cell::Digits(point.value, DIGITS)];
+            cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
+            cells.push(stability(point.stable, is_bifurcation(point.label.as_deref())).into());
+            cells.push(point.special.as_ref().map(normal_form::of_equilibrium).unwrap_or_default().into());
+            table.row(cells);
+        }
+        table.write(out)
+    }
+
+    fn columns(&self) -> Columns {
+        let points = || self.points.iter();
+        let mut columns = Columns::new()
+            .texts("label", points().map(|point| point.label.clone()))
+            .numbers("value", points().map(|point| point.value))
+            .booleans("stable", points().map(|point| point.stable));
+        let states = self.states();
+        for (index, name) in states.iter().enumerate() {
+            columns = columns.optional_numbers(*name, points().map(|point| point.state.get(index)));
+        }
+        columns
+            .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))
+            .named_numbers("test", points().map(|point| &point.tests))
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let description = format!("Equilibria of {} along {}", self.model.name, self.along.key);
+        let panels = self.states().into_iter().map(|state| (state.to_owned(), self.curves(state)));
+        Ok(Some(picture::bifurcation_diagram(&description, &self.along.key, panels)))
+    }
+
+    fn story(&self) -> Option<Story> {
+        let places: Vec<Place<'_>> = self
+            .points
+            .iter()
+            .map(|point| Place {
+                value: point.value,
+                stable: point.stable,
+                label: point.label.as_deref(),
+                remark: point.special.as_ref().map(normal_form::of_equilibrium),
+            })
+            .collect();
+        let mut story = Story::new();
+        story.tell("start", self.from.text());
+        course::tell_ends(&mut story, &self.ends);
+        course::tell_way(&mut story, &self.along.key, &places);
+        let degenerate =
+            |point: &&EquilibriumResult| matches!(point.special, Some(SpecialPoint::Degenerate { .. }));
+        for point in self.points.iter().filter(degenerate) {
+            let label = point.label.clone().unwrap_or_default();
+            story.tell(
+                "not located",
+                format!("{label} is only bracketed: its defining system is singular there"),
+            );
+        }
+        let largest = self.points.iter().filter_map(|point| Some(point.special.as_ref()?.location_error()));
+        let largest = largest.filter(|error| error.is_finite()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            story.tell(
+                "errors",
+                format!("special points are located to {largest:.1e} or better in {}", self.along.key),
+            );
+        }
+        Some(story)
+    }
+}

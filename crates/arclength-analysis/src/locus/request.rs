@@ -1,0 +1,193 @@
+//! What a curve of special points is asked for by, and how it is computed.
+
+use super::of_cycles::CycleLocusResult;
+use super::of_equilibria::EquilibriumLocusResult;
+use super::result::LocusResult;
+use crate::branch::Origin;
+use crate::control::Control;
+use crate::error::Error;
+use crate::interval::Interval;
+use crate::labels::kind;
+use crate::point_reference::PointReference;
+use crate::start::{LabelledPoint, What};
+use crate::steps::{Mesh, Steps};
+use arclength::branch::SpecialKind;
+use arclength::continuation::Settings;
+use arclength::cycle::Orbit;
+use arclength::equilibrium::{BranchPoint, FoldPoint, HopfPoint, SpecialPoint, equilibrium_settings};
+use arclength::locus::{CycleLocus, EquilibriumLocus};
+use kingpin_report::numbers::readable;
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// A curve of special points in two parameters, with its points of codimension two.
+///
+/// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus bifurcations
+/// (NS) of cycles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LocusRequest {
+    /// The labelled point, with its model and parameters.
+    pub from: PointReference,
+    /// The two parameters and their intervals.
+    #[serde(rename = "in")]
+    pub plane: [Interval; 2],
+    /// Values of the first parameter at which points are wanted exactly.
+    #[serde(default)]
+    pub at: Vec<f64>,
+    /// How steps are taken.
+    #[serde(flatten)]
+    pub steps: Steps,
+    /// How finely cycles are resolved.
+    #[serde(flatten)]
+    pub mesh: Mesh,
+}
+
+/// A request that makes sense, with the point at which the curve starts.
+#[derive(Clone, Debug)]
+pub struct LocusAnalysis {
+    point: LabelledPoint,
+    start: Start,
+    /// Names of the parameters as the model writes them.
+    names: [String; 2],
+    plane: [Interval; 2],
+    at: Vec<f64>,
+    steps: Steps,
+    mesh: Mesh,
+}
+
+/// What the curve consists of, and the point at which it starts.
+#[derive(Clone, Debug)]
+enum Start {
+    Fold(FoldPoint),
+    Hopf(HopfPoint),
+    BranchPoint(BranchPoint),
+    Cycle(SpecialKind, Orbit),
+}
+
+impl LocusRequest {
+    /// A request with the default of everything else.
+    pub fn new(from: PointReference, plane: [Interval; 2]) -> Self {
+        Self { from, plane, at: Vec::new(), steps: Steps::default(), mesh: Mesh::default() }
+    }
+
+    /// Reads the labelled point and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the point or a field.
+    pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        let point = LabelledPoint::read(&self.from)?;
+        let chosen = &point.chosen;
+        let [first, second] = &self.plane;
+        let active = [chosen.along(&["in"], first)?, chosen.along(&["in"], second)?];
+        if active[0] == active[1] {
+            return Err(Error::invalid(
+                &["in"],
+                format!("{} twice", first.key),
+                "both parameters are the same",
+                "two different parameters",
+            ));
+        }
+        for interval in &self.plane {
+            chosen.starts_within(&["in"], interval, &point.label)?;
+        }
+        first.check_values(&self.at)?;
+        let start = Start::at(&point).ok_or_else(|| {
+            self.from.failure(format!(
+                "no curve of special points starts at {}; allowed: folds (LP), Hopf points (HB) and branch points (BP) of \
+                 equilibria, folds (LPC), period doublings (PD) and torus bifurcations (NS) of cycles",
+                point.label
+            ))
+        })?;
+        Ok(LocusAnalysis {
+            names: active.map(|index| chosen.model.parameters()[index].clone()),
+            point,
+            start,
+            plane: self.plane.clone(),
+            at: self.at.clone(),
+            steps: self.steps,
+            mesh: self.mesh,
+        })
+    }
+}
+
+impl Start {
+    /// The special point at which a curve can start.
+    fn at(point: &LabelledPoint) -> Option<Self> {
+        match &point.what {
+            What::Equilibrium(Some(SpecialPoint::Fold(fold))) => Some(Self::Fold(fold.clone())),
+            What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => Some(Self::Hopf(hopf.clone())),
+            What::Equilibrium(Some(SpecialPoint::BranchPoint(point))) => {
+                Some(Self::BranchPoint(point.clone()))
+            }
+            What::Cycle { orbit, .. } => {
+                let kind = match kind(&point.label) {
+                    "LPC" => SpecialKind::FoldOfCycles,
+                    "PD" => SpecialKind::PeriodDoubling,
+                    "NS" => SpecialKind::Torus,
+                    _ => return None,
+                };
+                Some(Self::Cycle(kind, orbit.clone()))
+            }
+            _ => None,
+        }
+    }
+}
+
+impl LocusAnalysis {
+    /// Follows the curve. Where the control stops it the result is the curve up to there.
+    ///
+    /// # Errors
+    /// [`Error::Continuation`].
+    pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
+        let curve = EquilibriumLocus::of(&self.point.chosen.model);
+        let (curve, how) = match &self.start {
+            Start::Fold(fold) => (curve.from_fold(fold), "the folds through it"),
+            Start::Hopf(hopf) => (curve.from_hopf(hopf), "the Hopf points through it"),
+            Start::BranchPoint(point) => (curve.from_branch_point(point), "the branch points through it"),
+            Start::Cycle(kind, orbit) => {
+                return self.of_cycles(*kind, orbit, control).map(LocusResult::Cycles);
+            }
+        };
+        let [first, second] = &self.plane;
+        let branch = curve
+            .along(&self.names[0], first.start..=first.end)
+            .and(&self.names[1], second.start..=second.end)
+            .at(&self.at)
+            .settings(self.steps.settings(equilibrium_settings()))
+            .observed(&mut |values, _| self.tell(control, values))?;
+        let origin = Origin::labelled(&self.point.label, how);
+        let curve = EquilibriumLocusResult::new(&self.point.chosen, [first, second], origin, &branch);
+        Ok(LocusResult::Equilibria(curve))
+    }
+
+    fn of_cycles(
+        &self,
+        kind: SpecialKind,
+        orbit: &Orbit,
+        control: &Control<'_>,
+    ) -> Result<CycleLocusResult, Error> {
+        let how = match kind {
+            SpecialKind::FoldOfCycles => "the folds of cycles through it",
+            SpecialKind::PeriodDoubling => "the period doublings through it",
+            _ => "the torus bifurcations through it",
+        };
+        let [first, second] = &self.plane;
+        let branch = CycleLocus::of(&self.point.chosen.model)
+            .from_cycle(kind, orbit, &self.point.chosen.parameters)
+            .along(&self.names[0], first.start..=first.end)
+            .and(&self.names[1], second.start..=second.end)
+            .at(&self.at)
+            .settings(self.steps.settings(Settings::default()))
+            .resolution(self.mesh.resolution())
+            .observed(&mut |values, _| self.tell(control, values))?;
+        let origin = Origin::labelled(&self.point.label, how);
+        Ok(CycleLocusResult::new(&self.point.chosen, [first, second], origin, branch))
+    }
+
+    fn tell(&self, control: &Control<'_>, values: [f64; 2]) -> ControlFlow<()> {
+        let [one, two] = values.map(readable);
+        let [first, second] = &self.plane;
+        control.at(&format!("curve, {} = {one}, {} = {two}", first.key, second.key));
+        control.flow()
+    }
+}

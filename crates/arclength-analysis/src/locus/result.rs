@@ -1,0 +1,72 @@
+//! A curve of special points as a result, of equilibria or of cycles.
+
+use super::of_cycles::CycleLocusResult;
+use super::of_equilibria::EquilibriumLocusResult;
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// A curve of special points in two parameters.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum LocusResult {
+    /// Of special equilibria.
+    Equilibria(EquilibriumLocusResult),
+    /// Of special cycles.
+    Cycles(CycleLocusResult),
+}
+
+impl LocusResult {
+    /// What was detected but not located.
+    pub fn warnings(&self) -> Vec<String> {
+        match self {
+            Self::Equilibria(_) => Vec::new(),
+            Self::Cycles(curve) => curve.warnings(),
+        }
+    }
+}
+
+impl Report for LocusResult {
+    fn schema(&self) -> Schema {
+        match self {
+            Self::Equilibria(curve) => curve.schema(),
+            Self::Cycles(curve) => curve.schema(),
+        }
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        match self {
+            Self::Equilibria(curve) => curve.parameters(),
+            Self::Cycles(curve) => curve.parameters(),
+        }
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::Equilibria(curve) => curve.write_table(out),
+            Self::Cycles(curve) => curve.write_table(out),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        match self {
+            Self::Equilibria(curve) => curve.columns(),
+            Self::Cycles(curve) => curve.columns(),
+        }
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        match self {
+            Self::Equilibria(curve) => curve.figure(),
+            Self::Cycles(curve) => curve.figure(),
+        }
+    }
+
+    fn story(&self) -> Option<Story> {
+        match self {
+            Self::Equilibria(curve) => curve.story(),
+            Self::Cycles(curve) => curve.story(),
+        }
+    }
+}

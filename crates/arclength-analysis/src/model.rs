@@ -1,0 +1,155 @@
+//! A model with values of its parameters and a state.
+
+use crate::error::Error;
+use crate::interval::Interval;
+use crate::stored_model::StoredModel;
+use arclength_ode::Model;
+use kingpin_report::NamedNumbers;
+use std::path::Path;
+
+/// A model with a value for every parameter and an initial value for every state.
+#[derive(Clone, Debug)]
+pub struct ChosenModel {
+    /// Where it came from.
+    pub stored: StoredModel,
+    /// The model.
+    pub model: Model,
+    /// Values of all parameters.
+    pub parameters: Vec<f64>,
+    /// Initial state.
+    pub start: Vec<f64>,
+}
+
+impl ChosenModel {
+    /// A model with the parameters and the initial state of its text.
+    pub fn new(stored: StoredModel, model: Model) -> Self {
+        let parameters = model.default_parameters().to_vec();
+        let start = model.initial_state(&parameters);
+        Self { stored, model, parameters, start }
+    }
+
+    /// The model of a text that was kept, with other values of parameters; `path` is where it was kept.
+    ///
+    /// # Errors
+    /// A text that is no model, or parameters that are not its own.
+    pub fn stored(path: &Path, stored: StoredModel, parameters: &[(String, f64)]) -> Result<Self, Error> {
+        let model = Model::parse(&stored.source)
+            .map_err(|source| Error::Model { path: path.to_owned(), source: source.into() })?;
+        let mut chosen = Self::new(stored, model);
+        for (name, value) in parameters {
+            let index = chosen.model.parameter_index(name).ok_or_else(|| Error::ResultFile {
+                path: path.to_owned(),
+                problem: format!("its model has no parameter `{name}`"),
+            })?;
+            chosen.parameters[index] = *value;
+        }
+        Ok(chosen)
+    }
+
+    /// Sets parameters.
+    ///
+    /// # Errors
+    /// The field `set` with an unknown name or a value that is not finite.
+    pub fn set(&mut self, values: &NamedNumbers) -> Result<(), Error> {
+        for (name, value) in &values.0 {
+            let index = self.parameter(&["set"], name)?;
+            self.parameters[index] = finite(&["set"], name, *value)?;
+        }
+        Ok(())
+    }
+
+    /// The states with these names and values.
+    ///
+    /// # Errors
+    /// The field `start` with an unknown name or a value that is not finite.
+    pub fn states(&self, values: &NamedNumbers) -> Result<Vec<(usize, f64)>, Error> {
+        let state = |(name, value): &(String, f64)| {
+            let index = self.model.state_index(name);
+            let index = index.ok_or_else(|| unknown(&["start"], name, "state", self.model.states()))?;
+            Ok((index, finite(&["start"], name, *value)?))
+        };
+        values.0.iter().map(state).collect()
+    }
+
+    /// The parameters and states of one of the model's named sets, by index.
+    ///
+    /// # Errors
+    /// The field `named_set` where there is no such set.
+    pub fn named_set(&self, name: &str) -> Result<&arclength_ode::NamedSet, Error> {
+        self.model.set(name).ok_or_else(|| {
+            let names: Vec<String> = self.model.sets().iter().map(|set| set.name.clone()).collect();
+            unknown(&["named_set"], name, "named set", &names)
+        })
+    }
+
+    /// Index of the parameter along which something is followed; `fields` is where it was given.
+    ///
+    /// # Errors
+    /// An unknown name; an infinite interval; a field that depends on the time, which has neither equilibria nor cycles of
+    /// its own.
+    pub fn along(&self, fields: &'static [&'static str], interval: &Interval) -> Result<usize, Error> {
+        if let Some(place) = self.model.time_dependence() {
+            return Err(Error::TimeDependent { model: self.stored.name.clone(), snippet: place.snippet() });
+        }
+        let index = self.parameter(fields, &interval.key)?;
+        if interval.start.is_finite() && interval.end.is_finite() {
+            return Ok(index);
+        }
+        Err(Error::invalid(fields, interval.to_string(), "the interval is infinite", "two finite ends"))
+    }
+
+    /// That the interval contains the value of the parameter where a computation starts.
+    ///
+    /// # Errors
+    /// It does not.
+    pub fn starts_within(
+        &self,
+        fields: &'static [&'static str],
+        interval: &Interval,
+        label: &str,
+    ) -> Result<(), Error> {
+        let key = &interval.key;
+        let value = self.model.parameter_index(key).and_then(|index| self.parameters.get(index));
+        match value {
+            Some(value) if !interval.contains(*value) => Err(Error::invalid(
+                fields,
+                interval.to_string(),
+                format!("{label} is outside the interval, {key} = {value} there"),
+                format!("an interval that contains {value}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    fn parameter(&self, fields: &'static [&'static str], key: &str) -> Result<usize, Error> {
+        let index = self.model.parameter_index(key);
+        index.ok_or_else(|| unknown(fields, key, "parameter", self.model.parameters()))
+    }
+
+    /// A state by name.
+    pub fn named_state(&self, state: &[f64]) -> NamedNumbers {
+        NamedNumbers(self.model.states().iter().cloned().zip(state.iter().copied()).collect())
+    }
+
+    /// The parameters by name, without those that vary.
+    pub fn named_parameters(&self, varying: &[usize]) -> NamedNumbers {
+        let named = self.model.parameters().iter().cloned().zip(self.parameters.iter().copied());
+        let fixed = named.enumerate().filter(|(index, _)| !varying.contains(index));
+        NamedNumbers(fixed.map(|(_, entry)| entry).collect())
+    }
+}
+
+fn finite(fields: &'static [&'static str], key: &str, value: f64) -> Result<f64, Error> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Error::invalid(fields, format!("{key}={value}"), "not a finite number", "a finite number"))
+}
+
+fn unknown(fields: &'static [&'static str], key: &str, what: &str, names: &[String]) -> Error {
+    let allowed = if names.is_empty() { "none, there is no such thing".to_owned() } else { names.join(", ") };
+    let alike = |name: &&String| strsim::jaro_winkler(&name.to_lowercase(), &key.to_lowercase());
+    let nearest = names.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+    let guess = nearest.map_or(String::new(), |name| format!("; the nearest is `{name}`"));
+    Error::invalid(fields, key, format!("the model has no such {what}{guess}"), allowed)
+}

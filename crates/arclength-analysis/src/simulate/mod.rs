@@ -1,0 +1,7 @@
+//! A time history of a model.
+
+mod request;
+mod result;
+
+pub use request::{SimulateAnalysis, SimulateRequest};
+pub use result::{Histories, HistoryResult};

@@ -1,0 +1,61 @@
+//! How steps along a branch are taken, and how finely cycles are resolved: parts of many requests.
+
+use arclength::continuation::Settings;
+use arclength::cycle::Resolution;
+use serde::{Deserialize, Serialize};
+
+/// How steps along a branch are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Steps {
+    /// Most steps in one direction.
+    pub steps: u32,
+    /// Steps are so many times shorter, so that special points that lie close together are told apart.
+    pub finer: u32,
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        Self { steps: 10_000, finer: 1 }
+    }
+}
+
+impl Steps {
+    /// The settings of a continuation with these steps.
+    pub fn settings(&self, settings: Settings) -> Settings {
+        let finer = f64::from(self.finer.max(1));
+        Settings {
+            most_steps: self.steps as usize,
+            initial_step: settings.initial_step / finer,
+            largest_step: settings.largest_step / finer,
+            largest_parameter_change: settings.largest_parameter_change / finer,
+            // The distance between prediction and solution falls with the square of the step.
+            predictor_error: settings.predictor_error / (finer * finer),
+            smallest_step: settings.smallest_step.min(settings.initial_step / finer / 1e3),
+            ..settings
+        }
+    }
+}
+
+/// How finely cycles are resolved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Mesh {
+    /// Error estimate, relative to the amplitude, that no cycle exceeds; the mesh follows from it.
+    pub tolerance: f64,
+    /// Most mesh intervals.
+    pub intervals: u32,
+}
+
+impl Default for Mesh {
+    fn default() -> Self {
+        Self { tolerance: Resolution::default().tolerance, intervals: 2000 }
+    }
+}
+
+impl Mesh {
+    /// The resolution of the collocation.
+    pub fn resolution(&self) -> Resolution {
+        Resolution { most_intervals: self.intervals as usize, ..Resolution::with_tolerance(self.tolerance) }
+    }
+}

@@ -1,0 +1,74 @@
+//! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result.
+
+use crate::model_options::ParameterOptions;
+use arclength_analysis::cycles::CyclesRequest;
+use arclength_analysis::{Interval, PointReference, Values};
+use clap::Args;
+use kingpin_terminal::{Failure, MeshOptions, OutputOptions, Progress, StepOptions, requested_values};
+
+/// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
+///
+/// From a Hopf point (HB) the cycles that are born there are followed, from a period doubling (PD) the doubled ones, from a
+/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, and from the end (END) of a
+/// time history the cycle on which it has settled.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json"
+)]
+pub struct Cycles {
+    /// Labelled point of a file that `equilibria`, `cycles` or `simulate` wrote, with its model and parameters
+    #[arg(long, value_name = "FILE.json:LABEL")]
+    from: PointReference,
+
+    /// Parameter and its interval
+    #[arg(long, value_name = "KEY=A:B")]
+    along: Interval,
+
+    /// Values of the parameter at which cycles are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Follow the branch of the labelled cycle itself, not the one that bifurcates there
+    #[arg(long)]
+    stay: bool,
+
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
+    #[command(flatten)]
+    parameters: ParameterOptions,
+    #[command(flatten)]
+    steps: StepOptions,
+    #[command(flatten)]
+    mesh: MeshOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Cycles {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare()?.explain(self.explain);
+        let request = CyclesRequest {
+            from: self.from.clone(),
+            set: self.parameters.values()?,
+            along: self.along.clone(),
+            at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            stay: self.stay,
+            steps: self.steps.into(),
+            mesh: self.mesh.into(),
+        };
+        let analysis = request.validate()?;
+        output.warn_of(analysis.warnings());
+        let progress = Progress::spinner("cycles", output.is_quiet());
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let result = result?;
+        output.warn_of(&result.warnings());
+        output.deliver(&result)?;
+        interruption.check_branch()
+    }
+}

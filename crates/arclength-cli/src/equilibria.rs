@@ -1,0 +1,58 @@
+//! `arclength equilibria`: a branch of equilibria of a model, from its initial state or from a labelled point.
+
+use crate::model_options::ModelOptions;
+use arclength_analysis::equilibria::EquilibriaRequest;
+use arclength_analysis::{Interval, Values};
+use clap::Args;
+use kingpin_terminal::{Failure, OutputOptions, Progress, StepOptions, requested_values};
+
+/// Equilibria along a parameter, with folds, branch points and Hopf points
+///
+/// Starts at the equilibrium near the initial state of the model, or at a labelled point of an earlier result: from a
+/// branch point the other branch is followed, from any other point the branch through it.
+#[derive(Args, Debug)]
+#[command(after_help = "Example: arclength equilibria model.ode --along p=0:1 -o equilibria.json\n         \
+                        arclength equilibria --from equilibria.json:BP1 --along p=0:1 -o other.json")]
+pub struct Equilibria {
+    #[command(flatten)]
+    model: ModelOptions,
+
+    /// Parameter and its interval
+    #[arg(long, value_name = "KEY=A:B")]
+    along: Interval,
+
+    /// Values of the parameter at which equilibria are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
+    #[command(flatten)]
+    steps: StepOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Equilibria {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare()?.explain(self.explain);
+        let request = EquilibriaRequest {
+            model: self.model.request()?,
+            along: self.along.clone(),
+            at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            steps: self.steps.into(),
+        };
+        let analysis = request.validate()?;
+        output.warn_of(analysis.warnings());
+        let progress = Progress::spinner("equilibria", output.is_quiet());
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        output.deliver(&result?)?;
+        interruption.check_branch()
+    }
+}

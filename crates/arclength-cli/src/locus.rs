@@ -1,0 +1,65 @@
+//! `arclength locus`: a curve of special points in two parameters.
+
+use arclength_analysis::locus::LocusRequest;
+use arclength_analysis::{PointReference, Values};
+use clap::Args;
+use kingpin_terminal::{
+    Failure, MeshOptions, OutputOptions, PlaneOptions, Progress, StepOptions, requested_values,
+};
+
+/// The curve of special points in two parameters, with its points of codimension two
+///
+/// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus
+/// bifurcations (NS) of cycles.
+#[derive(Args, Debug)]
+#[command(
+    after_help = "Example: arclength locus --from equilibria.json:HB1 --in p=0:1,q=2:5 -o hopf.json -o hopf.svg"
+)]
+pub struct Locus {
+    /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS) wrote, with its model
+    #[arg(long, value_name = "FILE.json:LABEL")]
+    from: PointReference,
+
+    #[command(flatten)]
+    plane: PlaneOptions,
+
+    /// Values of the first parameter at which points are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
+    #[command(flatten)]
+    steps: StepOptions,
+    #[command(flatten)]
+    mesh: MeshOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Locus {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare()?.explain(self.explain);
+        let plane = self.plane.intervals()?;
+        let request = LocusRequest {
+            from: self.from.clone(),
+            at: requested_values(&self.at, &plane[0].key, str::eq_ignore_ascii_case)?,
+            plane,
+            steps: self.steps.into(),
+            mesh: self.mesh.into(),
+        };
+        let analysis = request.validate()?;
+        let progress = Progress::spinner("curve", output.is_quiet());
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let result = result?;
+        output.deliver(&result)?;
+        output.warn_of(&result.warnings());
+        interruption.check_branch()
+    }
+}

@@ -1,0 +1,227 @@
+//! A model of the gallery with the branches that were computed of it.
+
+use crate::gallery;
+use arclength::branch::SpecialKind;
+use arclength::continuation::Settings;
+use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Special};
+use arclength::equilibrium::{Equilibria, EquilibriumBranch, equilibrium_settings};
+use arclength::integration::{Integrator, autonomous};
+use arclength::locus::{
+    CodimensionTwoPoint, CycleLocus, CycleLocusBranch, EquilibriumLocus, EquilibriumLocusBranch,
+};
+use arclength_analysis::cycles::CyclesResult;
+use arclength_analysis::diagram::diagram;
+use arclength_analysis::equilibria::EquilibriaResult;
+use arclength_analysis::locus::{CycleLocusResult, EquilibriumLocusResult};
+use arclength_analysis::{ChosenModel, Interval, Origin, ResultFile, StoredModel};
+use arclength_ode::Model;
+use kingpin_figure::Figure;
+
+/// Steps so short that polygons look like curves.
+const FINE: f64 = 0.015;
+
+/// A model and what is known of it.
+pub struct Study {
+    pub chosen: ChosenModel,
+    branches: Vec<ResultFile>,
+    curves: Vec<ResultFile>,
+}
+
+impl Study {
+    /// Opens a model with some parameters set.
+    pub fn open(name: &str, set: &[(&str, f64)]) -> Self {
+        let source = std::fs::read_to_string(gallery().join(format!("models/{name}.ode"))).unwrap();
+        let model = Model::parse(&source).unwrap_or_else(|error| panic!("{name}: {}", error.snippet()));
+        assert!(model.warnings().is_empty(), "{:?}", model.warnings());
+        let stored = StoredModel { name: format!("{name}.ode"), source };
+        let mut chosen = ChosenModel::new(stored, model);
+        for (key, value) in set {
+            let index = chosen.model.parameter_index(key).expect("a parameter");
+            chosen.parameters[index] = *value;
+        }
+        chosen.start = chosen.model.initial_state(&chosen.parameters);
+        Self { chosen, branches: Vec::new(), curves: Vec::new() }
+    }
+
+    /// The same model with another parameter and nothing computed yet.
+    pub fn with(&self, key: &str, value: f64) -> Self {
+        let mut chosen = self.chosen.clone();
+        let index = chosen.model.parameter_index(key).expect("a parameter");
+        chosen.parameters[index] = value;
+        chosen.start = chosen.model.initial_state(&chosen.parameters);
+        Self { chosen, branches: Vec::new(), curves: Vec::new() }
+    }
+
+    /// With another initial state.
+    pub fn starting_at(mut self, state: &[f64]) -> Self {
+        self.chosen.start = state.to_vec();
+        self
+    }
+
+    fn keep(&mut self, along: &Interval, branch: &EquilibriumBranch) {
+        let report = EquilibriaResult::new(&self.chosen, along, Origin::initial_state(), branch);
+        self.branches.push(ResultFile::Equilibria(report));
+    }
+
+    /// Equilibria from the initial state.
+    pub fn equilibria(&mut self, along: &str) -> EquilibriumBranch {
+        let range: Interval = along.parse().unwrap();
+        let branch = Equilibria::of(&self.chosen.model)
+            .start(&self.chosen.start)
+            .parameters(&self.chosen.parameters)
+            .along(&range.key, range.start..=range.end)
+            .run()
+            .unwrap();
+        self.keep(&range, &branch);
+        branch
+    }
+
+    /// The other branch through a branch point.
+    pub fn other_branch(
+        &mut self,
+        branch: &EquilibriumBranch,
+        number: usize,
+        along: &str,
+    ) -> EquilibriumBranch {
+        let range: Interval = along.parse().unwrap();
+        let point = branch.branch_points().nth(number).expect("a branch point");
+        let branch = Equilibria::of(&self.chosen.model)
+            .from_branch_point(point)
+            .along(&range.key, range.start..=range.end)
+            .run()
+            .unwrap();
+        self.keep(&range, &branch);
+        branch
+    }
+
+    /// Cycles from a Hopf point of a branch.
+    pub fn cycles_from(
+        &mut self,
+        branch: &EquilibriumBranch,
+        hopf: usize,
+        along: &str,
+        at: &[f64],
+    ) -> CycleBranch {
+        let hopf = branch.hopf_points().nth(hopf).expect("a Hopf point");
+        self.cycles(CycleStart::from(hopf), &hopf.parameters, along, at)
+    }
+
+    /// Cycles from any start.
+    pub fn cycles(&mut self, start: CycleStart, parameters: &[f64], along: &str, at: &[f64]) -> CycleBranch {
+        let range: Interval = along.parse().unwrap();
+        let active = self.chosen.model.parameter_index(&range.key).expect("a parameter");
+        let branch = Cycles::of(&self.chosen.model, start)
+            .parameters(parameters)
+            .along(active, range.start..=range.end)
+            .at(at)
+            .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+            .run()
+            .unwrap();
+        let kept = CycleBranch {
+            parameter: branch.parameter.clone(),
+            points: branch.points.clone(),
+            stops: (None, arclength::continuation::Stop::Interrupted),
+            unlocated: Vec::new(),
+        };
+        let report = CyclesResult::new(&self.chosen, active, &range, Origin::initial_state(), kept);
+        self.branches.push(ResultFile::Cycles(report));
+        branch
+    }
+
+    /// The doubled cycles that leave at a period doubling.
+    pub fn doubled_from(&mut self, cycle: &CyclePoint, along: &str, at: &[f64]) -> CycleBranch {
+        let range: Interval = along.parse().unwrap();
+        let mut parameters = self.chosen.parameters.clone();
+        parameters[self.chosen.model.parameter_index(&range.key).expect("a parameter")] = cycle.value;
+        let branching = cycle.branching.clone().expect("a bifurcation");
+        assert!(branching.doubled);
+        self.cycles(CycleStart::Branching(branching), &parameters, along, at)
+    }
+
+    /// A curve of special cycles in two parameters, from one that was found along the first of them.
+    pub fn cycle_locus(
+        &mut self,
+        kind: SpecialKind,
+        cycle: &CyclePoint,
+        plane: [&str; 2],
+    ) -> CycleLocusBranch {
+        let [first, second] = plane.map(|range| range.parse::<Interval>().unwrap());
+        let mut parameters = self.chosen.parameters.clone();
+        parameters[self.chosen.model.parameter_index(&first.key).expect("a parameter")] = cycle.value;
+        let run = || {
+            CycleLocus::of(&self.chosen.model)
+                .from_cycle(kind, &cycle.orbit, &parameters)
+                .along(&first.key, first.start..=first.end)
+                .and(&second.key, second.start..=second.end)
+                .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+                .run()
+                .unwrap()
+        };
+        let branch = run();
+        let report = CycleLocusResult::new(&self.chosen, [&first, &second], Origin::initial_state(), run());
+        self.curves.push(ResultFile::CycleLocus(report));
+        branch
+    }
+
+    /// The cycle on which the motion settles from the initial state.
+    pub fn settled(&self, duration: f64, longest_period: f64) -> Orbit {
+        let (model, parameters) = (&self.chosen.model, &self.chosen.parameters);
+        let field = autonomous(model, parameters);
+        let end =
+            Integrator::with_tolerance(1e-10).integrate(field, 0.0, &self.chosen.start, duration).unwrap();
+        Orbit::from_time_history(model, parameters, &end.state, longest_period).unwrap()
+    }
+
+    /// A curve of special equilibria in two parameters.
+    pub fn locus(
+        &mut self,
+        start: impl FnOnce(EquilibriumLocus<'_>) -> EquilibriumLocus<'_>,
+        plane: [&str; 2],
+    ) -> EquilibriumLocusBranch {
+        let [first, second] = plane.map(|range| range.parse::<Interval>().unwrap());
+        let branch = start(EquilibriumLocus::of(&self.chosen.model))
+            .along(&first.key, first.start..=first.end)
+            .and(&second.key, second.start..=second.end)
+            .settings(Settings { largest_parameter_change: FINE, ..equilibrium_settings() })
+            .run()
+            .unwrap();
+        let report =
+            EquilibriumLocusResult::new(&self.chosen, [&first, &second], Origin::initial_state(), &branch);
+        self.curves.push(ResultFile::Locus(report));
+        branch
+    }
+
+    /// The bifurcation diagram of all branches.
+    pub fn diagram(&self) -> Figure {
+        diagram(&self.branches).expect("branches over one parameter")
+    }
+
+    /// The curves in the plane of two parameters.
+    pub fn plane(&self) -> Figure {
+        diagram(&self.curves).expect("curves in one plane")
+    }
+}
+
+/// The special cycles of a kind, in the order of the branch.
+pub fn special(branch: &CycleBranch, wanted: impl Fn(Special) -> bool) -> Vec<&CyclePoint> {
+    branch.special_points().filter(|(special, _)| wanted(*special)).map(|(_, point)| point).collect()
+}
+
+/// The cycle at a value that was asked for.
+pub fn at(branch: &CycleBranch, value: f64) -> &CyclePoint {
+    branch.points.iter().find(|point| point.value == value).expect("asked for")
+}
+
+/// The point of codimension two of a kind.
+pub fn codimension_two(
+    branch: &EquilibriumLocusBranch,
+    kind: SpecialKind,
+    number: usize,
+) -> &CodimensionTwoPoint {
+    branch.special_points().filter(|point| point.kind == kind).nth(number).expect("such a point")
+}
+
+/// A coefficient of a normal form by name.
+pub fn coefficient(point: &CodimensionTwoPoint, name: &str) -> f64 {
+    point.coefficients.iter().find(|(candidate, _)| candidate == name).expect("the coefficient").1
+}

@@ -1,0 +1,200 @@
+//! What a basin of attraction is asked for by, and how it is computed.
+
+use super::result::{BasinResult, Starts};
+use crate::classification::{Classification, NamedFate};
+use crate::error::Error;
+use crate::journal::Journal;
+use crate::parameters::parameters_of;
+use crate::wheel_request::WheelRequest;
+use arclength_analysis::{Control, SampledInterval};
+use kingpin::basin::{Axis, BasinMap, Destinations, Fate, Tile};
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Where motions end, depending on where they start: two states of the initial condition vary, the others are those of the
+/// uniform motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct BasinRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+    /// State across (u, q, psi, V, Omega).
+    pub x: SampledInterval,
+    /// State upwards.
+    pub y: SampledInterval,
+    /// So many random initial conditions in the rectangle in place of the grid.
+    pub samples: Option<u64>,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// How motions are followed.
+    #[serde(flatten)]
+    pub classification: Classification,
+}
+
+impl Default for BasinRequest {
+    fn default() -> Self {
+        Self {
+            wheel: WheelRequest::default(),
+            x: SampledInterval::new("psi", -1.0, 1.0, 81),
+            y: SampledInterval::new("Omega", -60.0, 60.0, 61),
+            samples: None,
+            seed: 1,
+            classification: Classification::default(),
+        }
+    }
+}
+
+/// A request that makes sense.
+#[derive(Debug)]
+pub struct BasinAnalysis {
+    axes: [Axis; 2],
+    counts: [usize; 2],
+    sample: Option<(usize, u64)>,
+    destinations: Destinations,
+    warnings: Vec<String>,
+    /// What the journal says that it belongs to.
+    computation: Value,
+}
+
+impl BasinRequest {
+    /// Most initial states.
+    pub const MOST_POINTS: usize = 10_000_000;
+
+    /// Reads the wheel and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel or a field; no uniform motion.
+    pub fn validate(&self) -> Result<BasinAnalysis, Error> {
+        let axes = self.axes()?;
+        let wheel = self.wheel.read()?;
+        let settings = self.classification.settings(&wheel)?;
+        let model = self.classification.model();
+        let destinations = Destinations::new(&wheel, model, settings)?;
+        let counts = [self.x.count, self.y.count];
+        let ends =
+            |axis: &SampledInterval| (axis.interval.key.clone(), axis.interval.start, axis.interval.end);
+        let computation = json!({
+            "program": env!("CARGO_PKG_VERSION"),
+            "command": "basin",
+            "parameters": parameters_of(&wheel, &[]),
+            "axes": [ends(&self.x), ends(&self.y)],
+            "counts": if self.samples.is_some() { None } else { Some(counts) },
+            "samples": self.samples.map(|count| (count, self.seed)),
+            "contact": model.name(),
+            "duration": settings.duration,
+        });
+        Ok(BasinAnalysis {
+            axes,
+            counts,
+            sample: self.samples.map(|count| (count as usize, self.seed)),
+            destinations,
+            warnings: self.classification.warnings(&wheel)?,
+            computation,
+        })
+    }
+
+    fn axes(&self) -> Result<[Axis; 2], Error> {
+        let axis =
+            |axis: &SampledInterval| Axis::new(&axis.interval.key, axis.interval.start, axis.interval.end);
+        let axes = [axis(&self.x)?, axis(&self.y)?];
+        if axes[0].name() == axes[1].name() {
+            return Err(Error::invalid(
+                &["x", "y"],
+                axes[0].name(),
+                "the same state on both axes",
+                "two different states",
+            ));
+        }
+        let points = self.x.count.checked_mul(self.y.count);
+        if self.samples.is_none() && points.is_none_or(|points| points > Self::MOST_POINTS) {
+            return Err(Error::invalid(
+                &["x", "y"],
+                format!("{} x {} points", self.x.count, self.y.count),
+                "too many",
+                format!("at most {} points in all", Self::MOST_POINTS),
+            ));
+        }
+        Ok(axes)
+    }
+}
+
+impl BasinAnalysis {
+    /// What is worth knowing before it runs.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The journal of the run beside a result file, where its finished parts are kept.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] and [`Error::Journal`].
+    pub fn journal(&self, result: Option<&Path>, resume: bool) -> Result<Journal<Vec<NamedFate>>, Error> {
+        Journal::open(result, &self.computation, resume)
+    }
+
+    /// Number of parts in which it runs.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`].
+    pub fn parts(&self) -> Result<usize, Error> {
+        Ok(self.map()?.tiles())
+    }
+
+    /// Follows every motion that the journal has not.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`], [`Error::Journal`], and [`Error::Interrupted`] where the control stops it.
+    pub fn run(
+        &self,
+        control: &Control<'_>,
+        journal: &Journal<Vec<NamedFate>>,
+    ) -> Result<BasinResult, Error> {
+        let map = self.map()?;
+        let fates = follow(&map, control, journal)?;
+        let starts = match self.sample {
+            None => Starts::grid(&self.axes, self.counts),
+            Some((_, seed)) => Starts::sample(&self.axes, map.initial_states(), seed),
+        };
+        Ok(BasinResult::new(self.destinations.clone(), &self.axes, starts, fates))
+    }
+
+    fn map(&self) -> Result<BasinMap<'_>, Error> {
+        Ok(match self.sample {
+            None => BasinMap::grid(&self.destinations, &self.axes, self.counts)?,
+            Some((count, seed)) => BasinMap::samples(&self.destinations, &self.axes, count, seed)?,
+        })
+    }
+}
+
+/// The fates of all starts, those of the finished tiles as they were kept.
+fn follow(
+    map: &BasinMap<'_>,
+    control: &Control<'_>,
+    journal: &Journal<Vec<NamedFate>>,
+) -> Result<Vec<Fate>, Error> {
+    let finished = journal.finished();
+    for (&index, fates) in finished {
+        if fates.len() != map.states_of(index).len() || fates.is_empty() {
+            return Err(Error::invalid(
+                &["resume"],
+                format!("part {index} of the journal"),
+                format!("{} fates", fates.len()),
+                "as many as the part has; delete the journal",
+            ));
+        }
+    }
+    let named = |fates: &[Fate]| fates.iter().copied().map(NamedFate).collect::<Vec<_>>();
+    let done = AtomicUsize::new(finished.len());
+    let keep = |tile: &Tile| {
+        journal.keep(tile.index, &named(&tile.fates), control.stop());
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        control.done(done as f64 / map.tiles() as f64);
+    };
+    let computed = map.run(control.stop(), |index| finished.contains_key(&index), keep)?;
+    let computed = computed.into_iter().map(|tile| (tile.index, named(&tile.fates)));
+    let all = journal.checked(computed, map.tiles())?;
+    Ok(all.into_iter().flatten().map(|fate| fate.0).collect())
+}

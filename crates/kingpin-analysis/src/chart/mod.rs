@@ -1,0 +1,7 @@
+//! Stability of the uniform motion over two parameters.
+
+mod request;
+mod result;
+
+pub use request::{ChartAnalysis, ChartRequest};
+pub use result::ChartResult;

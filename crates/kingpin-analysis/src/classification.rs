@@ -1,0 +1,117 @@
+//! How motions are followed and told apart: a part of every request that asks where they end.
+
+use crate::error::Error;
+use kingpin::basin::{ClassificationSettings, ContactModel, Fate};
+use kingpin::{KingpinError, Wheel};
+use kingpin_figure::{Color, palette};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Whether the wheel may slide.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Contact {
+    /// Ideal rolling, as in the paper and in `cycles`: the ground supplies whatever force that takes.
+    #[default]
+    Rolling,
+    /// Coulomb friction: the wheel slides where rolling takes more than the static friction.
+    Sliding,
+}
+
+impl Contact {
+    /// The model of the contact.
+    pub fn model(self) -> ContactModel {
+        match self {
+            Self::Rolling => ContactModel::Rolling,
+            Self::Sliding => ContactModel::Sliding,
+        }
+    }
+}
+
+/// How motions are followed.
+///
+/// Rolling is the default because there the uniform motion always exists: that of the paper's wheel takes more friction than
+/// there is, so that a wheel that may slide has nothing to return to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Classification {
+    /// Whether the wheel may slide.
+    pub contact: Contact,
+    /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled; 12 times the
+    /// decay time of small disturbances, 30 to 300, where it is not given.
+    pub duration: Option<f64>,
+}
+
+impl Classification {
+    /// The model of the contact.
+    pub fn model(&self) -> ContactModel {
+        self.contact.model()
+    }
+
+    /// The settings for a wheel.
+    ///
+    /// # Errors
+    /// No uniform motion, or a duration that is not positive.
+    pub fn settings(&self, wheel: &Wheel) -> Result<ClassificationSettings, Error> {
+        match self.duration {
+            Some(duration) if duration > 0.0 && duration.is_finite() => {
+                Ok(ClassificationSettings { duration })
+            }
+            Some(duration) => Err(Error::invalid(
+                &["duration"],
+                duration.to_string(),
+                "no time to follow a motion",
+                "positive and finite, in s",
+            )),
+            None => Ok(ClassificationSettings::for_wheel(wheel)?),
+        }
+    }
+
+    /// What ideal rolling passes over, and that nothing returns to the uniform motion.
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn warnings(&self, wheel: &Wheel) -> Result<Vec<String>, KingpinError> {
+        let motion = wheel.uniform_motion()?;
+        let mut warnings = Vec::new();
+        if self.contact == Contact::Rolling && !motion.rolls() {
+            warnings.push(
+                "rolling takes more than the static friction even in uniform motion; it is assumed to roll"
+                    .to_owned(),
+            );
+        }
+        if motion.growth_rate() > 0.0 && !motion.is_stable() {
+            warnings.push("the uniform motion is unstable: see `kingpin stability`".to_owned());
+        }
+        Ok(warnings)
+    }
+}
+
+/// A fate by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedFate(pub Fate);
+
+impl Serialize for NamedFate {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.0.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for NamedFate {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let fate = Fate::ALL.into_iter().find(|fate| fate.name() == name);
+        fate.map(Self).ok_or_else(|| D::Error::custom(format!("`{name}` is no fate")))
+    }
+}
+
+/// The colour of a fate, told apart with any colour vision.
+pub fn color(fate: Fate) -> Color {
+    match fate {
+        Fate::UniformMotion => palette::BLUE,
+        Fate::Shimmy => palette::YELLOW,
+        Fate::Tumbling => palette::VERMILION,
+        Fate::Escape => palette::BLACK,
+        Fate::Undecided => palette::LIGHT_GREY,
+    }
+}

@@ -1,0 +1,59 @@
+//! Branches of cycles as they are followed, each with what it starts from.
+
+use crate::along::as_followed;
+use crate::error::Error;
+use crate::hopf::search::label;
+use arclength::continuation::Stop;
+use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
+use std::ops::ControlFlow;
+
+/// Relative distance of parameter values within which two Hopf points are the same.
+const SAME_HOPF_POINT: f64 = 1e-6;
+
+/// A branch with the label of what it starts from.
+#[derive(Debug)]
+pub struct FollowedBranch {
+    /// The label of what it starts from, and what was done there.
+    pub origin: String,
+    /// The Hopf point that it starts from.
+    pub hopf: Option<HopfPoint>,
+    /// The Hopf point at which it ends.
+    pub reached: Option<(String, HopfPoint)>,
+    /// Its cycles.
+    pub cycles: WheelCycles,
+}
+
+/// The branches from Hopf points, or from one `only`, every branch once: one that ends at another of the Hopf points is not followed
+/// again from there.
+///
+/// # Errors
+/// [`Error::Wheel`].
+pub fn from_hopf_points(
+    points: &[HopfPoint],
+    only: Option<usize>,
+    along: Along,
+    options: &CycleOptions,
+    mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+) -> Result<Vec<FollowedBranch>, Error> {
+    let mut branches: Vec<FollowedBranch> = Vec::new();
+    for (index, hopf) in points.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index))
+    {
+        let origin = label(index);
+        if branches.iter().any(|branch| branch.reached.as_ref().is_some_and(|(label, _)| *label == origin)) {
+            continue;
+        }
+        let cycles = hopf.cycles(along, options, &mut observer)?;
+        let reached = points.iter().enumerate().find(|(_, other)| match cycles.stops.1 {
+            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, other.value), parameter),
+            _ => false,
+        });
+        let reached = reached.map(|(index, other)| (label(index), other.clone()));
+        branches.push(FollowedBranch { origin, hopf: Some(hopf.clone()), reached, cycles });
+    }
+    Ok(branches)
+}
+
+/// Whether two values of the parameter are those of one Hopf point.
+pub fn same_value(first: f64, second: f64) -> bool {
+    first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
+}

@@ -1,0 +1,11 @@
+//! Limit cycles from the Hopf points of an interval, or from a labelled point of an earlier result.
+
+mod followed;
+mod picture;
+mod point;
+mod request;
+mod result;
+
+pub use point::CyclePointResult;
+pub use request::{CyclesAnalysis, CyclesRequest};
+pub use result::{BranchResult, CyclesResult};

@@ -1,0 +1,194 @@
+//! What branches of limit cycles are asked for by, and how they are followed.
+
+use super::followed::{FollowedBranch, from_hopf_points, same_value};
+use super::result::CyclesResult;
+use crate::along::{along, as_followed};
+use crate::error::Error;
+use crate::hopf::search::search;
+use crate::parameters::wheel_of;
+use crate::start::LabelledPoint;
+use crate::wheel_request::WheelRequest;
+use arclength::cycle::{Branching, CycleStart, Orbit};
+use arclength_analysis::{Control, Interval, PointReference};
+use kingpin::branches::{Along, CycleOptions};
+use kingpin::{KingpinError, Wheel};
+use kingpin_report::numbers::readable;
+use serde::{Deserialize, Serialize};
+
+/// Results that a computation of cycles can start from.
+const SCHEMAS: [&str; 2] = ["kingpin.hopf", "kingpin.cycles"];
+
+/// Limit cycles along a parameter, from the Hopf points of the interval or from a labelled point of an earlier result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CyclesRequest {
+    /// Which wheel; with `from` the parameters that are set replace those of the point.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+    /// Parameter and its interval; r may reach infinity.
+    pub along: Interval,
+    /// Values of the parameter at which cycles are wanted exactly.
+    #[serde(default)]
+    pub at: Vec<f64>,
+    /// Labelled point of an earlier result, with its wheel.
+    #[serde(default)]
+    pub from: Option<PointReference>,
+    /// Whether at a period doubling or a branch point the branch of the point itself is followed, not the one that leaves
+    /// there.
+    #[serde(default)]
+    pub stay: bool,
+}
+
+/// A request that makes sense, with what it starts from.
+#[derive(Clone, Debug)]
+pub struct CyclesAnalysis {
+    wheel: Wheel,
+    along: Along,
+    start: Start,
+    options: CycleOptions,
+}
+
+/// What the branches start from.
+#[derive(Clone, Debug)]
+enum Start {
+    /// All Hopf points of the interval.
+    HopfPoints,
+    /// The Hopf point with this label, at the wheel's own value of the parameter.
+    HopfPoint { label: String },
+    /// A cycle, or the branch that leaves there.
+    Cycle { origin: String, start: CycleStart },
+}
+
+impl CyclesRequest {
+    /// A request for the paper's wheel with the default of everything else.
+    pub fn new(along: Interval) -> Self {
+        Self { wheel: WheelRequest::default(), along, at: Vec::new(), from: None, stay: false }
+    }
+
+    /// Reads the wheel or the labelled point and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel, the point or a field.
+    pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        let along = along(&self.along)?;
+        self.along.check_values(&self.at)?;
+        let (wheel, start) = match &self.from {
+            None => (self.wheel.read()?, Start::HopfPoints),
+            Some(reference) => self.start(reference, along)?,
+        };
+        let options = CycleOptions { at: self.at.clone(), ..CycleOptions::default() };
+        Ok(CyclesAnalysis { wheel, along, start, options })
+    }
+
+    /// What starts at a labelled point.
+    fn start(&self, reference: &PointReference, along: Along) -> Result<(Wheel, Start), Error> {
+        if let Some(file) = &self.wheel.wheel {
+            let given = file.display().to_string();
+            return Err(Error::invalid(&["wheel"], given, "the labelled point has a wheel", "wheel or from"));
+        }
+        let LabelledPoint { parameters, orbit, branching } = LabelledPoint::read(reference, &SCHEMAS)?;
+        let wheel = wheel_of(&parameters).map_err(|error| reference.failure(error.to_string()))?;
+        let wheel = self.wheel.change(wheel)?;
+        let value = wheel.get(along.key());
+        if !along.contains(value) {
+            let (start, end) = along.ends();
+            return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
+        }
+        let start = match orbit {
+            Some(orbit) => self.cycle(reference, along, &wheel, orbit, branching)?,
+            None => Start::HopfPoint { label: reference.label.clone() },
+        };
+        Ok((wheel, start))
+    }
+
+    fn cycle(
+        &self,
+        reference: &PointReference,
+        along: Along,
+        wheel: &Wheel,
+        orbit: Orbit,
+        branching: Option<(Branching, String)>,
+    ) -> Result<Start, Error> {
+        let label = &reference.label;
+        let states = wheel.free_states();
+        if orbit.dimension != states.len() {
+            let problem = format!(
+                "the orbit of {label} has {} states, this wheel {} ({}): leave k_u as it is in the file",
+                orbit.dimension,
+                states.len(),
+                states.join(", ")
+            );
+            return Err(reference.failure(problem).into());
+        }
+        reference.check(&orbit, states.len())?;
+        // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
+        let branching = branching
+            .filter(|(branching, key)| branching.doubled || *key == along.key().to_string())
+            .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(branching) });
+        let Some(branching) = branching else {
+            return Ok(Start::Cycle { origin: label.clone(), start: CycleStart::Orbit(orbit) });
+        };
+        branching.check(states.len()).map_err(|error| reference.failure(error.to_string()))?;
+        let how = match (branching.doubled, self.stay) {
+            (true, _) => "the doubled cycles",
+            (false, true) => "the branch on which it was found",
+            (false, false) => "the other branch through it",
+        };
+        Ok(Start::Cycle { origin: format!("{label}, {how}"), start: CycleStart::Branching(branching) })
+    }
+}
+
+impl CyclesAnalysis {
+    /// Finds the Hopf points where it starts from them, and follows the branches. Where the control stops it the result is what
+    /// there is up to there.
+    ///
+    /// # Errors
+    /// [`Error::NothingFound`] where there is no Hopf point to start from; [`Error::Wheel`].
+    pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
+        let along = self.along;
+        let mut found = 0;
+        let mut observer = |value: f64, period: f64| {
+            found += 1;
+            let (value, period) = (readable(value), readable(period));
+            control.at(&format!("{found} cycles, {} = {value}, period {period} s", along.key()));
+            control.flow()
+        };
+        let branches = match &self.start {
+            Start::Cycle { origin, start } => {
+                let (origin, start) = (origin.clone(), start.clone());
+                let cycles = self.wheel.cycles_from(start, along, &self.options, &mut observer)?;
+                vec![FollowedBranch { origin, hopf: None, reached: None, cycles }]
+            }
+            Start::HopfPoints => {
+                let points = search(&self.wheel, along)?.points;
+                from_hopf_points(&points, None, along, &self.options, &mut observer)?
+            }
+            Start::HopfPoint { label } => {
+                // The point of an earlier search is found again along the parameter that now varies, on the way from one end:
+                // a search that starts at the point itself would not see the growth rate change its sign.
+                let value = self.wheel.get(along.key());
+                let wheel = self.wheel.with(along.key(), along.ends().0)?;
+                let points = search(&wheel, along)?.points;
+                let place = points.iter().position(|point| same_value(point.value, value));
+                let only = place.ok_or_else(|| {
+                    Error::NothingFound(format!(
+                        "{label} is no Hopf point along {}: the wheel was changed, or the growth rate does not change its \
+                         sign there; without --from all Hopf points of the interval are found",
+                        along.key()
+                    ))
+                })?;
+                from_hopf_points(&points, Some(only), along, &self.options, &mut observer)?
+            }
+        };
+        CyclesResult::new(self.wheel, along, &branches, self.missed(&branches))
+    }
+
+    /// The values asked for at which there is no cycle.
+    fn missed(&self, branches: &[FollowedBranch]) -> Vec<f64> {
+        let on_branches = |value: f64| {
+            branches.iter().flat_map(|branch| &branch.cycles.points).any(|cycle| cycle.value == value)
+        };
+        // A radius that was asked for has gone through 1/r and back.
+        let followed = |value: f64| as_followed(&self.along, as_followed(&self.along, value));
+        self.options.at.iter().copied().filter(|value| !on_branches(followed(*value))).collect()
+    }
+}

@@ -1,0 +1,28 @@
+//! Wheels in words.
+
+use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
+
+/// Speed, caster length and radius, and every other parameter that is not the paper's; without those that vary.
+///
+/// ```
+/// use kingpin::{Key, Wheel};
+/// let wheel = Wheel::default().with(Key::CQ, 0.05)?;
+/// assert_eq!(kingpin_cli::description::of(&wheel, &[Key::V]), "l = 0.08 m, r = 1 m, c_q = 0.05 N s/m");
+/// # Ok::<(), kingpin::KingpinError>(())
+/// ```
+pub fn of(wheel: &Wheel, varying: &[Key]) -> String {
+    let always = [Key::V, Key::L, Key::TurningRadius];
+    let varies = |key: Key| varying.iter().any(|active| active.sets().contains(&key));
+    let worth_saying =
+        |&(key, value): &(Key, f64)| !varies(key) && (always.contains(&key) || value != key.default_value());
+    let texts: Vec<String> =
+        wheel.parameters().filter(worth_saying).map(|(key, value)| quantity(key, value)).collect();
+    texts.join(", ")
+}
+
+/// `v = 4 m/s`.
+pub fn quantity(key: Key, value: f64) -> String {
+    let unit = if key.unit() == "1" || value.is_infinite() { "" } else { key.unit() };
+    format!("{key} = {} {unit}", readable(value)).trim_end().to_owned()
+}

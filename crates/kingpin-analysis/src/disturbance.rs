@@ -1,0 +1,128 @@
+//! Which disturbance, and the edges of what the wheel returns from.
+
+use crate::classification::NamedFate;
+use crate::error::Error;
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, Fate, SafeKick};
+use kingpin::simulation::SimulationError;
+use kingpin::{Key, Wheel};
+use serde::{Deserialize, Serialize};
+
+/// Kinds of disturbances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DisturbanceKind {
+    /// A sideways blow in N s on the rim of the wheel, R ahead of its centre.
+    #[default]
+    Impulse,
+    /// The caster is released at an angle in rad from the uniform motion.
+    ReleaseAngle,
+    /// The towing speed rises at once by so many m/s to v.
+    Jolt,
+    /// From straight towing the path turns at once to a curvature in 1/m.
+    StepSteer,
+}
+
+/// Which disturbance, and how large at most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct DisturbanceRequest {
+    /// The kind.
+    pub kind: DisturbanceKind,
+    /// Largest magnitude that is tried; 1 N s, 1.5 rad, 0.9 v or 5 1/m where it is not given.
+    pub largest: Option<f64>,
+}
+
+/// An edge: the largest disturbance that returned and the smallest that did not.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Edge {
+    /// Largest magnitude that returned before the first that did not.
+    pub returns: f64,
+    /// Smallest magnitude that did not.
+    pub fails: f64,
+    /// Where that one ends; nothing where no uniform motion is left to return to.
+    pub fate: Option<NamedFate>,
+}
+
+impl Edge {
+    /// Whether it is unknown what becomes of the motions beyond: then this is no edge, but where the patience ends.
+    pub fn is_undecided(&self) -> bool {
+        !self.is_unstable() && self.fate.is_some_and(|fate| fate.0 == Fate::Undecided)
+    }
+
+    /// Whether nothing returns, since the uniform motion is unstable.
+    pub fn is_unstable(&self) -> bool {
+        self.fails == 0.0
+    }
+
+    /// Where the motion beyond the edge ends, in words.
+    pub fn ending(&self) -> &'static str {
+        self.fate.map_or("no rolling uniform motion", |fate| fate.0.name())
+    }
+}
+
+impl DisturbanceRequest {
+    /// The disturbance.
+    pub fn disturbance(&self) -> Disturbance {
+        match self.kind {
+            DisturbanceKind::Impulse => Disturbance::Impulse,
+            DisturbanceKind::ReleaseAngle => Disturbance::ReleaseAngle,
+            DisturbanceKind::Jolt => Disturbance::Jolt,
+            DisturbanceKind::StepSteer => Disturbance::StepSteer,
+        }
+    }
+
+    /// The largest magnitude.
+    pub fn largest(&self, wheel: &Wheel) -> f64 {
+        self.largest.unwrap_or(match self.kind {
+            DisturbanceKind::Impulse => 1.0,
+            DisturbanceKind::ReleaseAngle => 1.5,
+            DisturbanceKind::Jolt => 0.9 * wheel.get(Key::V),
+            DisturbanceKind::StepSteer => 5.0,
+        })
+    }
+
+    /// That the largest magnitude makes sense.
+    ///
+    /// # Errors
+    /// [`Error::Option`].
+    pub fn check(&self, wheel: &Wheel) -> Result<(), Error> {
+        let largest = self.largest(wheel);
+        let stands = self.kind == DisturbanceKind::Jolt && largest >= wheel.get(Key::V);
+        if largest > 0.0 && largest.is_finite() && !stands {
+            return Ok(());
+        }
+        let unit = self.disturbance().unit();
+        Err(Error::invalid(
+            &["largest"],
+            largest.to_string(),
+            if stands { "the wheel would stand before the jolt" } else { "no magnitude" }.to_owned(),
+            match self.kind {
+                DisturbanceKind::Jolt => format!("above 0 and below v = {} {unit}", wheel.get(Key::V)),
+                _ => format!("positive and finite, in {unit}"),
+            },
+        ))
+    }
+
+    /// The edges in the positive and in the negative direction, where there are any. A step of the curvature has one direction.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed.
+    pub fn edges(
+        &self,
+        wheel: &Wheel,
+        model: ContactModel,
+        settings: ClassificationSettings,
+    ) -> Result<[Option<Edge>; 2], SimulationError> {
+        let largest = self.largest(wheel);
+        let edge = |largest: f64| -> Result<Option<Edge>, SimulationError> {
+            let kick = SafeKick::find(wheel, model, settings, self.disturbance(), largest)?;
+            Ok(kick.map(|SafeKick { returns, fails, fate, .. }| Edge {
+                returns,
+                fails,
+                fate: fate.map(NamedFate),
+            }))
+        };
+        let negative = if self.kind == DisturbanceKind::StepSteer { None } else { edge(-largest)? };
+        Ok([edge(largest)?, negative])
+    }
+}

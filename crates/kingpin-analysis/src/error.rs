@@ -1,0 +1,153 @@
+//! Why an analysis of a wheel gives no result.
+
+use arclength::integration::IntegrationError;
+use arclength_analysis::{AnalysisError, Control, InvalidField};
+use kingpin::KingpinError;
+use kingpin::simulation::SimulationError;
+use kingpin_figure::FigureError;
+use kingpin_report::ReportError;
+use std::path::PathBuf;
+
+/// Why an analysis of a wheel gives no result.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A field of the request makes no sense.
+    #[error(transparent)]
+    Invalid(#[from] InvalidField),
+    /// A labelled point of an earlier result that cannot be used.
+    #[error(transparent)]
+    Start(#[from] arclength_analysis::Error),
+    /// The wheel is at fault, or has no such motion.
+    #[error(transparent)]
+    Wheel(#[from] KingpinError),
+    /// A parameter that is set.
+    #[error("set {given}: {source}")]
+    Set {
+        /// What was given.
+        given: String,
+        /// What is wrong with it.
+        source: KingpinError,
+    },
+    /// A simulation could not be run.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A periodic motion with sliding phases could not be found or followed.
+    #[error(transparent)]
+    Shimmy(#[from] kingpin::shimmy::ShimmyError),
+    /// A continuation failed.
+    #[error(transparent)]
+    Continuation(#[from] arclength::Error),
+    /// A motion that cannot be followed to its end.
+    #[error("the motion cannot be followed: {0}")]
+    Integration(#[from] IntegrationError),
+    /// Nothing was found where something was sought.
+    #[error("{0}")]
+    NothingFound(String),
+    /// Eigenvalues did not converge.
+    #[error(transparent)]
+    Eigenvalues(#[from] arclength::linear::eigenvalues::EigenvalueError),
+    /// A branch of cycles could not be followed to the ends of its interval.
+    #[error("the branch of cycles at {place} ends early: {reason}")]
+    BranchEnds {
+        /// Where.
+        place: String,
+        /// Why.
+        reason: String,
+    },
+    /// The picture could not be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// A file could not be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// The journal of a long run could not be used.
+    #[error("{}: the journal cannot be used: {source}", path.display())]
+    Journal {
+        /// The journal.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// The control stopped a run of many parts.
+    #[error("interrupted: {done} of {parts} parts are finished, {kept}")]
+    Interrupted {
+        /// Number of parts that are finished.
+        done: usize,
+        /// Number of all parts.
+        parts: usize,
+        /// Where they are kept.
+        kept: String,
+    },
+    /// The control stopped the run before there was a result.
+    #[error("interrupted before the result was complete")]
+    Stopped,
+}
+
+impl Error {
+    /// That a field of the request makes no sense.
+    pub fn invalid(
+        fields: &'static [&'static str],
+        given: impl Into<String>,
+        problem: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Self {
+        let (given, problem, allowed) = (given.into(), problem.into(), allowed.into());
+        InvalidField { fields, given, problem, allowed }.into()
+    }
+
+    /// That something that was sought was not found at a place.
+    pub(crate) fn not_found(what: &str, place: &str) -> Self {
+        Self::NothingFound(format!("no {what} was found at {place}"))
+    }
+}
+
+/// That the control has not stopped the run.
+///
+/// # Errors
+/// [`Error::Stopped`].
+pub(crate) fn unless_stopped(control: &Control<'_>) -> Result<(), Error> {
+    if control.is_stopped() { Err(Error::Stopped) } else { Ok(()) }
+}
+
+impl AnalysisError for Error {
+    fn is_bad_request(&self) -> bool {
+        match self {
+            Self::Wheel(error) | Self::Simulation(SimulationError::Wheel(error)) => is_bad_wheel(error),
+            Self::Simulation(
+                SimulationError::Integration(_) | SimulationError::UniformMotionSlides { .. },
+            ) => false,
+            Self::Continuation(error) => matches!(error, arclength::Error::Invalid { .. }),
+            Self::Start(error) => error.is_bad_request(),
+            Self::Report(error) => error.is_bad_request(),
+            Self::Invalid(_) | Self::Set { .. } | Self::Simulation(_) | Self::Journal { .. } => true,
+            Self::Shimmy(_)
+            | Self::Integration(_)
+            | Self::NothingFound(_)
+            | Self::Eigenvalues(_)
+            | Self::BranchEnds { .. }
+            | Self::Figure(_)
+            | Self::Interrupted { .. }
+            | Self::Stopped => false,
+        }
+    }
+
+    fn message(&self, name: &dyn Fn(&str) -> String) -> String {
+        match self {
+            Self::Invalid(field) => field.message(name),
+            Self::Set { given, source } => format!("{} {given}: {source}", name("set")),
+            Self::Start(error) => error.message(name),
+            Self::Report(error) => error.message(name),
+            other => other.to_string(),
+        }
+    }
+}
+
+fn is_bad_wheel(error: &KingpinError) -> bool {
+    match error {
+        KingpinError::NoUniformMotion { .. } | KingpinError::Cancelled | KingpinError::Continuation(_) => {
+            false
+        }
+        KingpinError::InFile { source, .. } => is_bad_wheel(source),
+        _ => true,
+    }
+}

@@ -1,0 +1,35 @@
+//! Analyses of towed wheels.
+//!
+//! As in [`arclength_analysis`], an analysis is asked for by a **request**, plain data in which every default stands; it is
+//! checked once, runs under a [`Control`](arclength_analysis::Control) and gives a **result**, plain data that implements
+//! [`Report`](kingpin_report::Report). Nothing here knows options or a terminal.
+
+mod along;
+pub mod axis;
+mod axis_label;
+pub mod basin;
+pub mod chart;
+mod classification;
+pub mod cycles;
+mod description;
+mod disturbance;
+mod error;
+pub mod hopf;
+mod journal;
+pub mod margin;
+pub mod paper;
+mod parameters;
+pub mod safe_kick;
+pub mod simulate;
+pub mod stability;
+mod start;
+mod states;
+pub mod steady;
+pub mod studies;
+mod wheel_request;
+
+pub use classification::{Classification, Contact, NamedFate};
+pub use disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
+pub use error::Error;
+pub use journal::Journal;
+pub use wheel_request::WheelRequest;

@@ -1,0 +1,163 @@
+//! What safe disturbances along a parameter are asked for by, and how they are found.
+
+use super::found::Found;
+use super::result::MarginResult;
+use super::unstable_cycles::unstable_cycles;
+use crate::along::along;
+use crate::classification::Classification;
+use crate::disturbance::DisturbanceRequest;
+use crate::error::Error;
+use crate::journal::Journal;
+use crate::parameters::parameters_of;
+use crate::wheel_request::WheelRequest;
+use arclength_analysis::{Control, SampledInterval};
+use kingpin::Wheel;
+use kingpin::branches::Along;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Most values of the parameter.
+const MOST_POINTS: usize = 10_000;
+
+/// Safe disturbances along a parameter, beside the amplitude of the unstable limit cycle.
+///
+/// At each value the smallest disturbance that does not return is found as by `safe-kick`, in both directions. The paper takes
+/// the amplitude of the unstable cycle for the size of the basin; the ratio of the two tells how good an indicator it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MarginRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+    /// Parameter and its values.
+    pub along: SampledInterval,
+    /// Which disturbance.
+    #[serde(flatten)]
+    pub disturbance: DisturbanceRequest,
+    /// How motions are followed.
+    #[serde(flatten)]
+    pub classification: Classification,
+}
+
+impl Default for MarginRequest {
+    fn default() -> Self {
+        Self {
+            wheel: WheelRequest::default(),
+            along: SampledInterval::new("v", 1.0, 8.0, 15),
+            disturbance: DisturbanceRequest::default(),
+            classification: Classification::default(),
+        }
+    }
+}
+
+/// A request that makes sense, with its wheel.
+#[derive(Clone, Debug)]
+pub struct MarginAnalysis {
+    wheel: Wheel,
+    along: Along,
+    values: Vec<f64>,
+    disturbance: DisturbanceRequest,
+    classification: Classification,
+    /// What the journal says that it belongs to.
+    computation: Value,
+}
+
+impl MarginRequest {
+    /// Reads the wheel and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel or a field.
+    pub fn validate(&self) -> Result<MarginAnalysis, Error> {
+        let along = along(&self.along.interval)?;
+        let (key, count) = (along.key(), self.along.count);
+        if !(2..=MOST_POINTS).contains(&count) || self.along.interval.end.is_infinite() {
+            return Err(Error::invalid(
+                &["along"],
+                format!("{count} values up to {}", self.along.interval.end),
+                "too many, or infinite",
+                format!("at most {MOST_POINTS} finite values; `curvature` goes to 0 where r goes to inf"),
+            ));
+        }
+        let (start, end) = along.ends();
+        let wheel = self.wheel.read()?;
+        self.disturbance.check(&wheel.with(key, end)?)?;
+        if self.classification.duration.is_some() {
+            // A duration that makes no sense is refused before anything is computed.
+            self.classification.settings(&wheel.with(key, start)?)?;
+        }
+        let computation = json!({
+            "program": env!("CARGO_PKG_VERSION"),
+            "command": "margin",
+            "parameters": parameters_of(&wheel, &[key]),
+            "along": (key.name(), start, end, count),
+            "kind": self.disturbance.disturbance().name(),
+            "largest": self.disturbance.largest,
+            "contact": self.classification.model().name(),
+            "duration": self.classification.duration,
+        });
+        Ok(MarginAnalysis {
+            wheel,
+            along,
+            values: (0..count)
+                .map(|index| start + (end - start) * (index as f64 / (count - 1) as f64))
+                .collect(),
+            disturbance: self.disturbance,
+            classification: self.classification,
+            computation,
+        })
+    }
+}
+
+impl MarginAnalysis {
+    /// The journal of the run beside a result file, where its finished parts are kept.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] and [`Error::Journal`].
+    pub fn journal(&self, result: Option<&Path>, resume: bool) -> Result<Journal<Found>, Error> {
+        Journal::open(result, &self.computation, resume)
+    }
+
+    /// Number of parts in which it runs: the values of the parameter.
+    pub fn parts(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Seeks the edges at every value that the journal has not, and the unstable limit cycles.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed, [`Error::Journal`], and [`Error::Interrupted`] where the control stops it.
+    pub fn run(&self, control: &Control<'_>, journal: &Journal<Found>) -> Result<MarginResult, Error> {
+        let finished = journal.finished();
+        let done = AtomicUsize::new(finished.len());
+        let seek = |index: usize| {
+            let wheel = self.wheel.with(self.along.key(), self.values[index])?;
+            let found = Found::seek(&wheel, &self.disturbance, &self.classification)?;
+            journal.keep(index, &found, control.stop());
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            control.done(done as f64 / self.values.len() as f64);
+            Ok((index, found))
+        };
+        let computed: Vec<(usize, Found)> = (0..self.values.len())
+            .into_par_iter()
+            .filter(|index| !finished.contains_key(index) && !control.is_stopped())
+            .map(seek)
+            .collect::<Result<_, Error>>()?;
+        let found = journal.checked(computed, self.values.len())?;
+        let cycles = unstable_cycles(&self.wheel, self.along, &self.values, control)?;
+        if control.is_stopped() {
+            return Err(journal.interrupted(self.values.len(), self.values.len()));
+        }
+        Ok(MarginResult::new(
+            self.wheel,
+            self.along,
+            self.disturbance.disturbance(),
+            self.classification.model(),
+            self.values.clone(),
+            found,
+            cycles,
+        ))
+    }
+}

@@ -1,0 +1,56 @@
+//! The statements of the paper's text, each beside what was computed.
+//!
+//! A statement is paraphrased by hand; its verdict and the evidence are computed in the run. The statements are those
+//! about the equations, the uniform motion and its stability, the contact force, and the limit cycles.
+
+mod claim;
+mod contact;
+mod cycles;
+mod equations;
+mod linear;
+mod random;
+
+pub use claim::{Claim, Verdict};
+
+use super::branches::Branches;
+use super::rolling_limit::RollingLimits;
+use super::stability_chart::StabilityChart;
+use super::tasks::Tasks;
+use super::uniform_motion::UniformMotions;
+use crate::error::Error;
+use rayon::prelude::*;
+
+/// What the figures have computed already.
+pub(super) struct Computed<'a> {
+    pub motions: &'a UniformMotions,
+    pub chart: &'a StabilityChart,
+    pub limits: &'a RollingLimits,
+    pub branches: &'a Branches,
+}
+
+/// All statements in the order of the paper.
+pub(super) fn all(computed: &Computed, tasks: &Tasks<'_>) -> Result<Vec<Claim>, Error> {
+    type Group<'a> = Box<dyn Fn() -> Result<Vec<Claim>, Error> + Sync + 'a>;
+    let groups: [Group; GROUPS] = [
+        Box::new(equations::claims),
+        Box::new(|| linear::of_the_uniform_motion(computed.motions)),
+        Box::new(|| linear::of_its_stability(computed.chart)),
+        Box::new(|| contact::claims(computed.limits)),
+        Box::new(cycles::of_the_hopf_points),
+        Box::new(|| cycles::of_the_basin(computed.branches)),
+        Box::new(|| cycles::of_the_radius(computed.branches)),
+    ];
+    let found: Vec<Vec<Claim>> = groups
+        .par_iter()
+        .with_max_len(1)
+        .map(|group| {
+            let claims = group()?;
+            tasks.step()?;
+            Ok(claims)
+        })
+        .collect::<Result<_, Error>>()?;
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// Groups of statements that are computed side by side.
+pub(super) const GROUPS: usize = 7;

@@ -1,0 +1,132 @@
+//! Figure 5: bifurcation diagrams standing on the stability chart.
+
+use super::branches::{Branch, Branches, FIGURE_5_RADIUS};
+use super::data::{Cell, Data};
+use super::drawing::Drawing;
+use super::stability_chart::{Boundary, LENGTHS, boundary, stable_side};
+use crate::error::Error;
+use kingpin_figure::{
+    Axis, Branch as Curve, Dash, Figure, LegendEntry, Line, Marker, Panel3d, PointLabel, Projection, Region,
+    Stability, Wall, palette,
+};
+
+/// Largest speed of the figure in m/s.
+const FASTEST: f64 = 10.0;
+/// Largest caster length of the figure in m.
+const LONGEST: f64 = 0.2;
+/// Speeds at which a uniform motion is drawn.
+const SPEEDS: usize = 200;
+
+pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
+    let Boundary { points, .. } = boundary(FIGURE_5_RADIUS)?;
+    let shade = palette::SKY_BLUE.lightened(0.6);
+    let visible: Vec<[f64; 2]> = points.into_iter().filter(|[_, length]| *length <= LONGEST).collect();
+    let mut panel = Panel3d::new(
+        Axis::new("$v$ (m/s)").limits(0.0, FASTEST),
+        Axis::new("$l$ (m)").limits(LENGTHS[0], LONGEST),
+        Axis::new("$\\psi$ (rad)").limits(-1.0, 1.0),
+    )
+    .projection(Projection::axonometric(-24.0, 38.0).perspective(5.0).proportions(1.3, 1.7, 0.36))
+    .ground_region(Region::new(stable_side(&visible)).fill(shade))
+    .ground_curve(Line::new(visible.iter().copied().map(<(f64, f64)>::from)).color(palette::BLUE))
+    .legend_entry(LegendEntry::line("stable", palette::GREEN, Dash::Solid))
+    .legend_entry(LegendEntry::line("unstable", palette::VERMILION, Dash::Dashed))
+    .legend_entry(LegendEntry::patch("linearly stable at $r=1$ m", shade));
+    let mut data = Data::new(&[
+        ("solution", ""),
+        ("l", "m"),
+        ("v", "m/s"),
+        ("psi_max", "rad"),
+        ("psi_min", "rad"),
+        ("period", "s"),
+        ("stability", ""),
+    ]);
+    for branch in branches.of_figure_5() {
+        panel = panel.wall(wall(branch, &mut data)?);
+    }
+    for [speed, length] in visible {
+        let nothing = || Cell::Empty;
+        data.push([
+            "stability boundary".into(),
+            length.into(),
+            speed.into(),
+            nothing(),
+            nothing(),
+            nothing(),
+            nothing(),
+        ]);
+    }
+    let figure = Figure::double_column()
+        .height_mm(105.0)
+        .description("Bifurcation diagrams at several caster lengths, standing on the linear stability chart")
+        .panel(panel);
+    let caption = format!(
+        "Largest and smallest caster angle against the towing speed at <i>r</i> = {FIGURE_5_RADIUS} m for several caster \
+         lengths, standing on the stability chart. Solid green: stable; dashed red: unstable. The cycles are born at the \
+         Hopf points (dots, above the boundary of the chart) towards lower speeds."
+    );
+    Ok(Drawing { number: 5, figure, data, caption })
+}
+
+/// The diagram at one caster length.
+fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
+    let mut wall = Wall::at(branch.caster_length);
+    let hopf = branch.hopf.iter().map(|hopf| hopf.value);
+    let mut speeds: Vec<f64> = (1..=SPEEDS).map(|index| FASTEST * index as f64 / SPEEDS as f64).collect();
+    speeds.extend(hopf.clone());
+    speeds.sort_by(f64::total_cmp);
+    let mut uniform = Vec::with_capacity(speeds.len());
+    for speed in speeds {
+        let motion = branch.wheel(speed)?.uniform_motion()?;
+        let changes = hopf.clone().any(|critical| critical == speed);
+        let stability = if changes { Stability::Changes } else { Stability::from(motion.is_stable()) };
+        uniform.push(((speed, motion.psi()), stability));
+        data.push([
+            "uniform motion".into(),
+            branch.caster_length.into(),
+            speed.into(),
+            motion.psi().into(),
+            motion.psi().into(),
+            Cell::Empty,
+            if changes { "Hopf point" } else { stability_word(Some(motion.is_stable())) }.into(),
+        ]);
+    }
+    wall = wall.curve(Curve::new(uniform).color(palette::GREEN).unstable_color(palette::VERMILION));
+    let stability: Vec<Stability> =
+        std::iter::repeat_n(Stability::Changes, usize::from(branch.hopf.is_some()))
+            .chain(branch.cycles.iter().map(|cycle| Stability::from(cycle.stable == Some(true))))
+            .collect();
+    for largest in [true, false] {
+        let curve = branch
+            .extremes()
+            .zip(&stability)
+            .map(|((speed, max, min), stability)| ((speed, if largest { max } else { min }), *stability));
+        wall = wall.curve(Curve::new(curve).color(palette::GREEN).unstable_color(palette::VERMILION));
+    }
+    for cycle in &branch.cycles {
+        data.push([
+            "limit cycle".into(),
+            branch.caster_length.into(),
+            cycle.value.into(),
+            cycle.max[2].into(),
+            cycle.min[2].into(),
+            cycle.period.into(),
+            stability_word(cycle.stable).into(),
+        ]);
+    }
+    if let Some(hopf) = &branch.hopf {
+        let at = (hopf.value, hopf.state[2]);
+        let marker = Marker::default().size(3.0);
+        wall = wall.point(PointLabel::new(at, "").marker(marker)).plumb_line(at.0, at.1);
+    }
+    Ok(wall)
+}
+
+/// Stability as it stands in the data.
+pub(super) fn stability_word(stable: Option<bool>) -> &'static str {
+    match stable {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "undecided",
+    }
+}

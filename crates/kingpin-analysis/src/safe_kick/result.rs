@@ -1,0 +1,236 @@
+//! The edges of what the wheel returns from as a result, with the motions on both sides of the nearer one.
+
+use crate::description;
+use crate::disturbance::Edge;
+use crate::parameters::parameters_of;
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion};
+use kingpin::{Key, Wheel};
+use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
+use kingpin_report::history::drawn;
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use serde::Serialize;
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+/// A motion after a disturbance.
+#[derive(Debug, Serialize)]
+struct Motion {
+    magnitude: f64,
+    t: Vec<f64>,
+    u: Vec<f64>,
+    q: Vec<f64>,
+    psi: Vec<f64>,
+    #[serde(rename = "V")]
+    forward_speed: Vec<f64>,
+    #[serde(rename = "Omega")]
+    yaw_rate: Vec<f64>,
+    /// Lateral speed of the wheel centre and speed of the rim, where the wheel may slide.
+    #[serde(rename = "V2", skip_serializing_if = "Option::is_none")]
+    lateral_speed: Option<Vec<f64>>,
+    #[serde(rename = "W", skip_serializing_if = "Option::is_none")]
+    rim_speed: Option<Vec<f64>>,
+    /// Speed of the contact point over the ground.
+    slip: Vec<f64>,
+}
+
+impl Motion {
+    fn new(magnitude: f64, motion: DisturbedMotion, model: ContactModel) -> Self {
+        let state = |index: usize| motion.states.iter().map(|state| state[index]).collect();
+        let slides = model == ContactModel::Sliding;
+        Self {
+            magnitude,
+            u: state(0),
+            q: state(1),
+            psi: state(2),
+            forward_speed: state(3),
+            yaw_rate: state(5),
+            lateral_speed: slides.then(|| state(4)),
+            rim_speed: slides.then(|| state(6)),
+            slip: motion.states.iter().map(|state| (state[3] - state[6]).hypot(state[4])).collect(),
+            t: motion.times,
+        }
+    }
+}
+
+/// The edges in both directions.
+#[derive(Debug, Serialize)]
+pub struct SafeKickResult {
+    #[serde(skip)]
+    wheel: Wheel,
+    kind: &'static str,
+    unit: &'static str,
+    contact: &'static str,
+    duration: f64,
+    largest: f64,
+    positive: Option<Edge>,
+    negative: Option<Edge>,
+    /// The largest disturbance that returned, in the direction in which fewer do; nothing where it is undecided what lies
+    /// beyond.
+    safe: Option<f64>,
+    returns: Option<Motion>,
+    fails: Option<Motion>,
+}
+
+impl SafeKickResult {
+    /// The result of the edges in the positive and in the negative direction, and the motions at the nearer one.
+    pub(super) fn new(
+        wheel: Wheel,
+        kind: Disturbance,
+        model: ContactModel,
+        settings: ClassificationSettings,
+        largest: f64,
+        [positive, negative]: [Option<Edge>; 2],
+        motions: Option<[DisturbedMotion; 2]>,
+    ) -> Self {
+        let edges = [positive, negative];
+        let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
+        let (returns, fails) = match (smallest, motions) {
+            (Some(edge), Some([returns, fails])) => {
+                (Some(Motion::new(edge.returns, returns, model)), Some(Motion::new(edge.fails, fails, model)))
+            }
+            _ => (None, None),
+        };
+        Self {
+            wheel,
+            kind: kind.name(),
+            unit: kind.unit(),
+            contact: model.name(),
+            duration: settings.duration,
+            largest,
+            positive,
+            negative,
+            safe: smallest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns),
+            returns,
+            fails,
+        }
+    }
+
+    /// Keys that the disturbance replaces.
+    fn replaced(&self) -> &'static [Key] {
+        if self.kind == Disturbance::StepSteer.name() { &[Key::TurningRadius] } else { &[] }
+    }
+
+    fn description(&self) -> String {
+        let how = if self.contact == "rolling" { "ideal rolling" } else { "rolling and sliding" };
+        format!("{how} at {}", description::of(&self.wheel, self.replaced()))
+    }
+}
+
+impl Report for SafeKickResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.safe-kick")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, self.replaced())
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (kind, unit) = (self.kind, self.unit);
+        writeln!(out, "{}", self.description())?;
+        writeln!(
+            out,
+            "{kind} up to {} {unit}, motions followed for {} s at most\n",
+            readable(self.largest),
+            readable(self.duration)
+        )?;
+        let headings = [
+            "direction".to_owned(),
+            format!("returns ({unit})"),
+            format!("does not ({unit})"),
+            "ends in".to_owned(),
+        ];
+        let mut table = Table::new(headings);
+        let both = self.kind != Disturbance::StepSteer.name();
+        for (direction, edge) in
+            [("positive", self.positive), ("negative", self.negative)].into_iter().take(1 + usize::from(both))
+        {
+            match edge {
+                Some(edge) => table.row([
+                    direction.into(),
+                    edge.returns.into(),
+                    if edge.is_undecided() { "undecided".into() } else { edge.fails.into() },
+                    edge.ending().into(),
+                ]),
+                None => table.row([
+                    direction.into(),
+                    None::<f64>.into(),
+                    None::<f64>.into(),
+                    "all that were tried return".into(),
+                ]),
+            }
+        }
+        table.write(out)?;
+        if [self.positive, self.negative].into_iter().flatten().any(|edge| edge.is_undecided()) {
+            writeln!(
+                out,
+                "\nundecided: beyond what returned the motion neither returns nor settles in ten times {} s; a longer \
+                 --duration may tell",
+                readable(self.duration)
+            )?;
+        }
+        if self.kind == Disturbance::StepSteer.name()
+            && let Some(safe) = self.safe.filter(|safe| *safe > 0.0)
+        {
+            writeln!(out, "\nsmallest radius from which it returned: {} m", readable(safe.recip()))?;
+        }
+        Ok(())
+    }
+
+    fn columns(&self) -> Columns {
+        let motions: Vec<(&str, &Motion)> = [("returns", &self.returns), ("fails", &self.fails)]
+            .into_iter()
+            .filter_map(|(side, motion)| motion.as_ref().map(|motion| (side, motion)))
+            .collect();
+        let numbers = |values: fn(&Motion) -> &Vec<f64>| -> Vec<f64> {
+            motions.iter().flat_map(|(_, motion)| values(motion).iter().copied()).collect()
+        };
+        let sides =
+            motions.iter().flat_map(|(side, motion)| motion.t.iter().map(|_| Some((*side).to_owned())));
+        let magnitudes = motions.iter().flat_map(|(_, motion)| motion.t.iter().map(|_| motion.magnitude));
+        let optional = |columns: Columns, name: &str, values: fn(&Motion) -> &Option<Vec<f64>>| {
+            let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
+            let values: Vec<f64> = present.flatten().copied().collect();
+            if values.is_empty() { columns } else { columns.numbers(name, values) }
+        };
+        let columns = Columns::new()
+            .texts("side", sides)
+            .numbers("magnitude", magnitudes)
+            .numbers("t", numbers(|motion| &motion.t))
+            .numbers("u", numbers(|motion| &motion.u))
+            .numbers("q", numbers(|motion| &motion.q))
+            .numbers("psi", numbers(|motion| &motion.psi))
+            .numbers("V", numbers(|motion| &motion.forward_speed))
+            .numbers("Omega", numbers(|motion| &motion.yaw_rate));
+        let columns = optional(columns, "V2", |motion| &motion.lateral_speed);
+        let columns = optional(columns, "W", |motion| &motion.rim_speed);
+        columns.numbers("slip", numbers(|motion| &motion.slip))
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let (Some(returns), Some(fails)) = (&self.returns, &self.fails) else { return Ok(None) };
+        let end = returns.t.last().copied().unwrap_or(0.0).max(fails.t.last().copied().unwrap_or(0.0));
+        let reach = fails.psi.iter().chain(&returns.psi).fold(0.0_f64, |reach, angle| reach.max(angle.abs()));
+        let reach = (1.1 * reach).min(PI);
+        let mut panel = Panel::new(
+            Axis::new("$t$ (s)").limits(0.0, end),
+            Axis::new("$\\psi$ (rad)").limits(-reach, reach),
+        )
+        .legend(Legend::Below);
+        let text =
+            |motion: &Motion, how: &str| format!("{} {}: {how}", readable(motion.magnitude), self.unit);
+        for (motion, how, color) in
+            [(fails, "does not return", palette::VERMILION), (returns, "returns", palette::BLUE)]
+        {
+            let line = Line::new(drawn(&motion.t, &motion.psi)).color(color).width(0.6);
+            panel = panel.curve(line.legend(text(motion, how)));
+        }
+        let description = format!(
+            "Caster angle over time after the largest {} that returns and the smallest that does not: {}",
+            self.kind,
+            self.description()
+        );
+        Ok(Some(Figure::single_column().description(description).panel(panel)))
+    }
+}

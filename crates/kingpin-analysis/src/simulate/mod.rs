@@ -1,0 +1,11 @@
+//! A time history from the uniform motion with some states perturbed.
+
+mod request;
+mod result;
+mod rolling_result;
+mod sliding_result;
+
+pub use request::{SimulateAnalysis, SimulateRequest};
+pub use result::HistoryResult;
+pub use rolling_result::RollingHistory;
+pub use sliding_result::SlidingHistoryResult;

@@ -1,0 +1,103 @@
+//! What a time history is asked for by, and how it is computed.
+
+use super::result::HistoryResult;
+use super::rolling_result::RollingHistory;
+use super::sliding_result::SlidingHistoryResult;
+use crate::classification::Contact;
+use crate::error::Error;
+use crate::wheel_request::WheelRequest;
+use kingpin::Wheel;
+use kingpin_report::NamedNumbers;
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+/// A time history from the perturbed uniform motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SimulateRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+    /// Time in s.
+    pub duration: f64,
+    /// Changes of states (u, q, psi, V, Omega; with k_u = inf q, psi, Omega) at the start.
+    #[serde(default)]
+    pub perturb: NamedNumbers,
+    /// Number of samples, at equal distances from 0 to the end.
+    #[serde(default = "SimulateRequest::default_points")]
+    pub points: u64,
+    /// Whether the wheel may slide; then the states are u, q, psi, V1, V2, Omega, W, and V changes V1 and W.
+    #[serde(default)]
+    pub contact: Contact,
+}
+
+/// A request that makes sense, with its wheel.
+#[derive(Clone, Debug)]
+pub struct SimulateAnalysis {
+    wheel: Wheel,
+    duration: f64,
+    perturb: NamedNumbers,
+    points: usize,
+    contact: Contact,
+}
+
+impl SimulateRequest {
+    /// Numbers of samples that are allowed.
+    pub const POINTS: RangeInclusive<u64> = 2..=1_000_000;
+
+    /// Number of samples where none was given.
+    pub const fn default_points() -> u64 {
+        1001
+    }
+
+    /// A request for the paper's wheel with the default of everything else.
+    pub fn new(duration: f64) -> Self {
+        Self {
+            wheel: WheelRequest::default(),
+            duration,
+            perturb: NamedNumbers::default(),
+            points: Self::default_points(),
+            contact: Contact::default(),
+        }
+    }
+
+    /// Reads the wheel and checks the number of samples; the rest is checked by the simulation.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel; too few or too many samples.
+    pub fn validate(&self) -> Result<SimulateAnalysis, Error> {
+        if !Self::POINTS.contains(&self.points) {
+            let allowed = format!("{} to {}", Self::POINTS.start(), Self::POINTS.end());
+            return Err(Error::invalid(&["points"], self.points.to_string(), "too few or too many", allowed));
+        }
+        Ok(SimulateAnalysis {
+            wheel: self.wheel.read()?,
+            duration: self.duration,
+            perturb: self.perturb.clone(),
+            points: self.points as usize,
+            contact: self.contact,
+        })
+    }
+}
+
+impl SimulateAnalysis {
+    /// Computes the motion.
+    ///
+    /// # Errors
+    /// [`Error::Simulation`]: a duration that is none, an unknown state, no uniform motion, a motion that cannot be followed.
+    pub fn run(&self) -> Result<HistoryResult, Error> {
+        let perturbations: Vec<(&str, f64)> =
+            self.perturb.0.iter().map(|(name, change)| (name.as_str(), *change)).collect();
+        let wheel = self.wheel;
+        match self.contact {
+            Contact::Sliding => {
+                let start = wheel.perturbed_sliding_motion(&perturbations)?;
+                let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points)?;
+                Ok(HistoryResult::Sliding(SlidingHistoryResult::new(wheel, history)))
+            }
+            Contact::Rolling => {
+                let history = wheel.simulate(self.duration, &perturbations, self.points)?;
+                Ok(HistoryResult::Rolling(RollingHistory::new(wheel, &history)))
+            }
+        }
+    }
+}

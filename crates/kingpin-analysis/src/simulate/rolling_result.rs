@@ -1,0 +1,153 @@
+//! Time histories of a wheel that rolls as a result.
+
+use crate::description;
+use crate::parameters::parameters_of;
+use kingpin::rolling::STATE_NAMES;
+use kingpin::simulation::TimeHistory;
+use kingpin::{Key, Wheel};
+use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
+use kingpin_report::history::{drawn, extremes, summary};
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// A time history: a list of the times, one per state, and two of forces.
+#[derive(Debug, Serialize)]
+pub struct RollingHistory {
+    #[serde(skip)]
+    wheel: Wheel,
+    rolling_lost_at: Option<f64>,
+    t: Vec<f64>,
+    u: Vec<f64>,
+    q: Vec<f64>,
+    psi: Vec<f64>,
+    #[serde(rename = "V")]
+    forward_speed: Vec<f64>,
+    #[serde(rename = "Omega")]
+    yaw_rate: Vec<f64>,
+    friction_force: Vec<f64>,
+    normal_force: Vec<f64>,
+}
+
+impl RollingHistory {
+    /// The result of a motion.
+    pub(super) fn new(wheel: Wheel, history: &TimeHistory) -> Self {
+        let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
+        Self {
+            wheel,
+            rolling_lost_at: history.rolling_lost_at,
+            t: history.times.clone(),
+            u: state(0),
+            q: state(1),
+            psi: state(2),
+            forward_speed: state(3),
+            yaw_rate: state(4),
+            friction_force: history.friction_force(),
+            normal_force: history.normal_force(),
+        }
+    }
+
+    /// What is worth knowing about it.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if let Some(time) = self.rolling_lost_at {
+            warnings.push(format!(
+                "rolling needs more than the static friction from t = {} s on; the history goes on as if it rolled",
+                readable(time)
+            ));
+        }
+        let turned_across = |angles: &[f64]| (angles[0].cos() < 0.0) != (angles[1].cos() < 0.0);
+        if self.wheel.has_lateral_elasticity_only() && self.psi.windows(2).any(turned_across) {
+            warnings.push(
+                "the caster passes psi = pi/2, where V does not follow from q, psi and Omega: digits are lost there, \
+                 compare with a large finite k_u"
+                    .to_owned(),
+            );
+        }
+        warnings
+    }
+
+    fn states(&self) -> [(&'static str, &Vec<f64>, &'static str, &'static str); 5] {
+        let [u, q, psi, forward_speed, yaw_rate] = STATE_NAMES;
+        [
+            (u, &self.u, "m", "$u$ (m)"),
+            (q, &self.q, "m", "$q$ (m)"),
+            (psi, &self.psi, "rad", "$\\psi$ (rad)"),
+            (forward_speed, &self.forward_speed, "m/s", "$V$ (m/s)"),
+            (yaw_rate, &self.yaw_rate, "rad/s", "$\\Omega$ (rad/s)"),
+        ]
+    }
+}
+
+impl Report for RollingHistory {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.simulate")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        writeln!(out, "motion at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
+        let states = self.states().map(|(name, values, unit, _)| (name, values, unit));
+        let force = ("friction_force", &self.friction_force, "N");
+        summary(states.into_iter().chain([force])).write(out)?;
+        writeln!(out)?;
+        match self.rolling_lost_at {
+            Some(time) => {
+                writeln!(out, "rolling needs more than the static friction first at {} s", readable(time))
+            }
+            None => writeln!(out, "the static friction suffices for rolling throughout"),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        let times = Columns::new().numbers("t", self.t.iter().copied());
+        let states = self.states().into_iter();
+        states
+            .fold(times, |columns, (name, values, ..)| columns.numbers(name, values.iter().copied()))
+            .numbers("friction_force", self.friction_force.iter().copied())
+            .numbers("normal_force", self.normal_force.iter().copied())
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let limit = self.wheel.get(Key::MuS) * self.wheel.normal_force();
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        let panel = |values: &[f64], label: &str, last: bool| {
+            let time = Axis::new("$t$ (s)").limits(0.0, duration);
+            let time = if last { time } else { time.without_labels() };
+            let mut panel = Panel::new(time, Axis::new(label))
+                .curve(Line::new(drawn(&self.t, values)).color(palette::BLUE));
+            if let Some(lost) = self.rolling_lost_at.filter(|&time| time > 0.0) {
+                let [low, high] = extremes(values);
+                panel =
+                    panel.curve(Line::new([(lost, low), (lost, high)]).dotted().color(palette::VERMILION));
+            }
+            panel
+        };
+        let states = self.states();
+        // Column by column the panels read u, q, psi and V, Omega, force.
+        let mut force = panel(&self.friction_force, "$|T|$ (N)", true);
+        force = force.curve(
+            Line::new([(0.0, limit), (duration, limit)])
+                .dashed()
+                .color(palette::VERMILION)
+                .legend("static friction"),
+        );
+        let mut figure = Figure::double_column().columns(2).height_mm(120.0).description(format!(
+            "Time histories of the states and of the friction force at {}",
+            description::of(&self.wheel, &[])
+        ));
+        for row in 0..2 {
+            for (_, values, _, label) in [states[row], states[row + 3]] {
+                figure = figure.panel(panel(values, label, false));
+            }
+        }
+        let (_, values, _, label) = states[2];
+        Ok(Some(figure.panel(panel(values, label, true)).panel(force)))
+    }
+}

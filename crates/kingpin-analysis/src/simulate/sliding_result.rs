@@ -1,0 +1,177 @@
+//! Time histories of a wheel that rolls or slides as a result.
+
+use crate::description;
+use crate::parameters::parameters_of;
+use kingpin::sliding::{Contact, SLIDING_STATE_NAMES, SlidingHistory};
+use kingpin::{Key, Wheel};
+use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
+use kingpin_report::history::{drawn, summary};
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// Units of the states.
+const UNITS: [&str; 7] = ["m", "m", "rad", "m/s", "m/s", "rad/s", "m/s"];
+
+/// A stretch of time in which the wheel only rolls or only slides.
+#[derive(Debug, Serialize)]
+struct Phase {
+    contact: &'static str,
+    start: f64,
+    end: f64,
+}
+
+/// A list of the times, one per state, of the slip speed, of the forces, and of what the wheel does.
+#[derive(Debug, Serialize)]
+pub struct SlidingHistoryResult {
+    #[serde(skip)]
+    wheel: Wheel,
+    t: Vec<f64>,
+    u: Vec<f64>,
+    q: Vec<f64>,
+    psi: Vec<f64>,
+    #[serde(rename = "V1")]
+    forward_speed: Vec<f64>,
+    #[serde(rename = "V2")]
+    lateral_speed: Vec<f64>,
+    #[serde(rename = "Omega")]
+    yaw_rate: Vec<f64>,
+    #[serde(rename = "W")]
+    rim_speed: Vec<f64>,
+    /// Speed of the contact point over the ground.
+    slip: Vec<f64>,
+    friction_force: Vec<f64>,
+    normal_force: Vec<f64>,
+    phase: Vec<&'static str>,
+    phases: Vec<Phase>,
+    /// Part of the time in which it slides.
+    sliding_fraction: f64,
+}
+
+fn word(contact: Contact) -> &'static str {
+    match contact {
+        Contact::Rolling => "rolling",
+        Contact::Sliding => "sliding",
+    }
+}
+
+impl SlidingHistoryResult {
+    /// The result of a motion.
+    pub(super) fn new(wheel: Wheel, history: SlidingHistory) -> Self {
+        let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
+        let friction_force: Vec<f64> =
+            history.friction.iter().map(|[along, across]| along.hypot(*across)).collect();
+        let phase = |&time: &f64| history.contact_at(time).map_or("rolling", word);
+        Self {
+            wheel,
+            u: state(0),
+            q: state(1),
+            psi: state(2),
+            forward_speed: state(3),
+            lateral_speed: state(4),
+            yaw_rate: state(5),
+            rim_speed: state(6),
+            slip: history.slip(),
+            normal_force: vec![history.normal_force; friction_force.len()],
+            friction_force,
+            phase: history.times.iter().map(phase).collect(),
+            phases: history
+                .phases
+                .iter()
+                .map(|phase| Phase { contact: word(phase.contact), start: phase.start, end: phase.end })
+                .collect(),
+            sliding_fraction: history.sliding_fraction(),
+            t: history.times,
+        }
+    }
+
+    fn states(&self) -> [(&'static str, &Vec<f64>, &'static str); 7] {
+        let values = [
+            &self.u,
+            &self.q,
+            &self.psi,
+            &self.forward_speed,
+            &self.lateral_speed,
+            &self.yaw_rate,
+            &self.rim_speed,
+        ];
+        std::array::from_fn(|index| (SLIDING_STATE_NAMES[index], values[index], UNITS[index]))
+    }
+}
+
+impl Report for SlidingHistoryResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.simulate")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        writeln!(out, "motion with rolling and sliding at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
+        let more = [("slip", &self.slip, "m/s"), ("friction_force", &self.friction_force, "N")];
+        summary(self.states().into_iter().chain(more)).write(out)?;
+        let slides: Vec<&Phase> =
+            self.phases.iter().filter(|phase| phase.contact == word(Contact::Sliding)).collect();
+        writeln!(out)?;
+        match slides.first() {
+            Some(first) => writeln!(
+                out,
+                "it slides first at {} s, in {} phases, for {:.1} % of the time",
+                readable(first.start),
+                slides.len(),
+                100.0 * self.sliding_fraction
+            ),
+            None => writeln!(out, "it rolls throughout"),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        let times = Columns::new().numbers("t", self.t.iter().copied());
+        let states = self.states().into_iter();
+        states
+            .fold(times, |columns, (name, values, _)| columns.numbers(name, values.iter().copied()))
+            .numbers("slip", self.slip.iter().copied())
+            .numbers("friction_force", self.friction_force.iter().copied())
+            .numbers("normal_force", self.normal_force.iter().copied())
+            .texts("phase", self.phase.iter().map(|phase| Some((*phase).to_owned())))
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let normal = self.wheel.normal_force();
+        let duration = self.t.last().copied().unwrap_or(0.0);
+        let panel = |label: &str, last: bool| {
+            let time = Axis::new("$t$ (s)").limits(0.0, duration);
+            Panel::new(if last { time } else { time.without_labels() }, Axis::new(label))
+        };
+        let curve = |values: &[f64]| Line::new(drawn(&self.t, values)).color(palette::BLUE);
+        let level = |value: f64| Line::new([(0.0, value), (duration, value)]).color(palette::VERMILION);
+        let speeds = panel("$V_1$, $W$ (m/s)", false)
+            .curve(curve(&self.forward_speed).legend("$V_1$"))
+            .curve(curve(&self.rim_speed).color(palette::VERMILION).dashed().legend("$W$"));
+        let force = panel("$|T|$ (N)", true)
+            .curve(curve(&self.friction_force))
+            .curve(level(self.wheel.get(Key::MuS) * normal).dashed().legend("static limit"))
+            .curve(level(self.wheel.get(Key::MuD) * normal).dotted().legend("sliding friction"));
+        let single = |values: &[f64], label: &str| panel(label, false).curve(curve(values));
+        let figure = Figure::double_column().columns(2).height_mm(150.0).description(format!(
+            "Time histories of the states, the slip speed and the friction force of a wheel that rolls and slides at {}",
+            description::of(&self.wheel, &[])
+        ));
+        Ok(Some(
+            figure
+                .panel(single(&self.u, "$u$ (m)"))
+                .panel(speeds)
+                .panel(single(&self.q, "$q$ (m)"))
+                .panel(single(&self.lateral_speed, "$V_2$ (m/s)"))
+                .panel(single(&self.psi, "$\\psi$ (rad)"))
+                .panel(single(&self.yaw_rate, "$\\Omega$ (rad/s)"))
+                .panel(panel("slip (m/s)", true).curve(curve(&self.slip)))
+                .panel(force),
+        ))
+    }
+}

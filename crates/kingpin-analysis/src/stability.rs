@@ -1,0 +1,96 @@
+//! Eigenvalues of the uniform motion and its critical speed.
+
+use crate::description;
+use crate::error::Error;
+use crate::parameters::parameters_of;
+use crate::wheel_request::WheelRequest;
+use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// Linear stability of the uniform motion: eigenvalues and critical speed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StabilityRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+}
+
+impl StabilityRequest {
+    /// Computes it.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel; no uniform motion.
+    pub fn run(&self) -> Result<StabilityResult, Error> {
+        let wheel = self.wheel.read()?;
+        let motion = wheel.uniform_motion()?;
+        let critical = wheel.critical_speed();
+        Ok(StabilityResult {
+            wheel,
+            eigenvalues: motion
+                .eigenvalues()
+                .iter()
+                .map(|eigenvalue| [eigenvalue.re, eigenvalue.im])
+                .collect(),
+            growth_rate: motion.growth_rate(),
+            stable: motion.is_stable(),
+            critical_speed: critical.map(|critical| critical.speed),
+            critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
+        })
+    }
+}
+
+/// Linear stability of the uniform motion.
+#[derive(Debug, Serialize)]
+pub struct StabilityResult {
+    #[serde(skip)]
+    wheel: Wheel,
+    eigenvalues: Vec<[f64; 2]>,
+    growth_rate: f64,
+    stable: bool,
+    critical_speed: Option<f64>,
+    critical_yaw_rate: Option<f64>,
+}
+
+impl Report for StabilityResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.stability")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let verdict = if self.stable { "stable" } else { "unstable" };
+        writeln!(out, "uniform motion at {}: {verdict}\n", description::of(&self.wheel, &[]))?;
+        let mut table = Table::new(["eigenvalue", "real part (1/s)", "imaginary part (rad/s)"]);
+        for (number, [real, imaginary]) in (1..).zip(&self.eigenvalues) {
+            table.row([format!("{number}").into(), (*real).into(), (*imaginary).into()]);
+        }
+        table.write(out)?;
+        writeln!(out)?;
+        let straight = self.wheel.get(Key::TurningRadius).is_infinite();
+        if straight && self.wheel.get(Key::CU) == 0.0 && !self.wheel.has_lateral_elasticity_only() {
+            writeln!(out, "on a straight path without c_u, the undamped longitudinal motion does not count")?;
+        }
+        writeln!(out, "growth rate {} 1/s", readable(self.growth_rate))?;
+        match (self.critical_speed, self.critical_yaw_rate) {
+            (Some(speed), Some(yaw_rate)) => writeln!(
+                out,
+                "critical speed {} m/s, there the yaw rate is {} rad/s",
+                readable(speed),
+                readable(yaw_rate)
+            ),
+            _ => writeln!(out, "no critical speed: the stability changes at no speed"),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        Columns::new()
+            .numbers("real_part", self.eigenvalues.iter().map(|[real, _]| *real))
+            .numbers("imaginary_part", self.eigenvalues.iter().map(|[_, imaginary]| *imaginary))
+    }
+}

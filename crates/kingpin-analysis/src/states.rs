@@ -1,0 +1,10 @@
+//! States of the wheel by name.
+
+use kingpin::rolling::STATE_NAMES;
+use kingpin_report::NamedNumbers;
+
+/// A state of the wheel, by name, without what is not a number.
+pub fn named_state(state: &[f64]) -> NamedNumbers {
+    let numbers = STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied());
+    NamedNumbers(numbers.filter(|(_, value)| !value.is_nan()).collect())
+}

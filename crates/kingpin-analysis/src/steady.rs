@@ -1,0 +1,112 @@
+//! The uniform motion at one parameter point.
+
+use crate::description;
+use crate::error::Error;
+use crate::parameters::parameters_of;
+use crate::wheel_request::WheelRequest;
+use kingpin::{UniformMotion, Wheel};
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// The uniform motion of a wheel.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SteadyRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+}
+
+impl SteadyRequest {
+    /// Computes it.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel; no uniform motion.
+    pub fn run(&self) -> Result<SteadyResult, Error> {
+        Ok(SteadyResult::of(&self.wheel.read()?.uniform_motion()?))
+    }
+}
+
+/// The uniform motion.
+#[derive(Debug, Serialize)]
+pub struct SteadyResult {
+    #[serde(skip)]
+    wheel: Wheel,
+    u: f64,
+    q: f64,
+    psi: f64,
+    #[serde(rename = "V")]
+    forward_speed: f64,
+    #[serde(rename = "Omega")]
+    yaw_rate: f64,
+    residual: f64,
+    friction_force: f64,
+    normal_force: f64,
+    rolls: bool,
+}
+
+impl SteadyResult {
+    fn of(motion: &UniformMotion) -> Self {
+        let contact = motion.contact_force();
+        Self {
+            wheel: *motion.wheel(),
+            u: motion.u(),
+            q: motion.q(),
+            psi: motion.psi(),
+            forward_speed: motion.forward_speed(),
+            yaw_rate: motion.yaw_rate(),
+            residual: motion.residual(),
+            friction_force: contact.friction(),
+            normal_force: contact.normal,
+            rolls: contact.rolls(),
+        }
+    }
+}
+
+impl Report for SteadyResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.steady")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &[])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "uniform motion at {}\n", description::of(&self.wheel, &[]))?;
+        let limit = self.wheel.get(kingpin::Key::MuS) * self.normal_force;
+        let rolling = if self.rolls {
+            format!("yes: the ground can supply {} N", readable(limit))
+        } else {
+            format!("no: the ground can supply only {} N", readable(limit.max(0.0)))
+        };
+        let mut table = Table::new(["", "", "", ""]);
+        let mut row = |name: &str, value: f64, unit: &str, meaning: &str| {
+            table.row([name.into(), value.into(), unit.into(), meaning.into()]);
+        };
+        row("u", self.u, "m", "longitudinal displacement of the king pin");
+        row("q", self.q, "m", "lateral displacement of the king pin");
+        row("psi", self.psi, "rad", "caster angle");
+        row("V", self.forward_speed, "m/s", "forward speed of the wheel");
+        row("Omega", self.yaw_rate, "rad/s", "yaw rate");
+        row("residual", self.residual, "", "of the equations of motion");
+        row("friction_force", self.friction_force, "N", "between wheel and ground");
+        row("normal_force", self.normal_force, "N", "between wheel and ground");
+        table.write(out)?;
+        writeln!(out, "rolls           {rolling}")
+    }
+
+    fn columns(&self) -> Columns {
+        Columns::new()
+            .numbers("u", [self.u])
+            .numbers("q", [self.q])
+            .numbers("psi", [self.psi])
+            .numbers("V", [self.forward_speed])
+            .numbers("Omega", [self.yaw_rate])
+            .numbers("residual", [self.residual])
+            .numbers("friction_force", [self.friction_force])
+            .numbers("normal_force", [self.normal_force])
+            .booleans("rolls", [self.rolls])
+    }
+}

@@ -1,0 +1,86 @@
+//! What the studies found as a result.
+
+use super::name::StudyName;
+use super::study::Finding;
+use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Table};
+use serde::Serialize;
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+/// What was found, and where the figures are.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StudyResult {
+    /// The findings of every study.
+    pub findings: Vec<(StudyName, Finding)>,
+    /// The files that were written.
+    pub files: Vec<PathBuf>,
+}
+
+impl Serialize for StudyResult {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Row<'a> {
+            study: &'static str,
+            quantity: &'a str,
+            value: f64,
+            unit: &'a str,
+        }
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            findings: Vec<Row<'a>>,
+            files: &'a [PathBuf],
+        }
+        let row = |(name, finding): &'_ (StudyName, Finding)| -> (&'static str, f64) {
+            (name.as_str(), finding.value)
+        };
+        let findings = self
+            .findings
+            .iter()
+            .map(|entry| {
+                let (study, value) = row(entry);
+                Row { study, quantity: &entry.1.quantity, value, unit: entry.1.unit }
+            })
+            .collect();
+        Fields { findings, files: &self.files }.serialize(serializer)
+    }
+}
+
+impl Report for StudyResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.study")
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        // Every study has its own wheels; the quantities say which.
+        NamedNumbers::default()
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let mut study = None;
+        let mut table = Table::new(["", "", ""]);
+        for (name, finding) in &self.findings {
+            if study.is_some_and(|before| before != *name) {
+                table.write(out)?;
+                writeln!(out)?;
+                table = Table::new(["", "", ""]);
+            }
+            if study != Some(*name) {
+                writeln!(out, "{}: {}", name.as_str(), name.subject())?;
+            }
+            study = Some(*name);
+            table.row([Cell::from(finding.quantity.clone()), finding.cell(), finding.unit.into()]);
+        }
+        table.write(out)?;
+        writeln!(out)?;
+        self.files.iter().try_for_each(|file| writeln!(out, "{}", file.display()))
+    }
+
+    fn columns(&self) -> Columns {
+        let findings = || self.findings.iter();
+        Columns::new()
+            .texts("study", findings().map(|(name, _)| Some(name.as_str().to_owned())))
+            .texts("quantity", findings().map(|(_, finding)| Some(finding.quantity.clone())))
+            .numbers("value", findings().map(|(_, finding)| finding.value))
+            .texts("unit", findings().map(|(_, finding)| Some(finding.unit.to_owned())))
+    }
+}

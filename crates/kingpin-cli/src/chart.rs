@@ -1,0 +1,43 @@
+//! `kingpin chart`: stability of the uniform motion over two parameters.
+
+use crate::wheel_options::{WheelOptions, parameter_help};
+use arclength_analysis::SampledInterval;
+use clap::Args;
+use kingpin_analysis::chart::ChartRequest;
+use kingpin_terminal::{Failure, OutputOptions, Progress};
+
+const EXAMPLE: &str = "kingpin chart --x v=0.1:12:600 --y l=0.02:0.3:400 -o chart.svg";
+
+/// Stability chart over any two parameters
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Chart {
+    /// Parameter across, from A to B at N points
+    #[arg(long, value_name = "KEY=A:B:N", default_value_t = ChartRequest::default().x)]
+    x: SampledInterval,
+
+    /// Parameter upwards, from A to B at N points
+    #[arg(long, value_name = "KEY=A:B:N", default_value_t = ChartRequest::default().y)]
+    y: SampledInterval,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Chart {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let request = ChartRequest { wheel: self.wheel.request(), x: self.x.clone(), y: self.y.clone() };
+        let analysis = request.validate()?;
+        let output = self.output.prepare()?;
+        output.warn_of(analysis.warnings());
+        let progress = Progress::bar("chart", output.is_quiet());
+        let (result, _) = output.watch(progress, |control| analysis.run(control))?;
+        output.deliver(&result?)
+    }
+}

@@ -1,0 +1,60 @@
+//! `kingpin cycles`: limit cycles from the Hopf points of an interval, or from a labelled point of an earlier result.
+
+use crate::wheel_options::{WheelOptions, parameter_help};
+use arclength_analysis::{Interval, PointReference, Values};
+use clap::Args;
+use kingpin_analysis::cycles::CyclesRequest;
+use kingpin_terminal::{Failure, OutputOptions, Progress, requested_values};
+
+const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
+         kingpin cycles --from cycles.json:AT3 --along r=1:inf";
+
+/// Limit cycles along a parameter, from Hopf points or from a labelled point of an earlier result
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub struct Cycles {
+    /// Parameter and its interval; r may reach inf
+    #[arg(long, value_name = "KEY=A:B")]
+    along: Interval,
+
+    /// Values of the parameter at which cycles are wanted exactly
+    #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
+    at: Vec<Values>,
+
+    /// Start from a labelled point of a file that `hopf` or `cycles` wrote, with its wheel
+    #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "wheel")]
+    from: Option<PointReference>,
+
+    /// At a period doubling or a branch point follow the branch of the point itself, not the one that leaves there
+    #[arg(long, requires = "from")]
+    stay: bool,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Cycles {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare()?;
+        let request = CyclesRequest {
+            wheel: self.wheel.request(),
+            along: self.along.clone(),
+            at: requested_values(&self.at, &self.along.key, |given, key| given == key)?,
+            from: self.from.clone(),
+            stay: self.stay,
+        };
+        let analysis = request.validate()?;
+        let progress = Progress::spinner("cycles", output.is_quiet());
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let result = result?;
+        output.warn_of(&result.warnings());
+        output.deliver(&result)?;
+        interruption.check_branch()
+    }
+}

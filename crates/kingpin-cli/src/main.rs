@@ -1,0 +1,68 @@
+//! The program `kingpin`: the towed wheel from the command line.
+
+mod basin;
+mod chart;
+mod classification_options;
+mod cycles;
+mod disturbance_options;
+mod hopf;
+mod margin;
+mod paper;
+mod safe_kick;
+mod simulate;
+mod stability;
+mod steady;
+mod study;
+mod wheel_options;
+
+use clap::{Parser, Subcommand};
+use kingpin_terminal::{Failure, exit_code};
+use std::process::ExitCode;
+
+/// Finds out whether a towed wheel shimmies
+///
+/// A wheel on a caster is towed at constant speed along a circle or a straight line by an elastic king pin. The commands
+/// compute its uniform motion, whether it is stable, and the oscillations that it can fall into.
+#[derive(Debug, Parser)]
+#[command(name = "kingpin", version, arg_required_else_help = true, max_term_width = 110)]
+struct Kingpin {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Paper(paper::Paper),
+    Steady(steady::Steady),
+    Stability(stability::Stability),
+    Chart(chart::Chart),
+    Hopf(hopf::Hopf),
+    Cycles(cycles::Cycles),
+    Simulate(simulate::Simulate),
+    Study(study::StudyCommand),
+    Basin(basin::Basin),
+    SafeKick(safe_kick::SafeKick),
+    Margin(margin::Margin),
+}
+
+impl Command {
+    fn run(&self) -> Result<(), Failure> {
+        match self {
+            Self::Paper(command) => command.run(),
+            Self::Steady(command) => command.run(),
+            Self::Stability(command) => command.run(),
+            Self::Chart(command) => command.run(),
+            Self::Hopf(command) => command.run(),
+            Self::Cycles(command) => command.run(),
+            Self::Simulate(command) => command.run(),
+            Self::Study(command) => command.run(),
+            Self::Basin(command) => command.run(),
+            Self::SafeKick(command) => command.run(),
+            Self::Margin(command) => command.run(),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    exit_code(Kingpin::parse().command.run())
+}

@@ -1,0 +1,76 @@
+//! `kingpin study`: what goes beyond the paper, each study with its figures, data and findings.
+
+use clap::{Args, ValueEnum};
+use kingpin_analysis::studies::{StudyName, StudyRequest};
+use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, Progress, start_threads};
+use std::path::PathBuf;
+
+/// Studies beyond the paper: damping, isola, sliding, basin, step-steer
+#[derive(Args, Debug)]
+#[command(after_help = "Example: kingpin study isola --out studies")]
+pub struct StudyCommand {
+    /// Which study; all writes the figures of all of them
+    #[arg(value_enum, value_name = "NAME")]
+    name: Selection,
+
+    /// Folder for the figures and their data
+    #[arg(short, long, value_name = "DIR", default_value_os_t = StudyRequest::default().out)]
+    out: PathBuf,
+
+    /// Format in which the findings are told
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+
+    /// Number of threads; results do not depend on it [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: Option<u16>,
+
+    /// No progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// One study or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Selection {
+    /// How the stability boundary moves with the dampers, and when shimmy disappears
+    Damping,
+    /// Large oscillations that are detached from straight running
+    Isola,
+    /// Large stable shimmy of a wheel that rolls and slides in turn, and an animation of it
+    Sliding,
+    /// Where kicked wheels end
+    Basin,
+    /// Driving straight, then suddenly round a curve
+    StepSteer,
+    /// Every one
+    All,
+}
+
+impl Selection {
+    fn studies(self) -> Vec<StudyName> {
+        match self {
+            Self::Damping => vec![StudyName::Damping],
+            Self::Isola => vec![StudyName::Isola],
+            Self::Sliding => vec![StudyName::Sliding],
+            Self::Basin => vec![StudyName::Basin],
+            Self::StepSteer => vec![StudyName::StepSteer],
+            Self::All => StudyName::ALL.to_vec(),
+        }
+    }
+}
+
+impl StudyCommand {
+    /// Runs the command. The files of a study are written as soon as it is finished.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub fn run(&self) -> Result<(), Failure> {
+        start_threads(self.threads)?;
+        let output = Output::new(self.format, &[], self.quiet, &[])?;
+        let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };
+        let progress = Progress::bar("study", self.quiet);
+        let (result, _) = output.watch(progress, |control| request.run(control))?;
+        output.deliver(&result?)
+    }
+}

@@ -1,0 +1,48 @@
+//! Options that say which wheel, and the help on its parameters.
+
+use arclength_analysis::Assignment;
+use clap::Args;
+use kingpin::Key;
+use kingpin_analysis::WheelRequest;
+use kingpin_report::Table;
+use kingpin_report::numbers::readable;
+use std::path::PathBuf;
+
+/// Which wheel.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Wheel")]
+pub struct WheelOptions {
+    /// Read the wheel from a file of `key = value` lines [default: the paper's wheel]
+    #[arg(long, value_name = "FILE.toml")]
+    pub wheel: Option<PathBuf>,
+
+    /// Set a parameter, wins over the file; repeatable, for example -s l=0.1 -s r=inf
+    #[arg(short, long, value_name = "KEY=VALUE")]
+    pub set: Vec<Assignment>,
+}
+
+impl WheelOptions {
+    /// The wheel that is asked for.
+    pub fn request(&self) -> WheelRequest {
+        WheelRequest { wheel: self.wheel.clone(), set: self.set.clone() }
+    }
+}
+
+/// The parameters of the wheel with symbol, unit, default, allowed range and meaning, for the long help.
+pub fn parameter_help(example: &str) -> String {
+    let mut table = Table::new(["key", "symbol", "unit", "default", "allowed", "meaning"]);
+    for key in Key::ALL {
+        table.row([
+            key.name().into(),
+            key.symbol().into(),
+            key.unit().into(),
+            readable(key.default_value()).into(),
+            key.allowed().to_string().into(),
+            key.meaning().into(),
+        ]);
+    }
+    let mut text = Vec::new();
+    // Writing to memory does not fail.
+    let _ = table.write(&mut text);
+    format!("Example: {example}\n\nParameters, in SI units and radians:\n{}", String::from_utf8_lossy(&text))
+}

@@ -1,0 +1,27 @@
+//! What any result is, whatever was computed: columns, a JSON document, a table for people, a picture, a story.
+//!
+//! Whoever computes something describes its result once, by the trait [`Report`]. Everything else follows: [`json`], CSV by
+//! [`Columns`], [`parquet`], pictures, and [`files`] that appear whole or not at all. Nothing here knows a model, an option or
+//! a terminal.
+
+mod columns;
+mod error;
+pub mod files;
+pub mod history;
+pub mod json;
+mod named_numbers;
+pub mod numbers;
+pub mod parquet;
+mod report;
+mod schema;
+mod story;
+mod table;
+
+pub use columns::{Column, Columns};
+pub use error::ReportError;
+pub use files::{FileFormat, PictureFormat};
+pub use named_numbers::{NamedNumbers, Number, number};
+pub use report::Report;
+pub use schema::Schema;
+pub use story::Story;
+pub use table::{Cell, Table};

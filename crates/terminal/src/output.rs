@@ -1,0 +1,130 @@
+//! Where results go: to standard output in one format, and to files whose endings say theirs.
+
+use crate::failure::Failure;
+use crate::interruption::Interruption;
+use crate::progress::Progress;
+use crate::streams::{print, say};
+use arclength_analysis::Control;
+use clap::ValueEnum;
+use kingpin_report::{FileFormat, Report, ReportError, files, json};
+use std::path::{Path, PathBuf};
+
+/// Formats of standard output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// For people.
+    #[default]
+    Table,
+    /// One object.
+    Json,
+    /// Rows with a line of names.
+    Csv,
+}
+
+/// Where the result of one command goes.
+#[derive(Debug)]
+pub struct Output {
+    format: Format,
+    files: Vec<(PathBuf, FileFormat)>,
+    quiet: bool,
+    explain: bool,
+}
+
+impl Output {
+    /// Checks, before anything is computed, that the endings are allowed and the folders can be written to.
+    ///
+    /// # Errors
+    /// [`ReportError::UnknownEnding`] and [`ReportError::Unwritable`].
+    pub fn new(
+        format: Format,
+        paths: &[PathBuf],
+        quiet: bool,
+        allowed: &[FileFormat],
+    ) -> Result<Self, Failure> {
+        let mut files = Vec::new();
+        for path in paths {
+            let ending = FileFormat::of(path, allowed)?;
+            files::check_writable(path)?;
+            files.push((path.clone(), ending));
+        }
+        Ok(Self { format, files, quiet, explain: false })
+    }
+
+    /// Tells the story of the run after the table too, where that is wanted.
+    pub fn explain(self, explain: bool) -> Self {
+        Self { explain, ..self }
+    }
+
+    /// The first of the files.
+    pub fn first_file(&self) -> Option<&Path> {
+        self.files.first().map(|(path, _)| path.as_path())
+    }
+
+    /// Whether progress and warnings are unwanted.
+    pub fn is_quiet(&self) -> bool {
+        self.quiet
+    }
+
+    /// Warns on standard error.
+    pub fn warn(&self, message: &str) {
+        if !self.quiet {
+            say("warning", message);
+        }
+    }
+
+    /// Warns of several things on standard error.
+    pub fn warn_of(&self, messages: &[String]) {
+        messages.iter().for_each(|message| self.warn(message));
+    }
+
+    /// Says something worth knowing on standard error.
+    pub fn note(&self, message: &str) {
+        if !self.quiet {
+            say("note", message);
+        }
+    }
+
+    /// Runs an analysis under a control: its progress is shown, and Ctrl-C stops it. What it is about is said beside the
+    /// progress.
+    ///
+    /// # Errors
+    /// [`Failure::Signals`].
+    pub fn watch<T>(
+        &self,
+        progress: Progress,
+        analysis: impl FnOnce(&Control<'_>) -> T,
+    ) -> Result<(T, Interruption), Failure> {
+        let interruption = Interruption::watch()?;
+        let outcome = analysis(&Control::new(interruption.flag(), &|step| progress.show(step)));
+        drop(progress);
+        Ok((outcome, interruption))
+    }
+
+    /// Writes the files, then standard output; the latter not where there are files and quiet was asked for.
+    ///
+    /// # Errors
+    /// What the writers say.
+    pub fn deliver<R: Report>(&self, result: &R) -> Result<(), Failure> {
+        for (path, format) in &self.files {
+            files::write_result(result, path, *format).map_err(Failure::of_output)?;
+            if !self.quiet {
+                say("wrote", &path.display().to_string());
+            }
+        }
+        if self.quiet && !self.files.is_empty() {
+            return Ok(());
+        }
+        let encoding = |format| move |source| ReportError::Encoding { format, source };
+        print(|out| match self.format {
+            Format::Table => result
+                .write_table(out)
+                .and_then(|()| match result.story().filter(|_| self.explain) {
+                    Some(story) => story.write(out),
+                    None => Ok(()),
+                })
+                .map_err(encoding("text")),
+            Format::Json => json::write(result, out),
+            Format::Csv => result.columns().write_csv(out).map_err(encoding("CSV")),
+        })
+    }
+}
