@@ -1,6 +1,5 @@
 //! Branches of limit cycles: where they start, how they are followed, what is kept of them.
 
-use super::collocation::Collocation;
 use super::curve::{CycleCurve, CycleInspection, Resolution};
 use super::limit_cycle::LimitCycle;
 use super::locating::doubling_near;
@@ -8,6 +7,7 @@ use super::orbit::Orbit;
 use super::special::{Special, Unlocated};
 use super::switching::{Branching, HopfStart, Start};
 use crate::algebraic::scales::natural_scales;
+use crate::collocation::equations::Collocation;
 use crate::continuation::{
     Bound, CorrectionFailure, Curve, Followed, Origin, Request, Settings, Solution, Stop, follow,
 };

@@ -6,8 +6,8 @@ use super::defining::Kind;
 use super::locating::{Located, converge};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
-use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
+use crate::collocation::problem::PeriodicProblem;
 use crate::continuation::{Bracket, Solution, along};
 use crate::error::Error;
 

@@ -4,20 +4,20 @@ use super::branch::UnlocatedChange;
 use super::monitor;
 use crate::algebraic::between;
 use crate::branch::SpecialKind;
+use crate::collocation::equations::Collocation;
+use crate::collocation::mesh::{error_profile, fit_mesh};
+use crate::collocation::problem::PeriodicProblem;
 use crate::continuation::{
     Adaptation, CorrectionFailure, Curve, Ending, Settings, Solution, Stop, along, locate,
 };
 use crate::cycle::Resolution;
-use crate::cycle::collocation::Collocation;
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
 use crate::cycle::extrema::{Range, ranges};
 use crate::cycle::floquet::{Floquet, floquet};
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
-use crate::cycle::mesh::{error_profile, fit_mesh};
 use crate::cycle::normal_form::CriticalCycle;
-use crate::cycle::problem::PeriodicProblem;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
 use crate::error::Error;
 use crate::linear::periodic_schur::PeriodicSchur;

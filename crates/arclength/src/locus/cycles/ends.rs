@@ -4,9 +4,9 @@
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::run::CycleLocus;
 use crate::branch::{Label, SpecialKind};
+use crate::collocation::equations::Collocation;
 use crate::continuation::{CorrectionFailure, Settings, Stop};
 use crate::cycle::Orbit;
-use crate::cycle::collocation::Collocation;
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::equilibrium::locating::hopf_point_near;
 use crate::locus::EquilibriumLocus;

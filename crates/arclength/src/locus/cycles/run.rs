@@ -3,8 +3,8 @@
 use super::branch::{CycleLocusBranch, UnlocatedChange};
 use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
 use crate::branch::SpecialKind;
+use crate::collocation::equations::Collocation;
 use crate::continuation::{Followed, Origin, Request, Settings, Solution, Stop, correct, finish, follow};
-use crate::cycle::collocation::Collocation;
 use crate::cycle::curve::CycleCurve;
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::critical;
