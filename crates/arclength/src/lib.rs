@@ -5,6 +5,7 @@
 
 mod algebraic;
 pub mod branch;
+pub mod collocation;
 pub mod continuation;
 pub mod control;
 pub mod cycle;

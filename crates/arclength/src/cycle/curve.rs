@@ -1,16 +1,16 @@
 //! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
 
-use super::collocation::Collocation;
 use super::end::CycleEnd;
 use super::extrema::{Range, ranges};
 use super::floquet::{Floquet, floquet};
 use super::limit_cycle::LimitCycle;
-use super::mesh::{error_profile, fit_mesh};
-use super::problem::PeriodicProblem;
 use super::sizes::{StateSizes, vanishing_point};
 use super::special;
 use super::switching::Branching;
 use crate::branch::{SpecialKind, invalid};
+use crate::collocation::equations::Collocation;
+use crate::collocation::mesh::{error_profile, fit_mesh};
+use crate::collocation::problem::PeriodicProblem;
 use crate::continuation::events::{Event, Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop};
 use crate::error::{CorrectionFailure, Error};

@@ -7,7 +7,7 @@
 //! ODEs using bordered systems", SIAM J. Numer. Anal. 41 (2003).
 
 use super::limit_cycle::{phase_integrand, with_parameters};
-use super::problem::{PeriodicProblem, Reference};
+use crate::collocation::problem::{PeriodicProblem, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::ErasedField;
 use crate::field::VectorField;

@@ -1,10 +1,10 @@
 //! Critical eigenfunctions of a cycle: what the defining systems of special cycles and the branches that leave them start from.
 
-use super::collocation::Collocation;
 use super::defining::Kind;
 use super::limit_cycle::LimitCycle;
-use super::linear_problem::{LinearProblem, NodeFunction, Nodes};
-use super::problem::PeriodicProblem;
+use crate::collocation::equations::Collocation;
+use crate::collocation::linear_problem::{LinearProblem, NodeFunction, Nodes};
+use crate::collocation::problem::PeriodicProblem;
 use crate::error::Error;
 use crate::linear::product_eigenvectors::product_eigenvector;
 use num_complex::Complex64;

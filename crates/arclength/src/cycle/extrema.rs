@@ -1,10 +1,10 @@
 //! Largest and smallest values along a cycle, of the interpolating polynomial: of the state variables, and of any smooth
 //! function of them.
 
-use super::collocation::{Collocation, MOST_NODES};
-use super::gauss::Gauss;
 use super::orbit::Orbit;
-use super::problem::PeriodicProblem;
+use crate::collocation::equations::{Collocation, MOST_NODES};
+use crate::collocation::gauss::Gauss;
+use crate::collocation::problem::PeriodicProblem;
 use crate::differentiation::Dual;
 
 /// Local extrema among the nodes within this part of the amplitude of the extreme node are refined too.

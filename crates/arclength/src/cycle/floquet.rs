@@ -7,8 +7,8 @@
 //! of its square root. The products are never formed (Fairgrieve and Jepson 1991; Lust 2001): the multipliers
 //! come from a periodic Schur decomposition.
 
-use super::collocation::Collocation;
-use super::problem::PeriodicProblem;
+use crate::collocation::equations::Collocation;
+use crate::collocation::problem::PeriodicProblem;
 use crate::continuation::events::Spectrum;
 use crate::error::Error;
 use crate::linear::multiplier::Multiplier;

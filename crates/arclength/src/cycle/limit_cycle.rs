@@ -1,7 +1,7 @@
 //! The boundary value problem of a limit cycle: `u' = T f(u, p)`, `u(1) = u(0)`, with the integral phase
 //! condition of Doedel (1981).
 
-use super::problem::{PeriodicProblem, Reference};
+use crate::collocation::problem::{PeriodicProblem, Reference};
 use crate::differentiation::Scalar;
 use crate::erased::ErasedField;
 use crate::field::VectorField;

@@ -1,15 +1,15 @@
 //! Newton's method on the defining system of a special cycle.
 
-use super::collocation::Collocation;
 use super::curve::{CycleCurve, CycleInspection, state_metric};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
-use super::gauss::Gauss;
 use super::limit_cycle::LimitCycle;
-use super::linear_problem::Nodes;
 use super::orbit::Orbit;
-use super::problem::PeriodicProblem;
 use super::sizes::extent;
+use crate::collocation::equations::Collocation;
+use crate::collocation::gauss::Gauss;
+use crate::collocation::linear_problem::Nodes;
+use crate::collocation::problem::PeriodicProblem;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
 use crate::error::Error;
 

@@ -6,11 +6,11 @@
 //! functions are needed. Source: Kuznetsov, Govaerts, Doedel and Dhooge, "Numerical periodic normalization for codim 1
 //! bifurcations of limit cycles", *SIAM J. Numer. Anal.* 43 (2005).
 
-use super::collocation::Collocation;
 use super::defining::Kind;
 use super::eigenfunctions::{Eigenfunctions, Linearization};
 use super::limit_cycle::LimitCycle;
-use super::linear_problem::{LinearProblem, NodeFunction};
+use crate::collocation::equations::Collocation;
+use crate::collocation::linear_problem::{LinearProblem, NodeFunction};
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::erased::ErasedField;
 

@@ -1,6 +1,6 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
-use super::gauss::Gauss;
+use crate::collocation::gauss::Gauss;
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::integration::{Event, Integrator, autonomous};
@@ -153,7 +153,11 @@ impl Orbit {
         gauss.basis((phase - left) / (right - left), basis);
         let size = (self.degree + 1) * self.dimension;
         let mut state = vec![0.0; self.dimension];
-        super::collocation::combine(&self.states[interval * size..(interval + 1) * size], basis, &mut state);
+        crate::collocation::equations::combine(
+            &self.states[interval * size..(interval + 1) * size],
+            basis,
+            &mut state,
+        );
         state
     }
 }

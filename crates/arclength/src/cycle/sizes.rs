@@ -3,8 +3,8 @@
 
 use super::extrema::Range;
 use super::limit_cycle::LimitCycle;
-use super::problem::PeriodicProblem;
 use crate::algebraic::scales::natural_scales;
+use crate::collocation::problem::PeriodicProblem;
 
 /// Part of its mean below which the amplitude of a state does not count as its size.
 const MEAN_PART: f64 = 0.01;

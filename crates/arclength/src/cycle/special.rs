@@ -6,7 +6,6 @@ use super::defining::Kind;
 use super::locating::{Located, converge};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
-use super::problem::PeriodicProblem;
 use super::switching::{doubled, other_branch};
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Event, Location};

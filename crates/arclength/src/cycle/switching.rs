@@ -6,10 +6,10 @@
 //! solution of bifurcation and nonlinear eigenvalue problems" (1977); Doedel, Keller and Kernevez (1991), section 2.4).
 
 use super::eigenfunctions::Eigenfunctions;
-use super::gauss::Gauss;
-use super::linear_problem::{LinearProblem, NodeFunction};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
+use crate::collocation::gauss::Gauss;
+use crate::collocation::linear_problem::{LinearProblem, NodeFunction};
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::error::Error;
 use num_complex::Complex64;

@@ -6,11 +6,11 @@ use super::end::CycleLocusEnd;
 use crate::branch::{
     Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
 };
+use crate::collocation::equations::Collocation;
 use crate::continuation::events::around_start;
 use crate::continuation::{
     BothWays, Observer, Request, Settings, Solution, both_ways, correct, exact_start, finish, follow,
 };
-use crate::cycle::collocation::Collocation;
 use crate::cycle::curve::CycleCurve;
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::critical;

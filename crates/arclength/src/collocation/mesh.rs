@@ -6,10 +6,10 @@
 //! `h^(2m)` and much smaller.) Sources: de Boor, "Good approximation by splines with variable knots" (1973);
 //! Russell and Christiansen, "Adaptive mesh selection strategies" (1978).
 
-use super::collocation::{Collocation, MOST_NODES, combine};
-use super::curve::Resolution;
+use super::equations::{Collocation, MOST_NODES, combine};
 use super::problem::PeriodicProblem;
 use crate::continuation::Adaptation;
+use crate::cycle::Resolution;
 use crate::error::Error;
 
 /// Ratio of the largest to the smallest mesh width of neighbours-to-be is limited through this floor on

@@ -6,15 +6,15 @@
 //! [`LANES`] neighbouring intervals are condensed together, one in each lane of the vectors.
 //! Source: Ascher, Mattheij and Russell, *Numerical Solution of Boundary Value Problems* (1995), section 7.2.
 
-use super::cyclic::{Blocks, Cyclic};
+use super::bidiagonal::{Blocks, Cyclic};
 use super::gauss::Gauss;
 use crate::lanes::{Kernel, run};
 use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
-pub(super) struct Condensation {
-    pub(super) gauss: Gauss,
+pub(crate) struct Condensation {
+    pub(crate) gauss: Gauss,
     /// Number of state components.
     n: usize,
     /// Number of scalars, and of dense rows.
@@ -24,11 +24,11 @@ pub(super) struct Condensation {
     intervals: usize,
     /// Derivatives of the field at the Gauss points, to be filled in before [`factorize`](Self::factorize):
     /// `n` by `n + E` column-major for each point.
-    pub(super) derivatives: Vec<f64>,
+    pub(crate) derivatives: Vec<f64>,
     /// Gradients of the dense rows (conditions, then the border) in the states, row by row; to be filled in.
-    pub(super) gradients: Vec<f64>,
+    pub(crate) gradients: Vec<f64>,
     /// Derivatives of the dense rows with respect to the scalars, row by row; to be filled in.
-    pub(super) corner: Vec<f64>,
+    pub(crate) corner: Vec<f64>,
     /// For each group of intervals: LU factors of the interior systems, `m n` rows, and behind them the interior responses
     /// to `u_j` and the scalars, `n + E` columns. Lanes behind the last interval repeat it.
     systems: Vec<Lanes>,
@@ -47,7 +47,7 @@ pub(super) struct Condensation {
 }
 
 impl Condensation {
-    pub(super) fn new(degree: usize, n: usize, scalars: usize, signs: Vec<f64>) -> Self {
+    pub(crate) fn new(degree: usize, n: usize, scalars: usize, signs: Vec<f64>) -> Self {
         Self {
             gauss: Gauss::new(degree),
             n,
@@ -71,7 +71,7 @@ impl Condensation {
     }
 
     /// Makes room for a mesh of `intervals` intervals and clears what is summed up.
-    pub(super) fn prepare(&mut self, intervals: usize) {
+    pub(crate) fn prepare(&mut self, intervals: usize) {
         let (n, e, degree) = (self.n, self.scalars, self.gauss.degree());
         let inner = degree * n;
         self.intervals = intervals;
@@ -91,7 +91,7 @@ impl Condensation {
     }
 
     /// The condensed blocks `R_j`.
-    pub(super) fn transfer(&self) -> &[f64] {
+    pub(crate) fn transfer(&self) -> &[f64] {
         &self.transfer
     }
 
@@ -103,7 +103,7 @@ impl Condensation {
     }
 
     /// Interior values of the linearised flow that starts with `start` at the left end of an interval.
-    pub(super) fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {
+    pub(crate) fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {
         let (inner, system) = self.sizes();
         let (group, lane) = (interval / LANES, interval % LANES);
         let response = &self.systems[group * system + inner * inner..];
@@ -116,7 +116,7 @@ impl Condensation {
     }
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
-    pub(super) fn factorize(&mut self, mesh: &[f64]) -> f64 {
+    pub(crate) fn factorize(&mut self, mesh: &[f64]) -> f64 {
         run(Factorization(self, mesh))
     }
 
@@ -252,7 +252,7 @@ impl Condensation {
     }
 
     /// Solves with the last factorisation, in place; the last entry belongs to the border.
-    pub(super) fn solve(&mut self, right_hand_side: &mut [f64]) {
+    pub(crate) fn solve(&mut self, right_hand_side: &mut [f64]) {
         run(Solution(self, right_hand_side));
     }
 

@@ -360,10 +360,10 @@ struct Place {
 }
 
 /// Most nodes of one interval.
-pub(super) const MOST_NODES: usize = 17;
+pub(crate) const MOST_NODES: usize = 17;
 
 /// Linear combination of the node states of one interval.
-pub(super) fn combine(interval: &[f64], basis: &[f64], state: &mut [f64]) {
+pub(crate) fn combine(interval: &[f64], basis: &[f64], state: &mut [f64]) {
     let n = state.len();
     state.fill(0.0);
     for (values, weight) in interval.chunks_exact(n).zip(basis) {
