@@ -19,7 +19,7 @@ fn branch(wheel: &Wheel, tolerance: f64, degree: usize) -> Option<(WheelCycles, 
         resolution: Resolution { tolerance, degree, ..Resolution::default() },
         ..CycleOptions::default()
     };
-    Some((hopf.cycles(along, &options, |_, _| ControlFlow::Continue(())).ok()?, half))
+    Some((hopf.cycles(along, &options, |_| ControlFlow::Continue(())).ok()?, half))
 }
 
 proptest! {

@@ -1,9 +1,10 @@
 //! Everything that is asked of a wheel, asked of one with lateral elasticity only: Hopf points, cycles, charts, boundaries
 //! and motions, against published values, integration, and the five-state model with a stiff longitudinal spring.
 
+use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
 use arclength::control::Control;
-use arclength::cycle::{CyclePoint, Role, Special};
+use arclength::cycle::CyclePoint;
 use kingpin::branches::{Along, CycleOptions, WheelCycles};
 use kingpin::simulation::SimulationError;
 use kingpin::{Axis, Key, KingpinError, Plane, Wheel};
@@ -30,11 +31,15 @@ fn along(key: Key, start: f64, end: f64) -> Along {
 fn cycles(wheel: &Wheel, along: Along, at: &[f64]) -> WheelCycles {
     let hopf = wheel.hopf_points(along, &Control::none()).unwrap().points.pop().unwrap();
     let options = CycleOptions { at: at.to_vec(), ..CycleOptions::default() };
-    hopf.cycles(along, &options, |_, _| Continue(())).unwrap()
+    hopf.cycles(along, &options, |_| Continue(())).unwrap()
 }
 
 fn requested(branch: &WheelCycles) -> Vec<&CyclePoint> {
-    branch.points.iter().filter(|cycle| cycle.role == Role::Requested).collect()
+    branch
+        .points
+        .iter()
+        .filter(|cycle| cycle.label.is_some_and(|label| label.kind == SpecialKind::Requested))
+        .collect()
 }
 
 #[track_caller]
@@ -72,19 +77,20 @@ fn the_isola() {
     let bridge = short_caster(0.05)
         .with(Key::V, 10.0)
         .unwrap()
-        .cycles_through(&large.orbit, along(Key::CQ, 0.03, 0.11), &options, |_, _| Continue(()))
+        .cycles_through(&large.orbit, along(Key::CQ, 0.03, 0.11), &options, |_| Continue(()))
         .unwrap();
     let start = requested(&bridge)[0];
     let isola = short_caster(0.1)
         .with(Key::V, 10.0)
         .unwrap()
-        .cycles_through(&start.orbit, along(Key::V, 0.015, 60.0), &CycleOptions::default(), |_, _| {
-            Continue(())
-        })
+        .cycles_through(&start.orbit, along(Key::V, 0.015, 60.0), &CycleOptions::default(), |_| Continue(()))
         .unwrap();
-    assert!(matches!(isola.stops.1, Stop::Closed), "{}", isola.stops.1);
-    let mut folds: Vec<&CyclePoint> =
-        isola.points.iter().filter(|cycle| cycle.role == Role::Special(Special::Fold)).collect();
+    assert!(matches!(isola.stops[1], Some(Stop::Closed)), "{:?}", isola.stops);
+    let mut folds: Vec<&CyclePoint> = isola
+        .points
+        .iter()
+        .filter(|cycle| cycle.label.is_some_and(|label| label.kind == SpecialKind::FoldOfCycles))
+        .collect();
     folds.sort_by(|a, b| a.value.total_cmp(&b.value));
     let [slow, fast] = &folds[..] else { panic!("{} folds", folds.len()) };
     close(slow.value, 0.047780593, 2e-7);

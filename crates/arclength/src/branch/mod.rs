@@ -29,6 +29,12 @@ pub trait Labelled {
     fn values(&self) -> Vec<f64>;
 }
 
+/// A reason to end that tells a value of the parameter.
+pub trait WithParameter {
+    /// The same with the value told in another unit, such as a radius for a curvature.
+    fn with_parameter(self, convert: impl Fn(f64) -> f64) -> Self;
+}
+
 /// A branch: points in the order of the curve, and why it ends on both sides.
 #[derive(Clone, Debug)]
 pub struct Branch<P, R> {

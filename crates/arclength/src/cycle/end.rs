@@ -1,5 +1,6 @@
 //! Why a branch of cycles ends, apart from the reasons that all curves share.
 
+use crate::branch::WithParameter;
 use crate::continuation::{Explanation, Reason};
 use crate::numbers::{readable, significant};
 use serde::{Deserialize, Serialize};
@@ -34,9 +35,8 @@ pub enum CycleEnd {
     },
 }
 
-impl CycleEnd {
-    /// The same end with the parameter told in another unit, such as a radius for a curvature.
-    pub fn with_parameter(mut self, convert: impl Fn(f64) -> f64) -> Self {
+impl WithParameter for CycleEnd {
+    fn with_parameter(mut self, convert: impl Fn(f64) -> f64) -> Self {
         match &mut self {
             Self::HopfPoint { parameter, .. }
             | Self::PeriodDoubling { parameter, .. }

@@ -1,5 +1,6 @@
 //! Why a branch of equilibria ends, apart from the reasons that all curves share.
 
+use crate::branch::WithParameter;
 use crate::continuation::{Explanation, Reason};
 use crate::numbers::readable;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,13 @@ pub enum EquilibriumEnd {
         /// That value.
         parameter: f64,
     },
+}
+
+impl WithParameter for EquilibriumEnd {
+    fn with_parameter(self, convert: impl Fn(f64) -> f64) -> Self {
+        let Self::StateUnbounded { parameter } = self;
+        Self::StateUnbounded { parameter: convert(parameter) }
+    }
 }
 
 impl Reason for EquilibriumEnd {

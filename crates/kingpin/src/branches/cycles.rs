@@ -2,8 +2,9 @@
 
 use super::{Along, HopfPoint};
 use crate::{KingpinError, Wheel};
+use arclength::branch::Unlocated;
 use arclength::continuation::{Settings, Stop};
-use arclength::cycle::{CyclePoint, CycleStart, Cycles, Orbit, Resolution, Unlocated};
+use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use std::ops::ControlFlow;
 
 /// How a branch of cycles is computed.
@@ -28,8 +29,8 @@ pub struct WheelCycles {
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
-    /// Why the branch ends, at its first and at its last point; the first is `None` at a Hopf point.
-    pub stops: (Option<Stop>, Stop),
+    /// Why the branch ends, at its first and at its last point, in the unit of the key; the first is `None` at a Hopf point.
+    pub stops: [Option<Stop<CycleEnd>>; 2],
     /// Changes of test functions behind which no special cycle could be located.
     pub unlocated: Vec<Unlocated>,
 }
@@ -37,7 +38,7 @@ pub struct WheelCycles {
 impl HopfPoint {
     /// The branch of limit cycles that is born here, followed over the interval.
     ///
-    /// `observer` is told value and period of every cycle found and may end the run.
+    /// `observer` is told every cycle that is found, special ones too, and may end the run.
     ///
     /// # Errors
     /// [`KingpinError::Continuation`].
@@ -49,7 +50,7 @@ impl HopfPoint {
     /// let along = Along::new(Key::V, 1.0, 12.0)?;
     /// let hopf = Wheel::default().hopf_points(along, &Control::none())?.points.remove(0);
     /// let options = CycleOptions { at: vec![4.0], ..CycleOptions::default() };
-    /// let branch = hopf.cycles(along, &options, |_, _| ControlFlow::Continue(()))?;
+    /// let branch = hopf.cycles(along, &options, |_| ControlFlow::Continue(()))?;
     /// let cycle = branch.points.iter().find(|cycle| cycle.value == 4.0).unwrap();
     /// assert!((cycle.period - 0.15274192836).abs() < 1e-9);
     /// # Ok::<(), kingpin::KingpinError>(())
@@ -58,7 +59,7 @@ impl HopfPoint {
         &self,
         along: Along,
         options: &CycleOptions,
-        observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+        observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         self.wheel.cycles_from(CycleStart::from(&self.detail), along, options, observer)
     }
@@ -76,7 +77,7 @@ impl Wheel {
         orbit: &Orbit,
         along: Along,
         options: &CycleOptions,
-        observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+        observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         self.cycles_from(CycleStart::Orbit(orbit.clone()), along, options, observer)
     }
@@ -91,7 +92,7 @@ impl Wheel {
         start: CycleStart,
         along: Along,
         options: &CycleOptions,
-        mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+        mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         let value = self.get(along.key());
         if !along.contains(value) {
@@ -101,26 +102,31 @@ impl Wheel {
         let key = along.followed();
         let model = self.rolling_model(&[key])?;
         let at: Vec<f64> = options.at.iter().map(|value| along.convert(*value)).collect();
+        let complete = |point: &mut CyclePoint| {
+            model.complete_extrema(point, &[point.value]);
+            point.value = along.convert(point.value);
+        };
         let mut branch = Cycles::of(&model, start)
             .parameters(&[along.convert(value)])
-            .along(0, along.range())
+            .along(&key.to_string(), along.range())
             .at(&at)
             .resolution(options.resolution)
             .settings(options.settings)
-            .observer(|value, period| observer(along.convert(value), period))
+            .observer(|point| {
+                let mut told = point.clone();
+                complete(&mut told);
+                observer(&told)
+            })
             .run()?;
-        for point in &mut branch.points {
-            model.complete_extrema(point, &[point.value]);
-            point.value = along.convert(point.value);
-        }
+        branch.points.iter_mut().for_each(complete);
         for missed in &mut branch.unlocated {
-            missed.between = missed.between.map(|value| along.convert(value));
+            missed.between.iter_mut().flatten().for_each(|value| *value = along.convert(*value));
         }
         Ok(WheelCycles {
             wheel: *self,
             along,
             points: branch.points,
-            stops: branch.stops,
+            stops: branch.stops.map(|stop| stop.map(|stop| along.tell(stop))),
             unlocated: branch.unlocated,
         })
     }

@@ -70,18 +70,19 @@ impl Wheel {
                 .start(&model.free_state(&motion.state()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
-                .observed(&mut |_, _| control.flow())?;
+                .observer(|_| control.flow())
+                .run()?;
             control.check()?;
             let mut points = branch
                 .hopf_points()
                 .map(|point| {
                     Ok(HopfPoint {
-                        value: along.convert(point.parameter),
+                        value: along.convert(point.value),
                         frequency: point.frequency,
                         first_lyapunov: point.first_lyapunov,
                         criticality: point.criticality,
-                        state: model.full_state(&point.state, &[point.parameter]),
-                        wheel: wheel.with(key, point.parameter)?,
+                        state: model.full_state(&point.state, &[point.value]),
+                        wheel: wheel.with(key, point.value)?,
                         detail: point.clone(),
                     })
                 })
@@ -90,8 +91,12 @@ impl Wheel {
             let ends: Vec<_> = branch.points.first().into_iter().chain(branch.points.last()).collect();
             let [first, last] = ends[..] else { continue };
             let mut ends =
-                [first, last].map(|point| (along.convert(point.parameter), point.stability.is_stable()));
-            let mut stops = [branch.backward_stop.to_string(), branch.forward_stop.to_string()];
+                [first, last].map(|point| (along.convert(point.value), point.stability.is_stable()));
+            let mut stops = branch.stops.map(|stop| {
+                stop.map_or_else(String::new, |stop| {
+                    along.tell(stop).explain(&[&along.key().to_string()]).cause
+                })
+            });
             if ends[0].0 > ends[1].0 {
                 ends.reverse();
                 stops.reverse();

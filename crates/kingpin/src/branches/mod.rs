@@ -10,6 +10,8 @@ pub use cycles::{CycleOptions, WheelCycles};
 pub use hopf::{HopfPoint, HopfSearch};
 
 use crate::{Key, KingpinError, Wheel};
+use arclength::branch::WithParameter;
+use arclength::continuation::Stop;
 
 /// A parameter and the interval in which it varies.
 ///
@@ -72,6 +74,15 @@ impl Along {
     /// A value of the key as a value of the parameter that is followed, and back: both are the same map.
     pub(crate) fn convert(&self, value: f64) -> f64 {
         if self.key == Key::TurningRadius { value.recip() } else { value }
+    }
+
+    /// A reason to end, told in the unit of the key.
+    pub(crate) fn tell<R: WithParameter>(&self, stop: Stop<R>) -> Stop<R> {
+        match stop {
+            Stop::RangeEnd { bound, value } => Stop::RangeEnd { bound, value: self.convert(value) },
+            Stop::Problem(end) => Stop::Problem(end.with_parameter(|value| self.convert(value))),
+            other => other,
+        }
     }
 
     /// The interval of the parameter that is followed.

@@ -1,11 +1,11 @@
 //! Branches of periodic motions with sliding phases along a parameter.
 
 use super::PeriodicSliding;
-pub use super::curve::SlidingBifurcation;
 use super::curve::{CurvePoint, SlidingCurve};
 use super::error::{Grazing, Refusal, ShimmyError};
 use crate::branches::Along;
 use crate::error::KingpinError;
+use arclength::branch::SpecialKind;
 use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, follow};
 use arclength::control::Control;
 use std::ops::ControlFlow;
@@ -51,7 +51,7 @@ pub enum SlidingRole {
     /// Asked for by its parameter value.
     Requested,
     /// A bifurcation.
-    Bifurcation(SlidingBifurcation),
+    Bifurcation(SpecialKind),
     /// The last motion before the sequence of phases changes; the next one has another sequence.
     Grazing(Grazing),
 }
@@ -174,13 +174,14 @@ impl PeriodicSliding {
         let request = Request {
             bounds: vec![Bound { from_end: 1, lower, upper }],
             values: options.at.iter().map(|value| along.convert(*value)).collect(),
+            targets: Vec::new(),
             settings: options.settings,
         };
         let mut points: Vec<SlidingBranchPoint> = Vec::new();
         let mut interrupted = false;
         let mut crosses = false;
         for _ in 0..MOST_SEGMENTS {
-            let mut watch = |solution: &Solution<CurvePoint>| {
+            let mut watch = |solution: &Solution<CurvePoint>, _: Origin<SpecialKind>| {
                 let value = along.convert(solution.unknown[solution.unknown.len() - 1]);
                 interrupted = control.is_stopped() || observer(value, &solution.point.motion).is_break();
                 if interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -271,10 +272,10 @@ fn is_known(points: &[SlidingBranchPoint], value: f64, motion: &PeriodicSliding)
     })
 }
 
-fn point(along: Along, solution: &Solution<CurvePoint>, origin: Origin) -> SlidingBranchPoint {
-    let role = match (origin, solution.point.bifurcation) {
-        (Origin::Special, Some(bifurcation)) => SlidingRole::Bifurcation(bifurcation),
-        (Origin::Requested, _) => SlidingRole::Requested,
+fn point(along: Along, solution: &Solution<CurvePoint>, origin: Origin<SpecialKind>) -> SlidingBranchPoint {
+    let role = match origin {
+        Origin::Special(kind) => SlidingRole::Bifurcation(kind),
+        Origin::Requested => SlidingRole::Requested,
         _ => SlidingRole::Step,
     };
     SlidingBranchPoint {

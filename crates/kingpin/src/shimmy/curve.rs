@@ -9,17 +9,24 @@ use super::variation::{DIRECTIONS, PARAMETER, STATES};
 use super::{PeriodicSliding, SAMPLES_PER_PERIOD, middle_of_longest_passage, search};
 use crate::parameters::Key;
 use crate::sliding::model::SlipState;
+use arclength::branch::SpecialKind;
+use arclength::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use arclength::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
 use arclength::control::Control;
 use arclength::error::Error;
 use arclength::linear::lu;
 use num_complex::Complex64;
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 /// Bifurcations are located to this part of a step.
 const LOCATED: f64 = 1e-6;
 /// Distance from the unit circle, or from -1, at which a multiplier is critical.
 const CRITICAL: f64 = 1e-3;
+/// Logarithm of the modulus of a multiplier below which its side of the unit circle is not decided, and the smallest one that is
+/// told apart: motions that stick have multipliers zero.
+const UNDECIDED: f64 = 1e-6;
+const SMALLEST_LOGARITHM: f64 = -700.0;
 /// Part of its phase that has to lie on both sides of the start.
 const MARGIN: f64 = 0.2;
 /// Distances beyond a grazing, as parts of the range, at which the motion is looked for.
@@ -29,48 +36,43 @@ const NEAR_GRAZING: f64 = 0.03;
 /// Growth of the period after which everything is scaled anew.
 const RESCALE: f64 = 1.3;
 
-/// What kind of bifurcation was located.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SlidingBifurcation {
-    /// The branch turns back in the parameter.
-    Fold,
-    /// A multiplier passes through -1.
-    PeriodDoubling,
-    /// A complex pair of multipliers passes through the unit circle.
-    Torus,
+/// The bifurcations that are looked for. A real pair of multipliers with the product one changes the test of torus bifurcations
+/// too.
+const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
+    TestFunction::new(SpecialKind::FoldOfCycles).changing(&[1]).turning(),
+    TestFunction::new(SpecialKind::PeriodDoubling).changing(&[1]).of_spectrum(),
+    TestFunction::new(SpecialKind::Torus).changing(&[0, 2]).of_spectrum(),
+];
+
+/// The value of a test function: it changes its sign where the bifurcation is.
+fn test(kind: SpecialKind, solution: &Solution<CurvePoint>) -> Option<f64> {
+    let nontrivial: Vec<Complex64> = solution.point.motion.nontrivial().collect();
+    match kind {
+        SpecialKind::FoldOfCycles => solution.tangent.last().copied(),
+        SpecialKind::PeriodDoubling => {
+            Some(nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re)
+        }
+        SpecialKind::Torus => {
+            let pairs = nontrivial
+                .iter()
+                .enumerate()
+                .flat_map(|(index, one)| nontrivial[index + 1..].iter().map(move |other| 1.0 - one * other));
+            Some(pairs.product::<Complex64>().re)
+        }
+        _ => None,
+    }
 }
 
-impl SlidingBifurcation {
-    const ALL: [Self; 3] = [Self::Fold, Self::PeriodDoubling, Self::Torus];
-
-    /// Changes sign where the bifurcation is.
-    fn test(self, solution: &Solution<CurvePoint>) -> f64 {
-        let nontrivial: Vec<Complex64> = solution.point.motion.nontrivial().collect();
-        match self {
-            Self::Fold => solution.tangent.last().copied().unwrap_or(0.0),
-            Self::PeriodDoubling => {
-                nontrivial.iter().map(|multiplier| 1.0 + multiplier).product::<Complex64>().re
-            }
-            Self::Torus => {
-                let pairs = nontrivial.iter().enumerate().flat_map(|(index, one)| {
-                    nontrivial[index + 1..].iter().map(move |other| 1.0 - one * other)
-                });
-                pairs.product::<Complex64>().re
-            }
+/// Whether a solution where the test changes its sign is the bifurcation: a real pair with product 1 is none.
+fn is_at(kind: SpecialKind, motion: &PeriodicSliding) -> bool {
+    match kind {
+        SpecialKind::PeriodDoubling => {
+            motion.nontrivial().any(|multiplier| (multiplier + 1.0).norm() < CRITICAL)
         }
-    }
-
-    /// Whether a solution where the test changes its sign is the bifurcation: a real pair with product 1 is none.
-    fn is_at(self, motion: &PeriodicSliding) -> bool {
-        match self {
-            Self::Fold => true,
-            Self::PeriodDoubling => {
-                motion.nontrivial().any(|multiplier| (multiplier + 1.0).norm() < CRITICAL)
-            }
-            Self::Torus => motion
-                .nontrivial()
-                .any(|multiplier| multiplier.im != 0.0 && (multiplier.norm() - 1.0).abs() < CRITICAL),
-        }
+        SpecialKind::Torus => motion
+            .nontrivial()
+            .any(|multiplier| multiplier.im != 0.0 && (multiplier.norm() - 1.0).abs() < CRITICAL),
+        _ => true,
     }
 }
 
@@ -78,7 +80,6 @@ impl SlidingBifurcation {
 #[derive(Clone, Debug)]
 pub(super) struct CurvePoint {
     pub motion: PeriodicSliding,
-    pub bifurcation: Option<SlidingBifurcation>,
 }
 
 /// The curve, with the memory of its last linear equations.
@@ -263,6 +264,8 @@ impl Refusal {
 
 impl Curve for SlidingCurve<'_> {
     type Point = CurvePoint;
+    type Kind = SpecialKind;
+    type Reason = Infallible;
 
     fn unknowns(&self) -> usize {
         self.map.free().len() + 2
@@ -329,33 +332,46 @@ impl Curve for SlidingCurve<'_> {
             .map_err(|refusal| invalid(refusal.to_string()))?;
         self.map.expected = Some(image.passages.clone());
         self.last = Some((at, image));
-        Ok(CurvePoint { motion, bifurcation: None })
+        Ok(CurvePoint { motion })
     }
 
-    fn special_points(
-        &mut self,
-        before: &Solution<CurvePoint>,
-        after: &Solution<CurvePoint>,
-    ) -> Result<Vec<Solution<CurvePoint>>, Error> {
-        let settings = self.settings;
-        let mut found = Vec::new();
-        for bifurcation in SlidingBifurcation::ALL {
-            if bifurcation.test(before) * bifurcation.test(after) >= 0.0 {
-                continue;
-            }
-            let test = |_: &mut Self, solution: &Solution<CurvePoint>| Some(bifurcation.test(solution));
-            if let Ok(Some(mut solution)) = locate(self, before, after, &settings, LOCATED, test)
-                && bifurcation.is_at(&solution.point.motion)
-            {
-                solution.point.bifurcation = Some(bifurcation);
-                found.push(solution);
-            }
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<CurvePoint>) -> Option<Reading> {
+        test(kind, solution).map(Reading::exact)
+    }
+
+    fn spectrum(&self, solution: &Solution<CurvePoint>) -> Spectrum {
+        let nontrivial: Vec<Complex64> = solution.point.motion.nontrivial().collect();
+        let exponents: Vec<Complex64> = nontrivial
+            .iter()
+            .map(|multiplier| {
+                Complex64::new(multiplier.norm().ln().max(SMALLEST_LOGARITHM), multiplier.arg())
+            })
+            .collect();
+        Spectrum {
+            unstable: exponents.iter().filter(|exponent| exponent.re > 0.0).count(),
+            decided: exponents.iter().all(|exponent| exponent.re.abs() > UNDECIDED),
+            exponents,
+            noise: UNDECIDED,
+            is_periodic: true,
         }
-        let distance = |solution: &Solution<CurvePoint>| -> f64 {
-            solution.unknown.iter().zip(&before.unknown).map(|(a, b)| (a - b).powi(2)).sum()
-        };
-        found.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        Ok(found)
+    }
+
+    fn locate(
+        &mut self,
+        kind: SpecialKind,
+        [before, after]: [&Solution<CurvePoint>; 2],
+    ) -> Result<Location<CurvePoint>, Error> {
+        let settings = self.settings;
+        let value = |_: &mut Self, solution: &Solution<CurvePoint>| test(kind, solution);
+        Ok(match locate(self, before, after, &settings, LOCATED, value) {
+            Ok(Some(solution)) if is_at(kind, &solution.point.motion) => Location::At(solution),
+            Ok(_) => Location::Nothing,
+            Err(_) => Location::Missed,
+        })
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
@@ -365,7 +381,11 @@ impl Curve for SlidingCurve<'_> {
         vec![(start.period, self.map.period_scale), (angle - TAU * (angle / TAU).round(), 1.0)]
     }
 
-    fn ending(&mut self, _before: &Solution<CurvePoint>, after: &Solution<CurvePoint>) -> Option<Ending> {
+    fn ending(
+        &mut self,
+        _before: &Solution<CurvePoint>,
+        after: &Solution<CurvePoint>,
+    ) -> Option<Ending<Infallible>> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
         self.wants_new_start =

@@ -19,10 +19,7 @@ mod search;
 mod tests;
 mod variation;
 
-pub use branch::{
-    SlidingBifurcation, SlidingBranch, SlidingBranchEnd, SlidingBranchOptions, SlidingBranchPoint,
-    SlidingRole,
-};
+pub use branch::{SlidingBranch, SlidingBranchEnd, SlidingBranchOptions, SlidingBranchPoint, SlidingRole};
 pub use error::{Grazing, Refusal, ShimmyError};
 pub use search::SlidingMotionSearch;
 

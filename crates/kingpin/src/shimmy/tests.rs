@@ -399,7 +399,7 @@ fn smoothed_friction_has_the_same_motion_in_the_limit() {
         let (field, orbit) = smoothed(smoothing);
         let branch = Cycles::of(&field, CycleStart::Orbit(orbit))
             .parameters(&field.parameters())
-            .along(0, 0.49..=0.5)
+            .along("v", 0.49..=0.5)
             .run()
             .unwrap();
         let cycle = branch.points.iter().find(|cycle| cycle.value == 0.5).unwrap();
