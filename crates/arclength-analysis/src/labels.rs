@@ -1,26 +1,6 @@
 //! Labels of special and requested cycles, numbered along a result: LPC1, PD1, NS1, BPC1, AT1.
 
-use arclength::branch::{Label, LabelCounter, SpecialKind};
-use arclength::cycle::{CyclePoint, Role, Special};
-
-/// Counts the points of each kind.
-#[derive(Debug, Default)]
-pub struct Labels(LabelCounter);
-
-impl Labels {
-    /// The label of the next cycle; `None` for a step of the continuation.
-    pub fn of(&mut self, cycle: &CyclePoint) -> Option<String> {
-        let kind = match cycle.role {
-            Role::Step => return None,
-            Role::Requested => SpecialKind::Requested,
-            Role::Special(Special::Fold) => SpecialKind::FoldOfCycles,
-            Role::Special(Special::Doubling) => SpecialKind::PeriodDoubling,
-            Role::Special(Special::Torus { .. }) => SpecialKind::Torus,
-            Role::Special(Special::BranchPoint) => SpecialKind::BranchPointOfCycles,
-        };
-        Some(self.0.next(kind).to_string())
-    }
-}
+use arclength::branch::Label;
 
 /// Whether something bifurcates at a labelled point: it was not merely asked for, nor is it an end or a neutral saddle.
 pub fn is_bifurcation(label: Option<&str>) -> bool {

@@ -27,6 +27,7 @@ pub mod simulate;
 mod start;
 mod steps;
 mod stored_model;
+mod unlocated;
 mod varying_parameter;
 
 pub use branch::Origin;
@@ -41,4 +42,5 @@ pub use result_file::ResultFile;
 pub use start::{LabelledPoint, What};
 pub use steps::{Mesh, Steps};
 pub use stored_model::StoredModel;
+pub use unlocated::UnlocatedResult;
 pub use varying_parameter::VaryingParameter;

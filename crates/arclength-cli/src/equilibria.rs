@@ -52,7 +52,9 @@ impl Equilibria {
         output.warn_of(analysis.warnings());
         let progress = Progress::spinner("equilibria", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
-        output.deliver(&result?)?;
+        let result = result?;
+        output.warn_of(&result.warnings());
+        output.deliver(&result)?;
         interruption.check_branch()
     }
 }

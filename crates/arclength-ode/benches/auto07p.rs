@@ -223,9 +223,9 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
         .run()
         .map_err(|error| error.to_string())?;
     let hopf = branch.hopf_points().nth(case.hopf).ok_or("no Hopf point")?.clone();
-    parameters[active] = hopf.parameter;
+    parameters[active] = hopf.value;
 
-    let run = |tolerance: f64| follow(case, &model, &hopf, &parameters, active, tolerance);
+    let run = |tolerance: f64| follow(case, &model, &hopf, &parameters, tolerance);
     let reference = run(1e-10)?;
     let exact = cycles_at(case, &reference)?;
     let amplitudes: Vec<Vec<f64>> = case
@@ -320,12 +320,11 @@ fn follow(
     model: &Model,
     hopf: &HopfPoint,
     parameters: &[f64],
-    active: usize,
     tolerance: f64,
 ) -> Result<CycleBranch, String> {
     Cycles::of(model, CycleStart::from(hopf))
         .parameters(parameters)
-        .along(active, case.cycles.0..=case.cycles.1)
+        .along(case.parameter, case.cycles.0..=case.cycles.1)
         .at(case.values)
         .resolution(Resolution::with_tolerance(tolerance))
         .run()
@@ -340,7 +339,7 @@ fn cycles_at(case: &Case, branch: &CycleBranch) -> Result<Vec<Cycle>, String> {
             let found = branch.points.iter().find(|point| point.value == *value);
             found
                 .map(|point| Cycle { period: point.period, max: point.max.clone() })
-                .ok_or_else(|| format!("no cycle at {value}: {}", branch.stops.1))
+                .ok_or_else(|| format!("no cycle at {value}: {:?}", branch.stops))
         })
         .collect()
 }

@@ -4,4 +4,4 @@ mod request;
 mod result;
 
 pub use request::{CyclesAnalysis, CyclesRequest};
-pub use result::{CycleResult, CyclesResult, UnlocatedResult};
+pub use result::{CycleResult, CyclesResult};

@@ -12,7 +12,7 @@ use crate::start::{LabelledPoint, What};
 use crate::steps::{Mesh, Steps};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
-use arclength::cycle::{CycleStart, Cycles, Orbit, Role};
+use arclength::cycle::{CycleStart, Cycles, Orbit};
 use arclength::equilibrium::SpecialPoint;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
@@ -161,24 +161,18 @@ impl CyclesAnalysis {
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let name = &self.chosen.model.parameters()[self.active];
-        let mut branch = Cycles::of(&self.chosen.model, self.start.clone())
+        let branch = Cycles::of(&self.chosen.model, self.start.clone())
             .parameters(&self.chosen.parameters)
-            .along(self.active, self.along.start..=self.along.end)
+            .along(name, self.along.start..=self.along.end)
             .at(&self.at)
             .settings(self.steps.settings(Settings::default()))
             .resolution(self.mesh.resolution())
-            .observer(|value, period| {
-                let (value, period) = (readable(value), readable(period));
+            .observer(|point| {
+                let (value, period) = (readable(point.value), readable(point.period));
                 control.at(&format!("cycles, {name} = {value}, period {period}"));
                 control.flow()
             })
             .run()?;
-        // The cycle at which the branch starts may be one of those asked for.
-        for cycle in &mut branch.points {
-            if cycle.role == Role::Step && self.at.contains(&cycle.value) {
-                cycle.role = Role::Requested;
-            }
-        }
         Ok(CyclesResult::new(&self.chosen, self.active, &self.along, self.origin.clone(), branch))
     }
 }

@@ -4,15 +4,15 @@ use crate::branch::{Origin, pairs, parameters, shortened, stability, tests};
 use crate::course::{self, Place};
 use crate::end::End;
 use crate::interval::Interval;
-use crate::labels::{self, Labels, is_bifurcation};
+use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::unlocated::UnlocatedResult;
 use crate::varying_parameter::VaryingParameter;
-use arclength::cycle::{Branching, CycleBranch, CyclePoint, Orbit, Unlocated};
+use arclength::cycle::{Branching, CycleBranch, CyclePoint, Orbit};
 use kingpin_figure::{Figure, FigureError, palette};
-use kingpin_report::numbers::readable;
 use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -56,27 +56,6 @@ pub struct CycleResult {
     pub branching: Option<Branching>,
 }
 
-/// A change of a test function behind which no special cycle could be located.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct UnlocatedResult {
-    /// What the test is for.
-    pub test: String,
-    /// Parameter values between which it changed.
-    pub between: [f64; 2],
-}
-
-impl UnlocatedResult {
-    /// In words, with what to try.
-    pub fn text(&self, key: &str) -> String {
-        let [first, second] = self.between.map(readable);
-        format!(
-            "the test for a {} changes between {key} = {first} and {second}, but no such cycle was located there; \
-             try: shorter steps (--finer 10)",
-            self.test
-        )
-    }
-}
-
 /// A branch of limit cycles.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CyclesResult {
@@ -109,12 +88,12 @@ impl CyclesResult {
         from: Origin,
         branch: CycleBranch,
     ) -> Self {
-        let mut labels = Labels::default();
         let count = branch.points.len();
         let points: Vec<CycleResult> = (0..)
             .zip(branch.points)
             .map(|(index, point)| {
-                let label = labels.of(&point).or_else(|| labels::of_end(index, count));
+                let own = point.label.map(|label| label.to_string());
+                let label = own.or_else(|| labels::of_end(index, count));
                 CycleResult::new(chosen, point, label)
             })
             .collect();
@@ -123,21 +102,19 @@ impl CyclesResult {
                 point.map(|point| [(along.key.clone(), point.value), ("period".to_owned(), point.period)]);
             NamedNumbers(values.into_iter().flatten().collect())
         };
-        let (first, second) = &branch.stops;
+        let [first, second] = &branch.stops;
         let keys = [along.key.as_str()];
-        let first = match first {
-            Some(stop) => End::of(stop, &keys, last(points.first())),
-            None => End { cause: "starts there".to_owned(), last: last(points.first()), remedy: None },
-        };
-        let unlocated =
-            |change: &Unlocated| UnlocatedResult { test: change.test.to_owned(), between: change.between };
+        let ends = [
+            End::of(first.as_ref(), &keys, last(points.first())),
+            End::of(second.as_ref(), &keys, last(points.last())),
+        ];
         Self {
             parameters: chosen.named_parameters(&[active]),
             model: chosen.stored.clone(),
             along: along.into(),
             from,
-            ends: [first, End::of(second, &keys, last(points.last()))],
-            unlocated: branch.unlocated.iter().map(unlocated).collect(),
+            ends,
+            unlocated: branch.unlocated.iter().map(UnlocatedResult::of).collect(),
             points,
         }
     }
@@ -185,7 +162,7 @@ impl CycleResult {
             stable: point.stable,
             error_estimate: point.error_estimate,
             intervals: point.orbit.mesh.len().saturating_sub(1),
-            tests: tests(point.tests.iter().map(|(name, value)| (test_label(name), *value))),
+            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
             normal_form,
             branching: point.branching,
             orbit: label.as_ref().map(|_| point.orbit),
@@ -195,17 +172,6 @@ impl CycleResult {
 
     fn remark(&self) -> String {
         normal_form::of_cycle(self.label.as_deref(), &self.normal_form)
-    }
-}
-
-/// The label of the special cycle at which a test function of the library changes its sign.
-fn test_label(name: &str) -> &str {
-    match name {
-        "fold" => "LPC",
-        "branch point" => "BPC",
-        "period doubling" => "PD",
-        "torus" => "NS",
-        other => other,
     }
 }
 

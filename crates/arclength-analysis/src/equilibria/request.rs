@@ -106,10 +106,11 @@ impl EquilibriaAnalysis {
             .along(name, self.along.start..=self.along.end)
             .at(&self.at)
             .settings(self.steps.settings(equilibrium_settings()))
-            .observed(&mut |value, _| {
-                control.at(&format!("equilibria, {name} = {}", readable(value)));
+            .observer(|point| {
+                control.at(&format!("equilibria, {name} = {}", readable(point.value)));
                 control.flow()
-            })?;
+            })
+            .run()?;
         // Whether branches cross there along this parameter too shows when they are followed.
         let start = branch.points.get(branch.start).and_then(|point| point.special.as_deref());
         if let (Some(point), Some(_), Some(SpecialPoint::BranchPoint(_))) = (&self.point, branch_point, start)

@@ -1,6 +1,6 @@
 //! A branch of equilibria as a result.
 
-use crate::branch::{Origin, pairs, parameters, stability, tests};
+use crate::branch::{Origin, pairs, parameters, shortened, stability, tests};
 use crate::course::{self, Place};
 use crate::end::End;
 use crate::interval::Interval;
@@ -9,6 +9,7 @@ use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::unlocated::UnlocatedResult;
 use crate::varying_parameter::VaryingParameter;
 use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
 use kingpin_figure::{Figure, FigureError, palette};
@@ -55,6 +56,9 @@ pub struct EquilibriaResult {
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
     pub ends: [End; 2],
+    /// What was detected but not located.
+    #[serde(default)]
+    pub unlocated: Vec<UnlocatedResult>,
     /// The equilibria in the order of the branch.
     pub points: Vec<EquilibriumResult>,
 }
@@ -67,7 +71,7 @@ impl EquilibriaResult {
     pub fn new(chosen: &ChosenModel, along: &Interval, from: Origin, branch: &EquilibriumBranch) -> Self {
         let count = branch.points.len();
         let point = |(index, point): (usize, &EquilibriumPoint)| EquilibriumResult {
-            value: point.parameter,
+            value: point.value,
             state: chosen.named_state(&point.state),
             eigenvalues: pairs(&point.eigenvalues),
             stable: point.stability.is_stable(),
@@ -82,17 +86,26 @@ impl EquilibriaResult {
             NamedNumbers(value.into_iter().chain(states).collect())
         };
         let ends = [
-            End::of(&branch.backward_stop, &[&along.key], last(points.first())),
-            End::of(&branch.forward_stop, &[&along.key], last(points.last())),
+            End::of(branch.stops[0].as_ref(), &[&along.key], last(points.first())),
+            End::of(branch.stops[1].as_ref(), &[&along.key], last(points.last())),
         ];
         Self {
-            parameters: chosen.named_parameters(&[branch.active]),
+            parameters: chosen.named_parameters(&branch.active),
             model: chosen.stored.clone(),
             along: along.into(),
             from,
             ends,
+            unlocated: branch.unlocated.iter().map(UnlocatedResult::of).collect(),
             points,
         }
+    }
+
+    /// What was detected but not located, each change once.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut texts: Vec<String> =
+            self.unlocated.iter().map(|change| change.text(&self.along.key)).collect();
+        texts.dedup();
+        shortened(texts)
     }
 
     /// Names of the states.

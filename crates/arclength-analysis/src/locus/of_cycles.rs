@@ -8,8 +8,9 @@ use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
+use crate::unlocated::{subject, test_name};
 use crate::varying_parameter::VaryingParameter;
-use arclength::branch::{Label, SpecialKind};
+use arclength::branch::{Label, SpecialKind, Unlocated};
 use arclength::cycle::Orbit;
 use arclength::locus::{CycleLocusBranch, CycleLocusPoint};
 use kingpin_figure::{Color, Figure, FigureError, palette};
@@ -65,15 +66,22 @@ pub struct UnlocatedChangeResult {
 }
 
 impl UnlocatedChangeResult {
+    /// What the engine could not locate on a curve in two parameters.
+    pub(super) fn of(change: &Unlocated) -> Self {
+        let values =
+            |side: usize| [0, 1].map(|place| change.between[side].get(place).copied().unwrap_or_default());
+        Self { test: test_name(change.kind), between: [values(0), values(1)] }
+    }
+
     /// In words, with what to try.
-    fn text(&self, [one, two]: [&str; 2]) -> String {
+    pub(super) fn text(&self, [one, two]: [&str; 2]) -> String {
         let [from, to] = self
             .between
             .map(|[first, second]| format!("{one} = {}, {two} = {}", readable(first), readable(second)));
         format!(
-            "the test for a {} changes its sign between {from} and {to}, but no such point was located there; \
+            "{} changes between {from} and {to}, but no such point was located there; \
              try: shorter steps (--finer 10)",
-            self.test
+            subject(&self.test)
         )
     }
 }
@@ -125,21 +133,17 @@ impl CycleLocusResult {
             });
             NamedNumbers(values.unwrap_or_default())
         };
-        let unlocated = branch.unlocated.iter().map(|change| UnlocatedChangeResult {
-            test: change.kind.name().to_owned(),
-            between: change.between,
-        });
         Self {
             parameters: chosen.named_parameters(&branch.active),
-            kind: branch.kind,
+            kind: branch.kind.unwrap_or(SpecialKind::FoldOfCycles),
             model: chosen.stored.clone(),
             plane: plane.map(VaryingParameter::from),
             from,
             ends: [
-                End::of(&branch.backward_stop, &keys, last(points.first())),
-                End::of(&branch.forward_stop, &keys, last(points.last())),
+                End::of(branch.stops[0].as_ref(), &keys, last(points.first())),
+                End::of(branch.stops[1].as_ref(), &keys, last(points.last())),
             ],
-            unlocated: unlocated.collect(),
+            unlocated: branch.unlocated.iter().map(UnlocatedChangeResult::of).collect(),
             points,
         }
     }

@@ -1,6 +1,7 @@
 //! A curve of special equilibria in two parameters as a result.
 
-use crate::branch::{Origin, pairs, parameters, tests};
+use super::of_cycles::UnlocatedChangeResult;
+use crate::branch::{Origin, pairs, parameters, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::interval::Interval;
@@ -62,6 +63,9 @@ pub struct EquilibriumLocusResult {
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
     pub ends: [End; 2],
+    /// What was detected but not located.
+    #[serde(default)]
+    pub unlocated: Vec<UnlocatedChangeResult>,
     /// The points in the order of the curve.
     pub points: Vec<EquilibriumLocusPointResult>,
 }
@@ -98,18 +102,25 @@ impl EquilibriumLocusResult {
             NamedNumbers(values.unwrap_or_default())
         };
         let ends = [
-            End::of(&branch.backward_stop, &keys, last(points.first())),
-            End::of(&branch.forward_stop, &keys, last(points.last())),
+            End::of(branch.stops[0].as_ref(), &keys, last(points.first())),
+            End::of(branch.stops[1].as_ref(), &keys, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&branch.active),
-            kind: branch.kind,
+            kind: branch.kind.unwrap_or(SpecialKind::Fold),
             model: chosen.stored.clone(),
             plane: plane.map(VaryingParameter::from),
             from,
             ends,
+            unlocated: branch.unlocated.iter().map(UnlocatedChangeResult::of).collect(),
             points,
         }
+    }
+
+    /// What was detected but not located.
+    pub fn warnings(&self) -> Vec<String> {
+        let keys = [self.plane[0].key.as_str(), self.plane[1].key.as_str()];
+        shortened(self.unlocated.iter().map(|change| change.text(keys)).collect())
     }
 
     /// Names of the states.

@@ -154,7 +154,8 @@ impl LocusAnalysis {
             .and(&self.names[1], second.start..=second.end)
             .at(&self.at)
             .settings(self.steps.settings(equilibrium_settings()))
-            .observed(&mut |values, _| self.tell(control, values))?;
+            .observer(|point| self.tell(control, point.values))
+            .run()?;
         let origin = Origin::labelled(&self.point.label, how);
         let curve = EquilibriumLocusResult::new(&self.point.chosen, [first, second], origin, &branch);
         Ok(LocusResult::Equilibria(curve))
@@ -179,7 +180,8 @@ impl LocusAnalysis {
             .at(&self.at)
             .settings(self.steps.settings(Settings::default()))
             .resolution(self.mesh.resolution())
-            .observed(&mut |values, _| self.tell(control, values))?;
+            .observer(|point| self.tell(control, point.values))
+            .run()?;
         let origin = Origin::labelled(&self.point.label, how);
         Ok(CycleLocusResult::new(&self.point.chosen, [first, second], origin, branch))
     }

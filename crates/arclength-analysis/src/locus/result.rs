@@ -21,7 +21,7 @@ impl LocusResult {
     /// What was detected but not located.
     pub fn warnings(&self) -> Vec<String> {
         match self {
-            Self::Equilibria(_) => Vec::new(),
+            Self::Equilibria(curve) => curve.warnings(),
             Self::Cycles(curve) => curve.warnings(),
         }
     }

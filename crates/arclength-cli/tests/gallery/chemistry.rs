@@ -4,6 +4,7 @@ use crate::page::{COEFFICIENT, LOCATED, Page, Source, Tolerance};
 use crate::study::{Study, codimension_two, coefficient};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
+use arclength::cycle::CycleEnd;
 
 const AUTO: Source = Source::Published("demo `ab` of AUTO-07p");
 
@@ -24,37 +25,29 @@ fn ab() {
     let mut fourteen = Study::open("ab", &[("B", 14.0)]);
     let branch = fourteen.equilibria("D=0:0.4");
     let hopf = branch.hopf_points().next().unwrap();
-    page.row("Hopf point, B = 14: D", 0.16504204532, AUTO, LOCATED, hopf.parameter);
+    page.row("Hopf point, B = 14: D", 0.16504204532, AUTO, LOCATED, hopf.value);
     let hopf_points = fourteen.locus(|locus| locus.from_hopf(hopf), ["D=0:0.4", "B=10:30"]);
 
     let mut seventeen = fourteen.with("B", 17.0);
     let branch = seventeen.equilibria("D=0:0.4");
-    let values: Vec<f64> = branch.hopf_points().map(|point| point.parameter).collect();
+    let values: Vec<f64> = branch.hopf_points().map(|point| point.value).collect();
     page.row("first Hopf point, B = 17: D", 0.12086571951, AUTO, LOCATED, values[0]);
     page.row("second Hopf point, B = 17: D", 0.21708050970, AUTO, LOCATED, values[1]);
     for hopf in [0, 1] {
         let cycles = seventeen.cycles_from(&branch, hopf, "D=0:0.4", &[]);
-        assert!(matches!(cycles.stops.1, Stop::PeriodUnbounded { .. }), "{}", cycles.stops.1);
+        assert!(
+            matches!(cycles.stops[1], Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. }))),
+            "{:?}",
+            cycles.stops
+        );
     }
 
     let mut eighteen = fourteen.with("B", 18.0);
     let branch = eighteen.equilibria("D=0:0.4");
     let folds: Vec<_> = branch.folds().collect();
     let closed = |formula| Source::ClosedForm(formula);
-    page.row(
-        "first fold, B = 18: D",
-        (-1.5_f64).exp() / 2.0,
-        closed("exp(-3/2)/2"),
-        LOCATED,
-        folds[0].parameter,
-    );
-    page.row(
-        "second fold, B = 18: D",
-        2.0 * (-3.0_f64).exp(),
-        closed("2 exp(-3)"),
-        LOCATED,
-        folds[1].parameter,
-    );
+    page.row("first fold, B = 18: D", (-1.5_f64).exp() / 2.0, closed("exp(-3/2)/2"), LOCATED, folds[0].value);
+    page.row("second fold, B = 18: D", 2.0 * (-3.0_f64).exp(), closed("2 exp(-3)"), LOCATED, folds[1].value);
 
     let fold_points = fourteen.locus(|locus| locus.from_fold(folds[0]), ["D=0:0.4", "B=10:30"]);
     let cusp = codimension_two(&fold_points, SpecialKind::Cusp, 0);
@@ -105,7 +98,7 @@ fn brusselator() {
     let mut study = Study::open("brusselator", &[]);
     let branch = study.equilibria("b=0.5:5");
     let hopf = branch.hopf_points().next().unwrap();
-    page.row("Hopf point: b", 2.0, Source::ClosedForm("1 + a^2"), LOCATED, hopf.parameter);
+    page.row("Hopf point: b", 2.0, Source::ClosedForm("1 + a^2"), LOCATED, hopf.value);
     page.row("angular frequency", 1.0, Source::ClosedForm("a"), LOCATED, hopf.frequency);
     page.row("Re c1", -0.5, Source::ClosedForm("-1/2 at a = 1"), COEFFICIENT, hopf.c1_real.unwrap());
     let cycles = study.cycles_from(&branch, 0, "b=0.5:5", &[3.0]);

@@ -5,7 +5,7 @@ use crate::study::{Study, codimension_two, special};
 use arclength::VectorField;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::Special;
+use arclength::cycle::CycleEnd;
 use arclength::equilibrium::HopfPoint;
 
 /// Bisection where continuation is not wanted.
@@ -42,7 +42,7 @@ fn fitzhugh_nagumo() {
         let v: f64 = sign * (1.0_f64 - b * epsilon).sqrt();
         let exact = (v + a) / b - v + v.powi(3) / 3.0;
         let formula = Source::ClosedForm("(v + a)/b - v + v^3/3, v^2 = 1 - b epsilon");
-        page.row(format!("{name} Hopf point: i0"), exact, formula, LOCATED, point.parameter);
+        page.row(format!("{name} Hopf point: i0"), exact, formula, LOCATED, point.value);
         let frequency = (epsilon - (b * epsilon).powi(2)).sqrt();
         page.row(
             "its angular frequency",
@@ -73,19 +73,13 @@ fn hodgkin_huxley() {
     let mut study = Study::open("hodgkin_huxley", &[("el", 10.613)]);
     let branch = study.equilibria("i0=0:200");
     let points: Vec<&HopfPoint> = branch.hopf_points().collect();
-    page.row("first Hopf point: i0", 9.7754379953935, PROOF, Tolerance::Relative(1e-12), points[0].parameter);
-    page.row(
-        "second Hopf point: i0",
-        154.5224336658085,
-        PROOF,
-        Tolerance::Relative(1e-12),
-        points[1].parameter,
-    );
+    page.row("first Hopf point: i0", 9.7754379953935, PROOF, Tolerance::Relative(1e-12), points[0].value);
+    page.row("second Hopf point: i0", 154.5224336658085, PROOF, Tolerance::Relative(1e-12), points[1].value);
     assert!(points[0].first_lyapunov.unwrap() > 0.0 && points[1].first_lyapunov.unwrap() < 0.0);
     let cycles = study.cycles_from(&branch, 0, "i0=0:200", &[]);
     let own = Tolerance::Relative(1e-7);
-    let folds = special(&cycles, |special| special == Special::Fold);
-    let doublings = special(&cycles, |special| special == Special::Doubling);
+    let folds = special(&cycles, |special| special == SpecialKind::FoldOfCycles);
+    let doublings = special(&cycles, |special| special == SpecialKind::PeriodDoubling);
     for (cycle, value, name) in [
         (folds[0], 7.8423471202, "first fold of cycles"),
         (doublings[0], 7.8453373978, "first period doubling"),
@@ -95,10 +89,12 @@ fn hodgkin_huxley() {
     ] {
         page.row(format!("{name}: i0"), value, Source::OwnValue, own, cycle.value);
     }
-    let Stop::HopfPoint { parameter, .. } = cycles.stops.1 else { panic!("{}", cycles.stops.1) };
+    let Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. })) = cycles.stops[1] else {
+        panic!("{:?}", cycles.stops)
+    };
     page.row(
         "Hopf point at which the cycles end: i0",
-        points[1].parameter,
+        points[1].value,
         Source::ClosedForm("the second Hopf point"),
         LOCATED,
         parameter,
@@ -150,7 +146,7 @@ fn morris_lecar() {
             current(v),
             source(),
             Tolerance::Relative(1e-9),
-            point.parameter,
+            point.value,
         );
     }
     study.cycles_from(&branch, 0, "iapp=0:300", &[]);

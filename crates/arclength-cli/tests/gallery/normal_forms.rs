@@ -3,7 +3,7 @@
 use crate::page::{COEFFICIENT, CYCLE, LOCATED, Page, Source, Tolerance};
 use crate::study::{Study, at, codimension_two, coefficient, special};
 use arclength::branch::SpecialKind;
-use arclength::cycle::{CycleStart, Special};
+use arclength::cycle::CycleStart;
 use std::f64::consts::{PI, TAU};
 
 const EXACT: Tolerance = Tolerance::Absolute(1e-12);
@@ -23,8 +23,8 @@ fn cusp() {
     let branch = study.equilibria("beta1=-1:1");
     let exact = 2.0 / 27.0_f64.sqrt();
     let folds: Vec<_> = branch.folds().collect();
-    page.row("first fold: beta1", exact, closed("2/sqrt(27)"), LOCATED, folds[0].parameter);
-    page.row("second fold: beta1", -exact, closed("-2/sqrt(27)"), LOCATED, folds[1].parameter);
+    page.row("first fold: beta1", exact, closed("2/sqrt(27)"), LOCATED, folds[0].value);
+    page.row("second fold: beta1", -exact, closed("-2/sqrt(27)"), LOCATED, folds[1].value);
     let curve = study.locus(|locus| locus.from_fold(folds[0]), ["beta1=-1:1", "beta2=-1:1.5"]);
     let point = codimension_two(&curve, SpecialKind::Cusp, 0);
     page.row("cusp: beta1", 0.0, closed("0"), EXACT, point.values[0]);
@@ -60,9 +60,9 @@ fn bogdanov_takens() {
     let branch = study.equilibria("beta1=-1:0.5");
     let hopf = branch.hopf_points().next().unwrap();
     let fold = branch.folds().next().unwrap();
-    page.row("Hopf point at beta2 = -1: beta1", 0.0, closed("0"), EXACT, hopf.parameter);
+    page.row("Hopf point at beta2 = -1: beta1", 0.0, closed("0"), EXACT, hopf.value);
     page.row("its angular frequency", 1.0, closed("sqrt(-beta2)"), LOCATED, hopf.frequency);
-    page.row("fold at beta2 = -1: beta1", 0.25, closed("beta2^2/4"), LOCATED, fold.parameter);
+    page.row("fold at beta2 = -1: beta1", 0.25, closed("beta2^2/4"), LOCATED, fold.value);
     let plane = ["beta1=-1:1", "beta2=-2:2"];
     let curves = [
         (study.locus(|locus| locus.from_hopf(hopf), plane), "Hopf points"),
@@ -97,7 +97,7 @@ fn bautin() {
     let mut study = Study::open("bautin", &[]);
     let branch = study.equilibria("beta1=-1:1");
     let hopf = branch.hopf_points().next().unwrap();
-    page.row("Hopf point: beta1", 0.0, closed("0"), EXACT, hopf.parameter);
+    page.row("Hopf point: beta1", 0.0, closed("0"), EXACT, hopf.value);
     page.row(
         "its first Lyapunov coefficient",
         2.0,
@@ -106,7 +106,7 @@ fn bautin() {
         hopf.first_lyapunov.unwrap(),
     );
     let cycles = study.cycles_from(&branch, 0, "beta1=-1:1", &[0.5]);
-    let folds = special(&cycles, |special| special == Special::Fold);
+    let folds = special(&cycles, |special| special == SpecialKind::FoldOfCycles);
     page.row("fold of cycles: beta1", -0.25, closed("-beta2^2/4"), LOCATED, folds[0].value);
     page.row("its largest x", 0.5_f64.sqrt(), closed("sqrt(beta2/2)"), CYCLE, folds[0].max[0]);
     let radius = (0.5 + 0.75_f64.sqrt()).sqrt();
@@ -183,11 +183,8 @@ fn langford() {
     let orbit = study.settled(500.0, 40.0);
     let parameters = study.chosen.parameters.clone();
     let cycles = study.cycles(CycleStart::Orbit(orbit), &parameters, "lambda=1.7:2.1", &[]);
-    let found = cycles.special_points().find_map(|(special, point)| match special {
-        Special::Torus { argument } => Some((argument, point)),
-        _ => None,
-    });
-    let (argument, torus) = found.expect("a torus bifurcation");
+    let torus = cycles.of_kind(SpecialKind::Torus).next().expect("a torus bifurcation");
+    let argument = torus.normal_form.iter().find(|(name, _)| *name == "argument").expect("an argument").1;
     page.row("torus bifurcation: lambda", 2.0, closed("2"), LOCATED, torus.value);
     page.row("its period", 8.0 * PI, closed("2 pi/c"), CYCLE, torus.period);
     page.row("its largest x", 1.0, closed("1"), CYCLE, torus.max[0]);

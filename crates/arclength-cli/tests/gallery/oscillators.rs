@@ -4,7 +4,7 @@ use crate::page::{COEFFICIENT, CYCLE, LOCATED, Page, Source, Tolerance};
 use crate::study::{Study, at, special};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
-use arclength::cycle::{CycleStart, Special};
+use arclength::cycle::{CycleEnd, CycleStart};
 
 #[test]
 fn lure() {
@@ -23,10 +23,10 @@ fn lure() {
     let mut study = Study::open("lure", &[]);
     let branch = study.equilibria("alpha=-1.5:1.5");
     let hopf = branch.hopf_points().next().unwrap();
-    page.row("Hopf point: alpha", 1.0, Source::ClosedForm("1"), LOCATED, hopf.parameter);
+    page.row("Hopf point: alpha", 1.0, Source::ClosedForm("1"), LOCATED, hopf.value);
     page.row("its first Lyapunov coefficient", -0.3, MATCONT, COEFFICIENT, hopf.first_lyapunov.unwrap());
     let cycles = study.cycles_from(&branch, 0, "alpha=-1.5:1.5", &[]);
-    let doublings = special(&cycles, |special| special == Special::Doubling);
+    let doublings = special(&cycles, |special| special == SpecialKind::PeriodDoubling);
     for (cycle, sign, name) in [(doublings[0], 1.0, "first"), (doublings[1], -1.0, "second")] {
         page.row(
             format!("{name} period doubling: alpha"),
@@ -37,11 +37,13 @@ fn lure() {
         );
         page.row("its period", 6.364071339, MATCONT, CYCLE, cycle.period);
     }
-    let Stop::HopfPoint { parameter, .. } = cycles.stops.1 else { panic!("{}", cycles.stops.1) };
+    let Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. })) = cycles.stops[1] else {
+        panic!("{:?}", cycles.stops)
+    };
     assert!((parameter + 1.0).abs() < 1e-4, "{parameter}");
     const REFERENCE: Source = Source::Published("reference value of this project");
     let doubled = study.doubled_from(doublings[0], "alpha=-1.5:1.5", &[]);
-    let folds = special(&doubled, |special| special == Special::Fold);
+    let folds = special(&doubled, |special| special == SpecialKind::FoldOfCycles);
     for (cycle, sign, name) in [(folds[0], -1.0, "first"), (folds[1], 1.0, "second")] {
         page.row(
             format!("doubled branch, {name} fold of cycles: alpha"),
@@ -51,7 +53,7 @@ fn lure() {
             cycle.value,
         );
     }
-    let again = special(&doubled, |special| special == Special::Doubling);
+    let again = special(&doubled, |special| special == SpecialKind::PeriodDoubling);
     page.row(
         "doubled branch, period doubling: alpha",
         -0.0447196616,
@@ -60,7 +62,9 @@ fn lure() {
         again[1].value,
     );
     page.row("its period", 11.062836564, REFERENCE, CYCLE, again[1].period);
-    let Stop::PeriodDoubling { parameter, .. } = doubled.stops.1 else { panic!("{}", doubled.stops.1) };
+    let Some(Stop::Problem(CycleEnd::PeriodDoubling { parameter, .. })) = doubled.stops[1] else {
+        panic!("{:?}", doubled.stops)
+    };
     page.row(
         "end of the doubled branch: alpha",
         -0.6303020062,
@@ -70,8 +74,8 @@ fn lure() {
     );
     page.figure("", "Equilibria and cycles over alpha", study.diagram());
     let curve = study.cycle_locus(SpecialKind::PeriodDoubling, doublings[0], ["alpha=-2:2", "beta=0.2:2"]);
-    assert!(matches!(curve.forward_stop, Stop::Closed), "{}", curve.forward_stop);
-    for (number, (_, point)) in curve.special_points().enumerate() {
+    assert!(matches!(curve.stops[1], Some(Stop::Closed)), "{:?}", curve.stops);
+    for (number, (_, point)) in curve.special().enumerate() {
         let place = format!("1:2 resonance {} on the curve of period doublings: alpha", number + 1);
         page.row(
             place,
@@ -104,11 +108,11 @@ fn lorenz() {
         1.0,
         Source::ClosedForm("1"),
         LOCATED,
-        origin.branch_points().next().unwrap().parameter,
+        origin.branch_points().next().unwrap().value,
     );
     let other = study.other_branch(&origin, 0, "rho=0:30");
     let exact = 470.0 / 19.0;
-    let hopf: Vec<f64> = other.hopf_points().map(|point| point.parameter).collect();
+    let hopf: Vec<f64> = other.hopf_points().map(|point| point.value).collect();
     page.row(
         "Hopf points: rho",
         exact,
@@ -118,7 +122,11 @@ fn lorenz() {
     );
     assert_eq!(hopf.len(), 2);
     let cycles = study.cycles_from(&other, 0, "rho=0:30", &[]);
-    assert!(matches!(cycles.stops.1, Stop::PeriodUnbounded { .. }), "{}", cycles.stops.1);
+    assert!(
+        matches!(cycles.stops[1], Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. }))),
+        "{:?}",
+        cycles.stops
+    );
     let last = cycles.points.last().unwrap();
     page.row("homoclinic orbit: rho", 13.92656, Source::OwnValue, Tolerance::Relative(1e-4), last.value);
     page.figure("", "Equilibria and cycles over rho", study.diagram());
@@ -128,7 +136,7 @@ fn lorenz() {
     let orbit = high.settled(200.0, 2.0);
     let parameters = high.chosen.parameters.clone();
     let cycles = high.cycles(CycleStart::Orbit(orbit), &parameters, "rho=205:320", &[]);
-    let doubling = special(&cycles, |special| special == Special::Doubling);
+    let doubling = special(&cycles, |special| special == SpecialKind::PeriodDoubling);
     page.row(
         "period doubling: rho",
         229.40670855,
@@ -138,7 +146,7 @@ fn lorenz() {
     );
     let mut doubled = high.doubled_from(doubling[0], "rho=205:320", &[]);
     for (reference, name) in [(218.21012778, "second"), (215.96593069, "third")] {
-        let found = special(&doubled, |special| special == Special::Doubling);
+        let found = special(&doubled, |special| special == SpecialKind::PeriodDoubling);
         let next =
             found.iter().min_by(|a, b| (a.value - reference).abs().total_cmp(&(b.value - reference).abs()));
         let next = *next.unwrap();
@@ -184,7 +192,7 @@ fn rossler() {
         Tolerance::Relative(1e-7),
         cycle.multipliers[0].re,
     );
-    let doubling = special(&cycles, |special| special == Special::Doubling);
+    let doubling = special(&cycles, |special| special == SpecialKind::PeriodDoubling);
     let doubled = study.doubled_from(doubling[0], "c=0.5:6", &[5.7]);
     let cycle = at(&doubled, 5.7);
     page.row("period of the doubled cycle at c = 5.7", 11.7586260717, CHAOSBOOK, CYCLE, cycle.period);

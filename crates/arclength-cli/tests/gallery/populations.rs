@@ -4,6 +4,7 @@ use crate::page::{CYCLE, LOCATED, Page, Source, Tolerance};
 use crate::study::{Study, at, codimension_two, coefficient};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
+use arclength::cycle::CycleEnd;
 
 #[test]
 fn pp2() {
@@ -22,17 +23,21 @@ fn pp2() {
     page.command("arclength show trivial.json prey.json both.json cycles.json -o pp2.svg");
     let mut study = Study::open("pp2", &[]);
     let trivial = study.equilibria("p1=0.2:0.9");
-    page.row("branch point: p1", 0.6, AUTO, LOCATED, trivial.branch_points().next().unwrap().parameter);
+    page.row("branch point: p1", 0.6, AUTO, LOCATED, trivial.branch_points().next().unwrap().value);
     let prey = study.other_branch(&trivial, 0, "p1=0.2:0.9");
-    page.row("fold: p1", 0.83292932223, AUTO, LOCATED, prey.folds().next().unwrap().parameter);
-    let place = prey.branch_points().position(|point| point.parameter > 0.7).unwrap();
+    page.row("fold: p1", 0.83292932223, AUTO, LOCATED, prey.folds().next().unwrap().value);
+    let place = prey.branch_points().position(|point| point.value > 0.7).unwrap();
     let both = study.other_branch(&prey, place, "p1=0.2:0.9");
     let hopf = both.hopf_points().next().unwrap();
-    page.row("Hopf point: p1", 0.67159384747883, AUTO, Tolerance::Relative(1e-12), hopf.parameter);
+    page.row("Hopf point: p1", 0.67159384747883, AUTO, Tolerance::Relative(1e-12), hopf.value);
     page.row("its angular frequency", 0.6047822219, AUTO, LOCATED, hopf.frequency);
     let cycles = study.cycles_from(&both, 0, "p1=0.2:0.9", &[0.7]);
     page.row("period of the cycle at p1 = 0.7", 17.12989088, AUTO, CYCLE, at(&cycles, 0.7).period);
-    assert!(matches!(cycles.stops.1, Stop::PeriodUnbounded { .. }), "{}", cycles.stops.1);
+    assert!(
+        matches!(cycles.stops[1], Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. }))),
+        "{:?}",
+        cycles.stops
+    );
     page.figure("", "Equilibria and cycles over p1", study.diagram());
     page.finish();
 }

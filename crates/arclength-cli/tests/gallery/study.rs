@@ -3,7 +3,7 @@
 use crate::gallery;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
-use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Special};
+use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::{Equilibria, EquilibriumBranch, equilibrium_settings};
 use arclength::integration::{Integrator, autonomous};
 use arclength::locus::{
@@ -112,18 +112,12 @@ impl Study {
         let active = self.chosen.model.parameter_index(&range.key).expect("a parameter");
         let branch = Cycles::of(&self.chosen.model, start)
             .parameters(parameters)
-            .along(active, range.start..=range.end)
+            .along(&range.key, range.start..=range.end)
             .at(at)
             .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
             .run()
             .unwrap();
-        let kept = CycleBranch {
-            parameter: branch.parameter.clone(),
-            points: branch.points.clone(),
-            stops: (None, arclength::continuation::Stop::Interrupted),
-            unlocated: Vec::new(),
-        };
-        let report = CyclesResult::new(&self.chosen, active, &range, Origin::initial_state(), kept);
+        let report = CyclesResult::new(&self.chosen, active, &range, Origin::initial_state(), branch.clone());
         self.branches.push(ResultFile::Cycles(report));
         branch
     }
@@ -203,8 +197,8 @@ impl Study {
 }
 
 /// The special cycles of a kind, in the order of the branch.
-pub fn special(branch: &CycleBranch, wanted: impl Fn(Special) -> bool) -> Vec<&CyclePoint> {
-    branch.special_points().filter(|(special, _)| wanted(*special)).map(|(_, point)| point).collect()
+pub fn special(branch: &CycleBranch, wanted: impl Fn(SpecialKind) -> bool) -> Vec<&CyclePoint> {
+    branch.special().filter(|(special, _)| wanted(*special)).map(|(_, point)| point).collect()
 }
 
 /// The cycle at a value that was asked for.
