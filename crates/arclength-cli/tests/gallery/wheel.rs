@@ -43,7 +43,7 @@ fn towed_wheel() {
     );
     let along = Along::new(Key::V, 0.5, 12.0).unwrap();
     let wheel = Wheel::default();
-    let rust = wheel.hopf_points(along).unwrap().points.remove(0);
+    let rust = wheel.hopf_points(along, &arclength::control::Control::none()).unwrap().points.remove(0);
     let model = || Source::ClosedForm("the Rust model");
     page.row("Hopf point: v", rust.value, model(), Tolerance::Relative(1e-12), hopf.parameter);
     page.row(

@@ -2,6 +2,7 @@
 
 use crate::description;
 use crate::error::Error;
+use arclength_analysis::Control;
 use kingpin::branches::{Along, HopfSearch};
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
@@ -11,7 +12,7 @@ use kingpin_report::numbers::readable;
 /// # Errors
 /// [`Error::NothingFound`] with the stability at both ends, and those of the search.
 pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Error> {
-    let search = wheel.hopf_points(along)?;
+    let search = wheel.hopf_points(along, &Control::none())?;
     if !search.points.is_empty() {
         return Ok(search);
     }

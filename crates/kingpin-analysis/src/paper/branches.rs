@@ -6,6 +6,7 @@ use super::wheel::{RADII, paper_wheel};
 use crate::error::Error;
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::CyclePoint;
+use arclength_analysis::Control;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use kingpin::{Key, Wheel};
 use rayon::prelude::*;
@@ -126,7 +127,7 @@ pub(super) fn hopf_point(caster_length: f64, radius: f64) -> Result<HopfPoint, E
     let critical = radius * anywhere.critical_yaw_rate().ok_or_else(not_found)?;
     let along = Along::new(Key::V, SEARCH.0 * critical, SEARCH.1 * critical)?;
     let wheel = paper_wheel(SEARCH.0 * critical, caster_length, radius)?;
-    wheel.hopf_points(along)?.points.into_iter().next().ok_or_else(not_found)
+    wheel.hopf_points(along, &Control::none())?.points.into_iter().next().ok_or_else(not_found)
 }
 
 fn options() -> CycleOptions {

@@ -9,6 +9,7 @@ use crate::paper::numbers::{largest, number, per_cent};
 use crate::paper::wheel::paper_wheel;
 use arclength::branch::Criticality;
 use arclength::cycle::{CyclePoint, Role, Special};
+use arclength_analysis::Control;
 use kingpin::branches::HopfPoint;
 use rayon::prelude::*;
 
@@ -137,7 +138,7 @@ fn boundary_of_the_basin(
     let more: Vec<String> = branches.of_figure_6().filter_map(more_unstable_directions).collect();
     let wheel = branch.wheel(SPEED)?;
     let samples = (SETTLING / cycle.period) as usize * SAMPLES;
-    let history = wheel.simulate(SETTLING, &[("psi", KICK)], samples + 1)?;
+    let history = wheel.simulate(SETTLING, &[("psi", KICK)], samples + 1, &Control::none())?;
     let angles: Vec<f64> = history.states.iter().map(|state| state[2]).collect();
     let left = swing(&angles[samples - SAMPLES..]) / (2.0 * KICK);
     let amplitude = 0.5 * (cycle.max[2] - cycle.min[2]);
@@ -308,7 +309,8 @@ fn swing_after(branch: &Branch, cycle: &CyclePoint, scale: f64) -> Result<f64, E
         *value += scale * (on_cycle - *value);
     }
     let samples = PERIODS * SAMPLES;
-    let history = wheel.simulate_from(&start, PERIODS as f64 * cycle.period, samples + 1)?;
+    let history =
+        wheel.simulate_from(&start, PERIODS as f64 * cycle.period, samples + 1, &Control::none())?;
     let angles: Vec<f64> = history.states.iter().map(|state| state[2]).collect();
     Ok(swing(&angles[samples - SAMPLES..]) / (cycle.max[2] - cycle.min[2]))
 }
