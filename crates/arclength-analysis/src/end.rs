@@ -1,5 +1,6 @@
 //! Why a branch ends, as results tell it.
 
+use crate::varying_parameter::VaryingParameter;
 use arclength::Error;
 use arclength::continuation::Stop;
 use kingpin_report::NamedNumbers;
@@ -18,13 +19,28 @@ pub struct End {
 }
 
 impl End {
-    /// The end of a branch, with its last good point, along parameters with these names.
-    pub fn of(stop: &Stop, keys: &[&str], last: NamedNumbers) -> Self {
-        let key = keys.first().copied().unwrap_or_default();
+    /// The start of a branch at a point where it begins.
+    pub fn start(last: NamedNumbers) -> Self {
+        Self { cause: "starts there".to_owned(), last, remedy: None }
+    }
+
+    /// The end of a branch along these parameters, with its last good point. Where the parameters have units, they are those of
+    /// the SI.
+    pub fn of(stop: &Stop, varying: &[VaryingParameter], last: NamedNumbers) -> Self {
+        let [second, radians] =
+            if varying.iter().any(|parameter| parameter.unit.is_some()) { [" s", " rad/s"] } else { [""; 2] };
+        let at = |index: usize, value: f64| match varying.get(index).or(varying.first()) {
+            Some(parameter) => parameter.at(value),
+            None => readable(value),
+        };
+        let near = |value: f64| match varying.first() {
+            Some(parameter) => parameter.near(value),
+            None => significant(value, 3),
+        };
+        let key = varying.first().map(|parameter| parameter.key.as_str()).unwrap_or_default();
         let (cause, remedy) = match stop {
             Stop::RangeEnd { bound, value } => {
-                let key = keys.get(*bound).copied().unwrap_or(key);
-                (format!("reached the end of the interval, {key} = {}", readable(*value)), None)
+                (format!("reached the end of the interval, {}", at(*bound, *value)), None)
             }
             Stop::Closed => ("the branch is closed: it came back to where it started".to_owned(), None),
             Stop::StepTooSmall { cause } => (
@@ -40,34 +56,33 @@ impl End {
             ),
             Stop::HopfPoint { parameter, frequency, located: false } => (
                 format!(
-                    "the cycles shrink to a Hopf point near {key} = {} with an angular frequency of about {}; it was not located",
-                    significant(*parameter, 3),
+                    "the cycles shrink to a Hopf point near {} with an angular frequency of about {}{radians}; it was not located",
+                    near(*parameter),
                     significant(*frequency, 3)
                 ),
                 Some("shorter steps (--finer 10)"),
             ),
             Stop::HopfPoint { parameter, frequency, .. } => (
                 format!(
-                    "the cycles shrink to a Hopf point at {key} = {} with angular frequency {}",
-                    readable(*parameter),
+                    "the cycles shrink to a Hopf point at {} with angular frequency {}{radians}",
+                    at(0, *parameter),
                     readable(*frequency)
                 ),
                 None,
             ),
             Stop::GeneralizedHopfPoint { values: [first, second], frequency } => (
                 format!(
-                    "the cycles shrink to a generalised Hopf point at {key} = {}, {} = {} with angular frequency {}",
-                    readable(*first),
-                    keys.get(1).copied().unwrap_or_default(),
-                    readable(*second),
+                    "the cycles shrink to a generalised Hopf point at {}, {} with angular frequency {}{radians}",
+                    at(0, *first),
+                    at(1, *second),
                     readable(*frequency)
                 ),
                 None,
             ),
             Stop::PeriodDoubling { parameter, period } => (
                 format!(
-                    "the doubled cycles end at a period doubling at {key} = {}, where the single cycle has the period {}",
-                    readable(*parameter),
+                    "the doubled cycles end at a period doubling at {}, where the single cycle has the period {}{second}",
+                    at(0, *parameter),
                     readable(*period)
                 ),
                 None,
@@ -80,9 +95,9 @@ impl End {
             ),
             Stop::PeriodUnbounded { period, parameter } => (
                 format!(
-                    "the period grows without bound ({} at {key} = {}): a homoclinic or heteroclinic orbit is near",
+                    "the period grows without bound ({}{second} at {}): a homoclinic or heteroclinic orbit is near",
                     readable(*period),
-                    readable(*parameter)
+                    at(0, *parameter)
                 ),
                 None,
             ),

@@ -1,7 +1,13 @@
 //! A branch of limit cycles of a model, from a labelled point of an earlier result.
 
+mod cycle;
 mod request;
 mod result;
+mod story;
+mod unlocated;
 
+pub use cycle::CycleResult;
 pub use request::{CyclesAnalysis, CyclesRequest};
-pub use result::{CycleResult, CyclesResult, UnlocatedResult};
+pub use result::CyclesResult;
+pub use story::tell;
+pub use unlocated::{UnlocatedResult, warnings};

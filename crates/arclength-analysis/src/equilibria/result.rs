@@ -81,9 +81,10 @@ impl EquilibriaResult {
             let states = point.iter().flat_map(|point| point.state.0.iter().cloned());
             NamedNumbers(value.into_iter().chain(states).collect())
         };
+        let varying = [VaryingParameter::from(along)];
         let ends = [
-            End::of(&branch.backward_stop, &[&along.key], last(points.first())),
-            End::of(&branch.forward_stop, &[&along.key], last(points.last())),
+            End::of(&branch.backward_stop, &varying, last(points.first())),
+            End::of(&branch.forward_stop, &varying, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&[branch.active]),
@@ -175,7 +176,7 @@ impl Report for EquilibriaResult {
         let mut story = Story::new();
         story.tell("start", self.from.text());
         course::tell_ends(&mut story, &self.ends);
-        course::tell_way(&mut story, &self.along.key, &places);
+        course::tell_way(&mut story, &self.along, &places);
         let degenerate =
             |point: &&EquilibriumResult| matches!(point.special, Some(SpecialPoint::Degenerate { .. }));
         for point in self.points.iter().filter(degenerate) {

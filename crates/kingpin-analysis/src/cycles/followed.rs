@@ -1,14 +1,10 @@
 //! Branches of cycles as they are followed, each with what it starts from.
 
-use crate::along::as_followed;
 use crate::error::Error;
-use crate::hopf::search::label;
+use crate::hopf::search::{label, same_value};
 use arclength::continuation::Stop;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use std::ops::ControlFlow;
-
-/// Relative distance of parameter values within which two Hopf points are the same.
-const SAME_HOPF_POINT: f64 = 1e-6;
 
 /// A branch with the label of what it starts from.
 #[derive(Debug)]
@@ -44,16 +40,11 @@ pub fn from_hopf_points(
         }
         let cycles = hopf.cycles(along, options, &mut observer)?;
         let reached = points.iter().enumerate().find(|(_, other)| match cycles.stops.1 {
-            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, other.value), parameter),
+            Stop::HopfPoint { parameter, .. } => same_value(other.value, parameter),
             _ => false,
         });
         let reached = reached.map(|(index, other)| (label(index), other.clone()));
         branches.push(FollowedBranch { origin, hopf: Some(hopf.clone()), reached, cycles });
     }
     Ok(branches)
-}
-
-/// Whether two values of the parameter are those of one Hopf point.
-pub fn same_value(first: f64, second: f64) -> bool {
-    first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
 }

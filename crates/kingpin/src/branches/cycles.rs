@@ -28,7 +28,7 @@ pub struct WheelCycles {
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
-    /// Why the branch ends, at its first and at its last point; the first is `None` at a Hopf point.
+    /// Why the branch ends, at its first and at its last point, in values of the key; the first is `None` at a Hopf point.
     pub stops: (Option<Stop>, Stop),
     /// Changes of test functions behind which no special cycle could be located.
     pub unlocated: Vec<Unlocated>,
@@ -110,7 +110,7 @@ impl Wheel {
             .observer(|value, period| observer(along.convert(value), period))
             .run()?;
         for point in &mut branch.points {
-            model.complete_extrema(point, &[point.value]);
+            model.complete_extrema(&point.orbit, &mut point.max, &mut point.min, &[point.value]);
             point.value = along.convert(point.value);
         }
         for missed in &mut branch.unlocated {
@@ -120,7 +120,7 @@ impl Wheel {
             wheel: *self,
             along,
             points: branch.points,
-            stops: branch.stops,
+            stops: (branch.stops.0.map(|stop| along.convert_stop(stop)), along.convert_stop(branch.stops.1)),
             unlocated: branch.unlocated,
         })
     }

@@ -3,13 +3,16 @@
 //!
 //! The turning radius may be followed to infinity: behind the scenes `r` is then replaced by `1/r`.
 
+mod curves;
 mod cycles;
 mod hopf;
 
+pub use curves::{CurveOptions, CycleCurve, HopfCurve};
 pub use cycles::{CycleOptions, WheelCycles};
-pub use hopf::{HopfPoint, HopfSearch};
+pub use hopf::{HopfPoint, HopfSearch, MotionBranch};
 
 use crate::{Key, KingpinError, Wheel};
+use arclength::continuation::Stop;
 
 /// A parameter and the interval in which it varies.
 ///
@@ -72,6 +75,36 @@ impl Along {
     /// A value of the key as a value of the parameter that is followed, and back: both are the same map.
     pub(crate) fn convert(&self, value: f64) -> f64 {
         if self.key == Key::TurningRadius { value.recip() } else { value }
+    }
+
+    /// A value of the key that was asked for as it is found on a branch: a radius has gone through `1/r` and back.
+    pub fn as_found(&self, value: f64) -> f64 {
+        self.convert(self.convert(value))
+    }
+
+    /// Why a branch of the parameter that is followed ends, in values of the key.
+    pub(crate) fn convert_stop(&self, stop: Stop) -> Stop {
+        let at = |value: f64| self.convert(value);
+        match stop {
+            Stop::RangeEnd { bound, value } => Stop::RangeEnd { bound, value: at(value) },
+            Stop::HopfPoint { parameter, frequency, located } => {
+                Stop::HopfPoint { parameter: at(parameter), frequency, located }
+            }
+            Stop::PeriodDoubling { parameter, period } => {
+                Stop::PeriodDoubling { parameter: at(parameter), period }
+            }
+            Stop::PeriodUnbounded { period, parameter } => {
+                Stop::PeriodUnbounded { period, parameter: at(parameter) }
+            }
+            Stop::StateUnbounded { parameter } => Stop::StateUnbounded { parameter: at(parameter) },
+            other => other,
+        }
+    }
+
+    /// An error of the parameter that is followed as one of the key, next to a value of the key.
+    pub(crate) fn convert_error(&self, value: f64, error: f64) -> f64 {
+        // |dr| = r^2 |d(1/r)|
+        if self.key == Key::TurningRadius { value * value * error } else { error }
     }
 
     /// The interval of the parameter that is followed.
