@@ -90,7 +90,8 @@ pub(super) fn crossing(
 fn is_pair_between(before: &Node, after: &Node, rank: usize) -> bool {
     let complex = |node: &Node| {
         let pairs = node.point.floquet.nontrivial.iter().filter(|multiplier| multiplier.argument > 0.0);
-        let outside = pairs.clone().filter(|multiplier| !multiplier.is_real() && multiplier.log_modulus > 0.0);
+        let outside =
+            pairs.clone().filter(|multiplier| !multiplier.is_real() && multiplier.log_modulus > 0.0);
         (pairs.filter(|multiplier| !multiplier.is_real()).count(), outside.count())
     };
     let [(count, outside), (other_count, other_outside)] = [before, after].map(complex);
@@ -98,9 +99,9 @@ fn is_pair_between(before: &Node, after: &Node, rank: usize) -> bool {
         return outside != other_outside;
     }
     // Real ones have met in between.
-    [before, after].iter().any(|node| {
-        node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real())
-    })
+    [before, after]
+        .iter()
+        .any(|node| node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real()))
 }
 
 /// Newton's method on the defining system from ever closer starts; for a torus bifurcation of the pair behind the `rank` largest

@@ -25,6 +25,7 @@ const MAXIMUM_STEPS: u32 = 1_000_000;
 
 /// How a trajectory ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Ending {
     /// It was followed for the whole duration.
     Completed,
