@@ -43,9 +43,6 @@ const PREDICTOR_ERROR: f64 = 0.005;
 const FOLD_PREDICTOR_ERROR: f64 = 1e-3;
 /// Relative difference below which two Hopf points are one.
 const SAME: f64 = 1e-6;
-/// Indices of the parameters.
-const SPEED: usize = 0;
-const DAMPING: usize = 1;
 
 /// What is shown.
 pub(super) struct Isola {
