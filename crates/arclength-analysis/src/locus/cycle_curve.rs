@@ -185,9 +185,10 @@ impl CycleCurve {
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let [one, two] = [&self.plane[0], &self.plane[1]].map(VaryingParameter::heading);
+        let period = self.plane[0].heading_beside("period", "s");
         let torus = self.kind == SpecialKind::Torus;
         let argument = ["argument"].into_iter().filter(|_| torus);
-        let headings = ["label", &one, &two, "period", "coefficient"].into_iter().chain(argument);
+        let headings = ["label", &one, &two, &period, "coefficient"].into_iter().chain(argument);
         let mut table = Table::new(headings.chain(["error", ""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into()];

@@ -145,7 +145,9 @@ impl CyclesAnalysis {
     /// [`Error::NothingFound`] where there is no Hopf point to start from; [`Error::Wheel`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let along = self.along;
-        let settings = self.steps.settings(equilibrium_settings());
+        // The most steps are those along a branch of cycles.
+        let search_steps = Steps { steps: Steps::default().steps, ..self.steps };
+        let settings = search_steps.settings(equilibrium_settings());
         let mut found = 0;
         let mut observer = |value: f64, period: f64| {
             found += 1;
