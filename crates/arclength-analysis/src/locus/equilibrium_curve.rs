@@ -167,7 +167,9 @@ impl EquilibriumCurve {
         let mut columns = Columns::new()
             .texts("label", points().map(|point| point.label.clone()))
             .numbers(one, points().map(|point| point.values[0]))
+            .unit(self.plane[0].unit.as_deref())
             .numbers(two, points().map(|point| point.values[1]))
+            .unit(self.plane[1].unit.as_deref())
             .optional_numbers("frequency", points().map(|point| point.frequency))
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov));
         let states = self.states();

@@ -113,18 +113,24 @@ impl CyclesRequest {
             What::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
             What::Cycle { orbit, branching } => {
                 LabelledPoint::check_orbit(reference, &wheel, &orbit)?;
-                self.cycle(&reference.label, along, orbit, branching)
+                self.cycle(&reference.label, along, *orbit, branching)
             }
         };
         Ok((wheel, start))
     }
 
     /// What starts at a cycle: the branch that bifurcates there, or the one through it.
-    fn cycle(&self, label: &str, along: Along, orbit: Orbit, branching: Option<(Branching, Key)>) -> Start {
+    fn cycle(
+        &self,
+        label: &str,
+        along: Along,
+        orbit: Orbit,
+        branching: Option<(Box<Branching>, Key)>,
+    ) -> Start {
         // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
         let branching = branching
             .filter(|(branching, key)| branching.doubled || *key == along.key())
-            .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(branching) });
+            .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(*branching) });
         let Some(branching) = branching else {
             return Start::Cycle { origin: label.to_owned(), start: CycleStart::Orbit(orbit) };
         };

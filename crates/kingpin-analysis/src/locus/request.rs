@@ -56,7 +56,7 @@ pub struct LocusAnalysis {
 enum Start {
     /// A Hopf point, with a parameter along which it was found.
     Hopf(Along),
-    Cycle(SpecialKind, Orbit),
+    Cycle(SpecialKind, Box<Orbit>),
 }
 
 impl LocusRequest {

@@ -1,7 +1,7 @@
 //! Curves of special points in two parameters, what branches tell of themselves, and values of `r` where `1/r` is followed.
 
 use crate::Folder;
-use crate::branches::{close, labelled, number};
+use crate::branches::{close, number};
 use serde_json::Value;
 
 fn points(result: &Value) -> &Vec<Value> {
