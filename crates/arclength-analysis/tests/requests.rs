@@ -56,6 +56,14 @@ fn what_makes_no_sense_is_refused_by_the_name_of_its_field() {
     request.at.clear();
     request.model.set = NamedNumbers(vec![("p".to_owned(), f64::NAN)]);
     assert!(request.validate().unwrap_err().to_string().contains("not a finite number"));
+    request.model.set = NamedNumbers::default();
+    request.steps.finer = 0;
+    assert_eq!(request.validate().unwrap_err().to_string(), "finer 0: out of range; allowed: 1 to 100000");
+    let reference = PointReference { path: "a.json".into(), label: "HB1".to_owned() };
+    let mut request = CyclesRequest::new(reference, Interval::new("p", 0.0, 1.0));
+    request.mesh.tolerance = f64::NAN;
+    let error = request.validate().unwrap_err().to_string();
+    assert_eq!(error, "tolerance NaN: out of range; allowed: 1e-13 to 0.1");
     assert!(SimulateRequest::new(model(), -1.0).validate().unwrap_err().is_bad_request());
 }
 

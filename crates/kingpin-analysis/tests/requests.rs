@@ -34,6 +34,18 @@ fn what_is_not_given_has_its_default() {
 }
 
 #[test]
+fn charts_and_basins_have_points() {
+    let mut chart = ChartRequest::default();
+    chart.x.count = 1;
+    assert!(chart.validate().unwrap_err().to_string().starts_with("x v=0.1:12:1: too few values"));
+    let mut basin = BasinRequest { samples: Some(0), ..BasinRequest::default() };
+    assert!(basin.validate().unwrap_err().to_string().starts_with("samples 0: "));
+    basin.samples = None;
+    basin.y.count = 0;
+    assert!(basin.validate().unwrap_err().is_bad_request());
+}
+
+#[test]
 fn a_wheel_is_set_by_key_and_value() {
     let request: SteadyRequest = from_value(json!({"set": [{"key": "r", "value": "inf"}]})).unwrap();
     // Straight towing with the paper's wheel.

@@ -82,6 +82,8 @@ impl CyclesRequest {
     /// # Errors
     /// What is wrong with the wheel, the point or a field.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let along = along(&self.along)?;
         self.along.check_values(&self.at)?;
         let (wheel, start) = match &self.from {

@@ -70,6 +70,8 @@ impl LocusRequest {
     /// # Errors
     /// What is wrong with the point or a field.
     pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let [first, second] = &self.plane;
         let plane = [along(first)?, along(second)?];
         first.check_values(&self.at)?;
