@@ -164,6 +164,22 @@ impl SampledInterval {
     pub fn new(key: impl Into<String>, first: f64, second: f64, count: usize) -> Self {
         Self { interval: Interval::new(key, first, second), count }
     }
+
+    /// That there are at least two values; `fields` is where they were given.
+    ///
+    /// # Errors
+    /// There are fewer.
+    pub fn check_count(&self, fields: &'static [&'static str]) -> Result<(), InvalidField> {
+        if self.count >= 2 {
+            return Ok(());
+        }
+        Err(InvalidField {
+            fields,
+            given: self.to_string(),
+            problem: "too few values".to_owned(),
+            allowed: "at least 2".to_owned(),
+        })
+    }
 }
 
 impl std::fmt::Display for SampledInterval {

@@ -95,6 +95,8 @@ pub fn of_cycle(label: Option<&str>, coefficients: &NamedNumbers) -> String {
                 "cubic_coefficient" if label.is_some_and(|label| kind(label) == "NS") => "Re d",
                 "cubic_coefficient" => "c",
                 "argument" => "argument of the multipliers",
+                "first_lyapunov" => "l1",
+                "c1_real" => "Re c1",
                 other => other,
             };
             format!("{name} = {}", significant(*value, COEFFICIENT))

@@ -1,8 +1,10 @@
 //! How steps along a branch are taken, and how finely cycles are resolved: parts of many requests.
 
+use crate::error::InvalidField;
 use arclength::continuation::Settings;
 use arclength::cycle::Resolution;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// How steps along a branch are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,9 +23,23 @@ impl Default for Steps {
 }
 
 impl Steps {
+    /// Numbers of steps that are allowed.
+    pub const STEPS: RangeInclusive<u32> = 1..=10_000_000;
+    /// Factors that are allowed.
+    pub const FINER: RangeInclusive<u32> = 1..=100_000;
+
+    /// That both are allowed.
+    ///
+    /// # Errors
+    /// The field that is not.
+    pub fn check(&self) -> Result<(), InvalidField> {
+        check_count(&["steps"], self.steps, &Self::STEPS)?;
+        check_count(&["finer"], self.finer, &Self::FINER)
+    }
+
     /// The settings of a continuation with these steps.
     pub fn settings(&self, settings: Settings) -> Settings {
-        let finer = f64::from(self.finer.max(1));
+        let finer = f64::from(self.finer);
         Settings {
             most_steps: self.steps as usize,
             initial_step: settings.initial_step / finer,
@@ -54,8 +70,45 @@ impl Default for Mesh {
 }
 
 impl Mesh {
+    /// Tolerances that are allowed.
+    pub const TOLERANCE: RangeInclusive<f64> = 1e-13..=0.1;
+    /// Numbers of intervals that are allowed.
+    pub const INTERVALS: RangeInclusive<u32> = 4..=100_000;
+
+    /// That both are allowed.
+    ///
+    /// # Errors
+    /// The field that is not.
+    pub fn check(&self) -> Result<(), InvalidField> {
+        if !Self::TOLERANCE.contains(&self.tolerance) {
+            return Err(InvalidField {
+                fields: &["tolerance"],
+                given: self.tolerance.to_string(),
+                problem: "out of range".to_owned(),
+                allowed: format!("{:e} to {}", Self::TOLERANCE.start(), Self::TOLERANCE.end()),
+            });
+        }
+        check_count(&["intervals"], self.intervals, &Self::INTERVALS)
+    }
+
     /// The resolution of the collocation.
     pub fn resolution(&self) -> Resolution {
         Resolution { most_intervals: self.intervals as usize, ..Resolution::with_tolerance(self.tolerance) }
     }
+}
+
+fn check_count(
+    fields: &'static [&'static str],
+    given: u32,
+    allowed: &RangeInclusive<u32>,
+) -> Result<(), InvalidField> {
+    if allowed.contains(&given) {
+        return Ok(());
+    }
+    Err(InvalidField {
+        fields,
+        given: given.to_string(),
+        problem: "out of range".to_owned(),
+        allowed: format!("{} to {}", allowed.start(), allowed.end()),
+    })
 }

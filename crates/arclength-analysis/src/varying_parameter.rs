@@ -50,6 +50,11 @@ impl VaryingParameter {
         }
     }
 
+    /// A quantity of time or frequency beside parameters with units, as a heading: `period (s)`.
+    pub fn heading_beside(&self, name: &str, unit: &str) -> String {
+        if self.unit.is_some() { format!("{name} ({unit})") } else { name.to_owned() }
+    }
+
     fn with_unit(&self, value: f64, text: String) -> String {
         match &self.unit {
             Some(unit) if unit != "1" && value.is_finite() => format!("{text} {unit}"),

@@ -50,14 +50,18 @@ impl Plane {
         self.0.map(|along| along.key())
     }
 
+    /// The labels of both axes of a picture.
+    pub fn labels(&self) -> [String; 2] {
+        self.0.map(|along| axis_label::of(drawn_as(&along).0))
+    }
+
+    /// How values are drawn on both axes.
+    pub fn scales(&self) -> [fn(f64) -> f64; 2] {
+        self.0.map(|along| drawn_as(&along).1)
+    }
+
     /// The parameters and their intervals, in results.
     pub fn varying(&self) -> [VaryingParameter; 2] {
         [varying(&self.0[0]), varying(&self.0[1])]
     }
-}
-
-/// The labels of both axes, and how values are drawn on them.
-pub fn axes(plane: &Plane) -> ([String; 2], [fn(f64) -> f64; 2]) {
-    let drawn = plane.0.map(|along| drawn_as(&along));
-    (drawn.map(|(key, _)| axis_label::of(key)), drawn.map(|(_, scale)| scale))
 }

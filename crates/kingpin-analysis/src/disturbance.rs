@@ -85,7 +85,7 @@ impl DisturbanceRequest {
     /// That the largest magnitude makes sense.
     ///
     /// # Errors
-    /// [`Error::Option`].
+    /// [`Error::Invalid`].
     pub fn check(&self, wheel: &Wheel) -> Result<(), Error> {
         let largest = self.largest(wheel);
         let stands = self.kind == DisturbanceKind::Jolt && largest >= wheel.get(Key::V);

@@ -91,6 +91,8 @@ impl Report for StabilityResult {
     fn columns(&self) -> Columns {
         Columns::new()
             .numbers("real_part", self.eigenvalues.iter().map(|[real, _]| *real))
+            .unit("1/s")
             .numbers("imaginary_part", self.eigenvalues.iter().map(|[_, imaginary]| *imaginary))
+            .unit("rad/s")
     }
 }

@@ -24,9 +24,9 @@ pub enum What {
     /// A cycle.
     Cycle {
         /// The cycle itself.
-        orbit: Orbit,
+        orbit: Box<Orbit>,
         /// The start of the branch that leaves there, with the parameter along which it was found.
-        branching: Option<(Branching, Key)>,
+        branching: Option<(Box<Branching>, Key)>,
     },
 }
 
@@ -92,7 +92,8 @@ impl LabelledPoint {
         if let Some((branching, _)) = &branching {
             branching.check(orbit.dimension).map_err(|error| reference.failure(error.to_string()))?;
         }
-        Ok(Self { wheel, what: What::Cycle { orbit, branching } })
+        let branching = branching.map(|(branching, key)| (Box::new(branching), key));
+        Ok(Self { wheel, what: What::Cycle { orbit: orbit.into(), branching } })
     }
 
     /// That the orbit is one of a wheel.

@@ -1,4 +1,4 @@
-//! States of the wheel by name.
+//! States of the wheel by name, and their units.
 
 use kingpin::rolling::STATE_NAMES;
 use kingpin_report::NamedNumbers;
@@ -8,3 +8,6 @@ pub fn named_state(state: &[f64]) -> NamedNumbers {
     let numbers = STATE_NAMES.into_iter().map(str::to_owned).zip(state.iter().copied());
     NamedNumbers(numbers.filter(|(_, value)| !value.is_nan()).collect())
 }
+
+/// Units of the states `u q psi V Omega`.
+pub const STATE_UNITS: [&str; 5] = ["m", "m", "rad", "m/s", "rad/s"];

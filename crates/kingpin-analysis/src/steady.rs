@@ -100,13 +100,20 @@ impl Report for SteadyResult {
     fn columns(&self) -> Columns {
         Columns::new()
             .numbers("u", [self.u])
+            .unit("m")
             .numbers("q", [self.q])
+            .unit("m")
             .numbers("psi", [self.psi])
+            .unit("rad")
             .numbers("V", [self.forward_speed])
+            .unit("m/s")
             .numbers("Omega", [self.yaw_rate])
+            .unit("rad/s")
             .numbers("residual", [self.residual])
             .numbers("friction_force", [self.friction_force])
+            .unit("N")
             .numbers("normal_force", [self.normal_force])
+            .unit("N")
             .booleans("rolls", [self.rolls])
     }
 }

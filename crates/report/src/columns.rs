@@ -1,11 +1,22 @@
-//! Results as columns of one type each, for CSV and Parquet.
+//! Results as named columns with units, each of one type, for CSV and Parquet.
 
 use crate::named_numbers::NamedNumbers;
 use std::io::{self, Write};
 
+/// A named column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// The unit of its numbers, where they have one.
+    pub unit: Option<String>,
+    /// Its entries.
+    pub entries: Entries,
+}
+
 /// The entries of a column; `None` where there is no value. Not a number counts as no value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Column {
+pub enum Entries {
     /// Numbers in SI units.
     Numbers(Vec<Option<f64>>),
     /// Counts.
@@ -16,7 +27,7 @@ pub enum Column {
     Texts(Vec<Option<String>>),
 }
 
-impl Column {
+impl Entries {
     fn len(&self) -> usize {
         match self {
             Self::Numbers(entries) => entries.len(),
@@ -43,7 +54,7 @@ impl Column {
 /// Named columns of equal length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
-    named: Vec<(String, Column)>,
+    columns: Vec<Column>,
 }
 
 impl Columns {
@@ -64,7 +75,7 @@ impl Columns {
         entries: impl IntoIterator<Item = Option<f64>>,
     ) -> Self {
         let numbers = entries.into_iter().map(|entry| entry.filter(|number| !number.is_nan()));
-        self.add(name, Column::Numbers(numbers.collect()))
+        self.add(name, Entries::Numbers(numbers.collect()))
     }
 
     /// Adds two columns for each of the first `count` complex numbers of every row, `NAME_1_real` and `NAME_1_imaginary` onwards.
@@ -103,7 +114,7 @@ impl Columns {
 
     /// Adds a column of counts.
     pub fn counts(self, name: impl Into<String>, entries: impl IntoIterator<Item = u64>) -> Self {
-        self.add(name, Column::Counts(entries.into_iter().collect()))
+        self.add(name, Entries::Counts(entries.into_iter().collect()))
     }
 
     /// Adds a column of yes and no; `None` where neither can be said.
@@ -112,27 +123,40 @@ impl Columns {
         name: impl Into<String>,
         entries: impl IntoIterator<Item = B>,
     ) -> Self {
-        self.add(name, Column::Booleans(entries.into_iter().map(Into::into).collect()))
+        self.add(name, Entries::Booleans(entries.into_iter().map(Into::into).collect()))
     }
 
     /// Adds a column of words.
     pub fn texts(self, name: impl Into<String>, entries: impl IntoIterator<Item = Option<String>>) -> Self {
-        self.add(name, Column::Texts(entries.into_iter().collect()))
+        self.add(name, Entries::Texts(entries.into_iter().collect()))
     }
 
-    fn add(mut self, name: impl Into<String>, column: Column) -> Self {
-        self.named.push((name.into(), column));
+    fn add(mut self, name: impl Into<String>, entries: Entries) -> Self {
+        self.columns.push(Column { name: name.into(), unit: None, entries });
         self
     }
 
-    /// The columns with their names.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Column)> {
-        self.named.iter().map(|(name, column)| (name.as_str(), column))
+    /// Gives the column that was added last its unit, where there is one other than `1`.
+    pub fn unit<'a>(mut self, unit: impl Into<Option<&'a str>>) -> Self {
+        if let Some(last) = self.columns.last_mut() {
+            last.unit = unit.into().filter(|unit| *unit != "1").map(str::to_owned);
+        }
+        self
+    }
+
+    /// The columns.
+    pub fn iter(&self) -> impl Iterator<Item = &Column> {
+        self.columns.iter()
+    }
+
+    /// The units of the columns that have one, by name.
+    pub fn units(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.iter().filter_map(|column| Some((column.name.as_str(), column.unit.as_deref()?)))
     }
 
     /// Number of rows: that of the shortest column.
     pub fn rows(&self) -> usize {
-        self.named.iter().map(|(_, column)| column.len()).min().unwrap_or(0)
+        self.iter().map(|column| column.entries.len()).min().unwrap_or(0)
     }
 
     /// Writes the columns as CSV with a line of names (RFC 4180, but with line feeds).
@@ -140,15 +164,15 @@ impl Columns {
     /// # Errors
     /// Those of the writer.
     pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        for (index, (name, _)) in self.named.iter().enumerate() {
+        for (index, column) in self.iter().enumerate() {
             write_separator(index, out)?;
-            write_quoted(name, out)?;
+            write_quoted(&column.name, out)?;
         }
         writeln!(out)?;
         for row in 0..self.rows() {
-            for (index, (_, column)) in self.named.iter().enumerate() {
+            for (index, column) in self.iter().enumerate() {
                 write_separator(index, out)?;
-                column.write_entry(row, out)?;
+                column.entries.write_entry(row, out)?;
             }
             writeln!(out)?;
         }
@@ -176,6 +200,7 @@ mod tests {
     fn csv_of_every_type() {
         let columns = Columns::new()
             .numbers("x", [0.1, f64::NAN])
+            .unit("m/s")
             .booleans("stable", [Some(true), None])
             .counts("branch", [1, 2])
             .texts("label", [Some("a,\"b\"".to_owned()), None]);
@@ -185,5 +210,6 @@ mod tests {
             String::from_utf8(text).unwrap(),
             "x,stable,branch,label\n0.1,true,1,\"a,\"\"b\"\"\"\n,,2,\n"
         );
+        assert_eq!(columns.units().collect::<Vec<_>>(), [("x", "m/s")]);
     }
 }

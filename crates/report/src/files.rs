@@ -1,9 +1,11 @@
 //! Results and pictures in files whose endings say their format, each written whole or not at all.
 
+use crate::columns::Columns;
 use crate::error::ReportError;
 use crate::report::Report;
 use crate::{json, parquet};
 use kingpin_figure::Figure;
+use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -120,7 +122,10 @@ pub fn write_result<R: Report>(result: &R, path: &Path, format: FileFormat) -> R
     write_whole(path, |out| match format {
         FileFormat::Json => json::write(result, out),
         FileFormat::Csv => result.columns().write_csv(out).map_err(ReportError::encoding("CSV")),
-        FileFormat::Parquet => parquet::write(&result.columns(), &metadata(result)?, out),
+        FileFormat::Parquet => {
+            let columns = result.columns();
+            parquet::write(&columns, &metadata(result, &columns)?, out)
+        }
         FileFormat::Picture(format) => encode_picture(&picture()?, format, out),
     })
 }
@@ -164,11 +169,12 @@ fn encode_picture(
     out.write_all(&picture).map_err(ReportError::encoding("a picture"))
 }
 
-fn metadata<R: Report>(result: &R) -> Result<[(&'static str, String); 2], ReportError> {
+fn metadata<R: Report>(result: &R, columns: &Columns) -> Result<[(&'static str, String); 3], ReportError> {
     let failure = |error: serde_json::Error| ReportError::encoding("Parquet")(error.into());
     Ok([
         ("schema", serde_json::to_string(&result.schema()).map_err(failure)?),
         ("parameters", serde_json::to_string(&result.parameters()).map_err(failure)?),
+        ("units", serde_json::to_string(&columns.units().collect::<BTreeMap<_, _>>()).map_err(failure)?),
     ])
 }
 

@@ -1,4 +1,4 @@
-//! What any result is, whatever was computed: columns, a JSON document, a table for people, a picture, a story.
+//! What any result is, whatever was computed: columns with units, a JSON document, a table for people, a picture, a story.
 //!
 //! Whoever computes something describes its result once, by the trait [`Report`]. Everything else follows: [`json`], CSV by
 //! [`Columns`], [`parquet`], pictures, and [`files`] that appear whole or not at all. Nothing here knows a model, an option or
@@ -17,7 +17,7 @@ mod schema;
 mod story;
 mod table;
 
-pub use columns::{Column, Columns};
+pub use columns::{Column, Columns, Entries};
 pub use error::ReportError;
 pub use files::{FileFormat, PictureFormat};
 pub use named_numbers::{NamedNumbers, Number, number};

@@ -1,6 +1,6 @@
-//! Results as Parquet files with typed columns; schema and parameters of the run stand in the file's metadata.
+//! Results as Parquet files with typed columns; schema, parameters and units stand in the file's metadata.
 
-use crate::columns::{Column, Columns};
+use crate::columns::{Columns, Entries};
 use crate::error::ReportError;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as PhysicalType};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -30,7 +30,7 @@ fn write_file(
     out: &mut (dyn Write + Send),
 ) -> Result<(), ParquetError> {
     let fields: Vec<TypePtr> =
-        columns.iter().map(|(name, column)| field(name, column)).collect::<Result<_, _>>()?;
+        columns.iter().map(|column| field(&column.name, &column.entries)).collect::<Result<_, _>>()?;
     let schema = Type::group_type_builder("result").with_fields(fields).build()?;
     let entries = metadata.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone()));
     let properties = WriterProperties::builder()
@@ -39,15 +39,15 @@ fn write_file(
         .build();
     let mut writer = SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties))?;
     let mut rows = writer.next_row_group()?;
-    for (_, column) in columns.iter() {
-        match column {
-            Column::Numbers(entries) => write_column::<DoubleType>(&mut rows, entries.iter().copied()),
-            Column::Booleans(entries) => write_column::<BoolType>(&mut rows, entries.iter().copied()),
+    for column in columns.iter() {
+        match &column.entries {
+            Entries::Numbers(entries) => write_column::<DoubleType>(&mut rows, entries.iter().copied()),
+            Entries::Booleans(entries) => write_column::<BoolType>(&mut rows, entries.iter().copied()),
             // Counts are far below the largest signed number.
-            Column::Counts(entries) => {
+            Entries::Counts(entries) => {
                 write_column::<Int64Type>(&mut rows, entries.iter().map(|count| Some(*count as i64)))
             }
-            Column::Texts(entries) => {
+            Entries::Texts(entries) => {
                 let bytes = |text: &Option<String>| text.as_deref().map(ByteArray::from);
                 write_column::<ByteArrayType>(&mut rows, entries.iter().map(bytes))
             }
@@ -58,12 +58,12 @@ fn write_file(
     Ok(())
 }
 
-fn field(name: &str, column: &Column) -> Result<TypePtr, ParquetError> {
-    let (physical, logical) = match column {
-        Column::Numbers(_) => (PhysicalType::DOUBLE, None),
-        Column::Counts(_) => (PhysicalType::INT64, None),
-        Column::Booleans(_) => (PhysicalType::BOOLEAN, None),
-        Column::Texts(_) => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
+fn field(name: &str, entries: &Entries) -> Result<TypePtr, ParquetError> {
+    let (physical, logical) = match entries {
+        Entries::Numbers(_) => (PhysicalType::DOUBLE, None),
+        Entries::Counts(_) => (PhysicalType::INT64, None),
+        Entries::Booleans(_) => (PhysicalType::BOOLEAN, None),
+        Entries::Texts(_) => (PhysicalType::BYTE_ARRAY, Some(LogicalType::String)),
     };
     let builder = Type::primitive_type_builder(name, physical)
         .with_repetition(Repetition::OPTIONAL)

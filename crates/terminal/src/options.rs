@@ -5,6 +5,7 @@ use crate::output::{Format, Output};
 use arclength_analysis::{Interval, Mesh, Steps, Values};
 use clap::Args;
 use kingpin_report::FileFormat;
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 /// Most threads that may be asked for.
@@ -67,18 +68,23 @@ pub fn start_threads(threads: Option<u16>) -> Result<(), Failure> {
     Ok(())
 }
 
+/// A range as the parser of options wants it.
+fn allowed(range: RangeInclusive<u32>) -> RangeInclusive<i64> {
+    (*range.start()).into()..=(*range.end()).into()
+}
+
 /// How steps along a branch are taken.
 #[derive(Args, Clone, Copy, Debug)]
 #[command(next_help_heading = "Steps")]
 pub struct StepOptions {
     /// Most steps in one direction
     #[arg(long, value_name = "N", default_value_t = Steps::default().steps,
-          value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+          value_parser = clap::value_parser!(u32).range(allowed(Steps::STEPS)))]
     steps: u32,
 
     /// Take steps K times shorter, so that special points that lie close together are told apart
     #[arg(long, value_name = "K", default_value_t = Steps::default().finer,
-          value_parser = clap::value_parser!(u32).range(1..=100_000))]
+          value_parser = clap::value_parser!(u32).range(allowed(Steps::FINER)))]
     finer: u32,
 }
 
@@ -98,7 +104,7 @@ pub struct MeshOptions {
 
     /// Most mesh intervals
     #[arg(long, value_name = "N", default_value_t = Mesh::default().intervals,
-          value_parser = clap::value_parser!(u32).range(4..=100_000))]
+          value_parser = clap::value_parser!(u32).range(allowed(Mesh::INTERVALS)))]
     intervals: u32,
 }
 

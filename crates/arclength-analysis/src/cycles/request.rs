@@ -79,6 +79,8 @@ impl CyclesRequest {
     /// # Errors
     /// What is wrong with the point or a field; a time history that has not settled on a cycle.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let point = LabelledPoint::read(&self.from)?;
         let mut chosen = point.chosen.clone();
         chosen.set(&self.set)?;

@@ -57,6 +57,7 @@ impl EquilibriaRequest {
     /// # Errors
     /// What is wrong with the model or a field.
     pub fn validate(&self) -> Result<EquilibriaAnalysis, Error> {
+        self.steps.check()?;
         let OpenedModel { chosen, point, warnings } = self.model.open()?;
         let active = chosen.along(&["along"], &self.along)?;
         self.along.check_values(&self.at)?;

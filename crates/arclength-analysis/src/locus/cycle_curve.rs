@@ -160,9 +160,10 @@ impl CycleCurve {
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let [one, two] = [&self.plane[0], &self.plane[1]].map(VaryingParameter::heading);
+        let period = self.plane[0].heading_beside("period", "s");
         let torus = self.kind == SpecialKind::Torus;
         let argument = ["argument"].into_iter().filter(|_| torus);
-        let headings = ["label", &one, &two, "period", "coefficient"].into_iter().chain(argument);
+        let headings = ["label", &one, &two, &period, "coefficient"].into_iter().chain(argument);
         let mut table = Table::new(headings.chain(["error", ""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into()];
@@ -182,7 +183,9 @@ impl CycleCurve {
         let mut columns = Columns::new()
             .texts("label", points().map(|point| point.label.clone()))
             .numbers(one, points().map(|point| point.values[0]))
+            .unit(self.plane[0].unit.as_deref())
             .numbers(two, points().map(|point| point.values[1]))
+            .unit(self.plane[1].unit.as_deref())
             .numbers("period", points().map(|point| point.period))
             .optional_numbers("coefficient", points().map(|point| point.coefficient))
             .optional_numbers("argument", points().map(|point| point.argument))

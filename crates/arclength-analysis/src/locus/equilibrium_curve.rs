@@ -155,7 +155,8 @@ impl EquilibriumCurve {
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let [one, two] = [&self.plane[0], &self.plane[1]].map(VaryingParameter::heading);
         let hopf = self.kind == SpecialKind::Hopf;
-        let of_hopf = ["frequency", "l1"].into_iter().filter(|_| hopf);
+        let frequency = self.plane[0].heading_beside("frequency", "rad/s");
+        let of_hopf = [frequency.as_str(), "l1"].into_iter().filter(|_| hopf);
         let states = self.states().into_iter().take(SHOWN_STATES);
         let mut table =
             Table::new(["label", &one, &two].into_iter().chain(states).chain(of_hopf).chain([""]));
@@ -180,7 +181,9 @@ impl EquilibriumCurve {
         let mut columns = Columns::new()
             .texts("label", points().map(|point| point.label.clone()))
             .numbers(one, points().map(|point| point.values[0]))
+            .unit(self.plane[0].unit.as_deref())
             .numbers(two, points().map(|point| point.values[1]))
+            .unit(self.plane[1].unit.as_deref())
             .optional_numbers("frequency", points().map(|point| point.frequency))
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov));
         let states = self.states();

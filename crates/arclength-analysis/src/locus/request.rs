@@ -75,6 +75,8 @@ impl LocusRequest {
     /// # Errors
     /// What is wrong with the point or a field.
     pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let point = LabelledPoint::read(&self.from)?;
         let chosen = &point.chosen;
         let [first, second] = &self.plane;

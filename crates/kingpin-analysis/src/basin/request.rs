@@ -96,6 +96,8 @@ impl BasinRequest {
     }
 
     fn axes(&self) -> Result<[Axis; 2], Error> {
+        self.x.check_count(&["x"])?;
+        self.y.check_count(&["y"])?;
         let axis =
             |axis: &SampledInterval| Axis::new(&axis.interval.key, axis.interval.start, axis.interval.end);
         let axes = [axis(&self.x)?, axis(&self.y)?];
@@ -106,6 +108,10 @@ impl BasinRequest {
                 "the same state on both axes",
                 "two different states",
             ));
+        }
+        if let Some(count) = self.samples.filter(|count| !(1..=Self::MOST_POINTS as u64).contains(count)) {
+            let allowed = format!("1 to {}", Self::MOST_POINTS);
+            return Err(Error::invalid(&["samples"], count.to_string(), "too few or too many", allowed));
         }
         let points = self.x.count.checked_mul(self.y.count);
         if self.samples.is_none() && points.is_none_or(|points| points > Self::MOST_POINTS) {

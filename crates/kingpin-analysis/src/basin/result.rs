@@ -224,7 +224,9 @@ impl Report for BasinResult {
         };
         Columns::new()
             .numbers(self.x.state, across)
+            .unit(self.x.unit)
             .numbers(self.y.state, upwards)
+            .unit(self.y.unit)
             .texts("fate", self.fates.iter().map(|fate| Some(fate.0.name().to_owned())))
     }
 

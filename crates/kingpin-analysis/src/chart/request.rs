@@ -49,6 +49,8 @@ impl ChartRequest {
     /// # Errors
     /// What is wrong with the wheel or an axis; too many points.
     pub fn validate(&self) -> Result<ChartAnalysis, Error> {
+        self.x.check_count(&["x"])?;
+        self.y.check_count(&["y"])?;
         let wheel = self.wheel.read()?;
         let plane = Plane::new(axis(&self.x.interval)?, axis(&self.y.interval)?)?;
         let points = [self.x.count, self.y.count];

@@ -148,8 +148,11 @@ impl Report for ChartResult {
         let [x, y] = [&self.x.values, &self.y.values];
         Columns::new()
             .numbers(self.x.key, y.iter().flat_map(|_| x.iter().copied()))
+            .unit(self.x.unit)
             .numbers(self.y.key, y.iter().flat_map(|&y| x.iter().map(move |_| y)))
+            .unit(self.y.unit)
             .optional_numbers("growth_rate", self.growth_rate.iter().copied())
+            .unit("1/s")
             .booleans("stable", self.stable.iter().copied())
             .booleans("rolls", self.rolls.iter().copied())
     }

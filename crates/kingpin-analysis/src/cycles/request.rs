@@ -82,6 +82,8 @@ impl CyclesRequest {
     /// # Errors
     /// What is wrong with the wheel, the point or a field.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let along = along(&self.along)?;
         self.along.check_values(&self.at)?;
         let (wheel, start) = match &self.from {
@@ -113,18 +115,24 @@ impl CyclesRequest {
             What::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
             What::Cycle { orbit, branching } => {
                 LabelledPoint::check_orbit(reference, &wheel, &orbit)?;
-                self.cycle(&reference.label, along, orbit, branching)
+                self.cycle(&reference.label, along, *orbit, branching)
             }
         };
         Ok((wheel, start))
     }
 
     /// What starts at a cycle: the branch that bifurcates there, or the one through it.
-    fn cycle(&self, label: &str, along: Along, orbit: Orbit, branching: Option<(Branching, Key)>) -> Start {
+    fn cycle(
+        &self,
+        label: &str,
+        along: Along,
+        orbit: Orbit,
+        branching: Option<(Box<Branching>, Key)>,
+    ) -> Start {
         // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
         let branching = branching
             .filter(|(branching, key)| branching.doubled || *key == along.key())
-            .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(branching) });
+            .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(*branching) });
         let Some(branching) = branching else {
             return Start::Cycle { origin: label.to_owned(), start: CycleStart::Orbit(orbit) };
         };
@@ -145,7 +153,9 @@ impl CyclesAnalysis {
     /// [`Error::NothingFound`] where there is no Hopf point to start from; [`Error::Wheel`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let along = self.along;
-        let settings = self.steps.settings(equilibrium_settings());
+        // The most steps are those along a branch of cycles.
+        let search_steps = Steps { steps: Steps::default().steps, ..self.steps };
+        let settings = search_steps.settings(equilibrium_settings());
         let mut found = 0;
         let mut observer = |point: &CyclePoint| {
             found += 1;

@@ -8,6 +8,7 @@ use crate::description;
 use crate::error::Error;
 use crate::parameters::{parameters_of, wheel_of};
 use arclength::branch::LabelCounter;
+use crate::states::STATE_UNITS;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
@@ -225,18 +226,24 @@ impl Report for CyclesResult {
             .counts("branch", self.points.iter().map(|point| point.branch))
             .texts("label", cycles().map(|cycle| cycle.label.clone()))
             .numbers("value", cycles().map(|cycle| cycle.value))
+            .unit(self.interval.key().unit())
             .numbers("period", cycles().map(|cycle| cycle.period))
+            .unit("s")
             .numbers("psi_max", self.points.iter().map(|point| point.psi_max))
+            .unit("rad")
             .numbers("psi_min", self.points.iter().map(|point| point.psi_min))
+            .unit("rad")
             .booleans("stable", cycles().map(|cycle| cycle.stable))
             .numbers("error_estimate", cycles().map(|cycle| cycle.error_estimate))
             .numbers("trivial_multiplier_error", cycles().map(|cycle| cycle.trivial_multiplier_error))
             .complex_numbers("multiplier", STATE_NAMES.len(), cycles().map(|cycle| &cycle.multipliers))
             .counts("intervals", cycles().map(|cycle| cycle.intervals as u64));
-        for name in STATE_NAMES {
+        for (name, unit) in STATE_NAMES.into_iter().zip(STATE_UNITS) {
             columns = columns
                 .optional_numbers(format!("max_{name}"), cycles().map(move |cycle| cycle.max.named(name)))
-                .optional_numbers(format!("min_{name}"), cycles().map(move |cycle| cycle.min.named(name)));
+                .unit(unit)
+                .optional_numbers(format!("min_{name}"), cycles().map(move |cycle| cycle.min.named(name)))
+                .unit(unit);
         }
         columns.named_numbers("test", cycles().map(|cycle| &cycle.tests))
     }

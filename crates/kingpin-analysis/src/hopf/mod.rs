@@ -1,8 +1,10 @@
 //! Hopf points of the uniform motion along a parameter: where shimmy is born.
 
+mod motion;
 mod request;
 mod result;
 pub(crate) mod search;
 
+pub use motion::{BracketedResult, MotionResult};
 pub use request::{HopfAnalysis, HopfRequest};
-pub use result::{BracketedResult, HopfPointResult, HopfResult, MotionResult};
+pub use result::{HopfPointResult, HopfResult};

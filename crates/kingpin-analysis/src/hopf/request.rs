@@ -43,6 +43,7 @@ impl HopfRequest {
     /// # Errors
     /// What is wrong with the wheel or the interval.
     pub fn validate(&self) -> Result<HopfAnalysis, Error> {
+        self.steps.check()?;
         Ok(HopfAnalysis { wheel: self.wheel.read()?, along: along(&self.along)?, steps: self.steps })
     }
 }

@@ -1,15 +1,16 @@
 //! Hopf points of the uniform motion as a result.
 
+use super::motion::{BracketedResult, MotionResult, named_tests};
 use super::search::label;
 use crate::along::{along, varying};
 use crate::description;
 use crate::parameters::{parameters_of, wheel_of};
-use crate::states::named_state;
+use crate::states::{STATE_UNITS, named_state};
 use arclength::branch::Criticality;
-use arclength::equilibrium::{EquilibriumPoint, SpecialPoint};
-use arclength_analysis::branch::{pairs, tests};
+use arclength::equilibrium::SpecialPoint;
+use arclength_analysis::branch::pairs;
 use arclength_analysis::course::{self, Place};
-use arclength_analysis::normal_form::{criticality, of_equilibrium};
+use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::{Along, HopfPoint, MotionBranch};
 use kingpin::rolling::STATE_NAMES;
@@ -47,38 +48,6 @@ pub struct HopfPointResult {
     /// Test functions by the label of the point at which each changes its sign.
     #[serde(default)]
     pub tests: NamedNumbers,
-}
-
-/// A uniform motion that was computed on the way.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct MotionResult {
-    /// Value of the parameter.
-    #[serde(with = "kingpin_report::number")]
-    pub value: f64,
-    /// The uniform motion.
-    pub state: NamedNumbers,
-    /// Eigenvalues by descending real part.
-    pub eigenvalues: Vec<[Option<f64>; 2]>,
-    /// Nothing where that is not decided.
-    pub stable: Option<bool>,
-    /// Of special points.
-    pub label: Option<String>,
-    /// Test functions by the label of the point at which each changes its sign.
-    pub tests: NamedNumbers,
-    /// What the normal form of a special point says.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub remark: Option<String>,
-}
-
-/// A Hopf point that was detected but only bracketed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BracketedResult {
-    /// Value of the parameter.
-    #[serde(with = "kingpin_report::number")]
-    pub value: f64,
-    /// Half of the length of the bracket.
-    #[serde(with = "kingpin_report::number")]
-    pub location_error: f64,
 }
 
 /// Hopf points along a parameter.
@@ -165,19 +134,13 @@ impl HopfResult {
         let end =
             |motion: Option<&MotionResult>| motion.map_or((f64::NAN, None), |end| (end.value, end.stable));
         let [low, high] = [end(motions.first()), end(motions.last())];
-        let bracketed = |motion: &EquilibriumPoint| match motion.special.as_deref() {
-            Some(SpecialPoint::Degenerate { location_error, .. }) => {
-                Some(BracketedResult { value: motion.value, location_error: *location_error })
-            }
-            _ => None,
-        };
         Self {
             wheel,
             interval,
             searched: [low.0, high.0],
             stable_at_ends: [low.1, high.1],
             ends: Some(ends),
-            unlocated: branch.motions.iter().filter_map(bracketed).collect(),
+            unlocated: branch.motions.iter().filter_map(BracketedResult::at).collect(),
             points: (0..)
                 .zip(&branch.hopf_points)
                 .map(|(index, point)| hopf_point(index, point, branch))
@@ -189,15 +152,7 @@ impl HopfResult {
 
     /// What was detected but not located.
     pub fn warnings(&self) -> Vec<String> {
-        self.unlocated.iter().map(|point| self.bracketed(point)).collect()
-    }
-
-    fn bracketed(&self, point: &BracketedResult) -> String {
-        format!(
-            "a point at {} is only bracketed, to {}: its defining system is singular there",
-            self.along.at(point.value),
-            readable(point.location_error)
-        )
+        self.unlocated.iter().map(|point| point.text(&self.along)).collect()
     }
 }
 
@@ -216,24 +171,6 @@ fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPoi
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
         tests: motion.map(named_tests).unwrap_or_default(),
-    }
-}
-
-fn named_tests(motion: &EquilibriumPoint) -> NamedNumbers {
-    tests(motion.tests.iter().map(|(name, value)| (name.as_ref(), *value)))
-}
-
-impl MotionResult {
-    fn new(motion: &EquilibriumPoint) -> Self {
-        Self {
-            value: motion.value,
-            state: named_state(&motion.state),
-            eigenvalues: pairs(&motion.eigenvalues),
-            stable: motion.stability.is_stable(),
-            label: motion.label.map(|label| label.to_string()),
-            tests: named_tests(motion),
-            remark: motion.special.as_deref().map(of_equilibrium),
-        }
     }
 }
 
@@ -275,15 +212,20 @@ impl Report for HopfResult {
         let columns = Columns::new()
             .texts("label", points().map(|point| Some(point.label.clone())))
             .numbers("value", points().map(|point| point.value))
+            .unit(self.interval.key().unit())
             .numbers("frequency", points().map(|point| point.frequency))
+            .unit("rad/s")
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov))
             .texts("criticality", points().map(|point| Some(criticality(point.criticality).to_owned())));
         let columns = STATE_NAMES.into_iter().enumerate().fold(columns, |columns, (index, name)| {
-            columns.optional_numbers(name, points().map(move |point| point.state.get(index)))
+            columns
+                .optional_numbers(name, points().map(move |point| point.state.get(index)))
+                .unit(STATE_UNITS[index])
         });
         columns
             .optional_numbers("c1_real", points().map(|point| point.c1_real))
             .optional_numbers("location_error", points().map(|point| point.location_error))
+            .unit(self.interval.key().unit())
             .complex_numbers("eigenvalue", STATE_NAMES.len(), points().map(|point| &point.eigenvalues))
             .named_numbers("test", points().map(|point| &point.tests))
     }

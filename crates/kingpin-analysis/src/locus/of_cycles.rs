@@ -1,6 +1,6 @@
 //! A curve of special cycles of a wheel as a result.
 
-use crate::along::{Plane, axes};
+use crate::along::Plane;
 use crate::description;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
@@ -83,8 +83,8 @@ impl Report for CycleLocusResult {
         let (kind, [one, two]) = (self.curve.kind.name(), self.plane.keys());
         let description =
             format!("{kind} in {one} and {two} at {}", description::of(&self.wheel, &[one, two]));
-        let (labels, scales) = axes(&self.plane);
-        Ok(Some(self.curve.figure(&description, [&labels[0], &labels[1]], scales)))
+        let [first, second] = self.plane.labels();
+        Ok(Some(self.curve.figure(&description, [&first, &second], self.plane.scales())))
     }
 
     fn story(&self) -> Option<Story> {

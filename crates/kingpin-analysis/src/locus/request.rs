@@ -56,7 +56,7 @@ pub struct LocusAnalysis {
 enum Start {
     /// A Hopf point, with a parameter along which it was found.
     Hopf(Along),
-    Cycle(SpecialKind, Orbit),
+    Cycle(SpecialKind, Box<Orbit>),
 }
 
 impl LocusRequest {
@@ -70,6 +70,8 @@ impl LocusRequest {
     /// # Errors
     /// What is wrong with the point or a field.
     pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        self.steps.check()?;
+        self.mesh.check()?;
         let [first, second] = &self.plane;
         let plane = [along(first)?, along(second)?];
         first.check_values(&self.at)?;

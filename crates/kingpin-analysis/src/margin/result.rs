@@ -218,14 +218,20 @@ impl Report for MarginResult {
 
     fn columns(&self) -> Columns {
         let points = || self.points.iter();
-        let key = self.interval.key().name();
+        let key = self.interval.key();
         Columns::new()
-            .numbers(key, points().map(|point| point.value))
+            .numbers(key.name(), points().map(|point| point.value))
+            .unit(key.unit())
             .optional_numbers("positive_returns", points().map(|p| p.found.positive.map(|edge| edge.returns)))
+            .unit(self.unit)
             .optional_numbers("positive_fails", points().map(|p| p.found.positive.map(|edge| edge.fails)))
+            .unit(self.unit)
             .optional_numbers("negative_returns", points().map(|p| p.found.negative.map(|edge| edge.returns)))
+            .unit(self.unit)
             .optional_numbers("negative_fails", points().map(|p| p.found.negative.map(|edge| edge.fails)))
+            .unit(self.unit)
             .optional_numbers("unstable_amplitude", points().map(|point| point.unstable_amplitude))
+            .unit("rad")
             .optional_numbers("ratio", points().map(|point| point.ratio))
             .texts("beyond", points().map(|point| Some(point.remark())))
     }

@@ -192,20 +192,27 @@ impl Report for SafeKickResult {
         let optional = |columns: Columns, name: &str, values: fn(&Motion) -> &Option<Vec<f64>>| {
             let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
             let values: Vec<f64> = present.flatten().copied().collect();
-            if values.is_empty() { columns } else { columns.numbers(name, values) }
+            if values.is_empty() { columns } else { columns.numbers(name, values).unit("m/s") }
         };
         let columns = Columns::new()
             .texts("side", sides)
             .numbers("magnitude", magnitudes)
+            .unit(self.unit)
             .numbers("t", numbers(|motion| &motion.t))
+            .unit("s")
             .numbers("u", numbers(|motion| &motion.u))
+            .unit("m")
             .numbers("q", numbers(|motion| &motion.q))
+            .unit("m")
             .numbers("psi", numbers(|motion| &motion.psi))
+            .unit("rad")
             .numbers("V", numbers(|motion| &motion.forward_speed))
-            .numbers("Omega", numbers(|motion| &motion.yaw_rate));
+            .unit("m/s")
+            .numbers("Omega", numbers(|motion| &motion.yaw_rate))
+            .unit("rad/s");
         let columns = optional(columns, "V2", |motion| &motion.lateral_speed);
         let columns = optional(columns, "W", |motion| &motion.rim_speed);
-        columns.numbers("slip", numbers(|motion| &motion.slip))
+        columns.numbers("slip", numbers(|motion| &motion.slip)).unit("m/s")
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -106,12 +106,16 @@ impl Report for RollingHistory {
     }
 
     fn columns(&self) -> Columns {
-        let times = Columns::new().numbers("t", self.t.iter().copied());
+        let times = Columns::new().numbers("t", self.t.iter().copied()).unit("s");
         let states = self.states().into_iter();
         states
-            .fold(times, |columns, (name, values, ..)| columns.numbers(name, values.iter().copied()))
+            .fold(times, |columns, (name, values, unit, _)| {
+                columns.numbers(name, values.iter().copied()).unit(unit)
+            })
             .numbers("friction_force", self.friction_force.iter().copied())
+            .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
+            .unit("N")
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

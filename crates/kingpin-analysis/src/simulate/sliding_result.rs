@@ -131,13 +131,18 @@ impl Report for SlidingHistoryResult {
     }
 
     fn columns(&self) -> Columns {
-        let times = Columns::new().numbers("t", self.t.iter().copied());
+        let times = Columns::new().numbers("t", self.t.iter().copied()).unit("s");
         let states = self.states().into_iter();
         states
-            .fold(times, |columns, (name, values, _)| columns.numbers(name, values.iter().copied()))
+            .fold(times, |columns, (name, values, unit)| {
+                columns.numbers(name, values.iter().copied()).unit(unit)
+            })
             .numbers("slip", self.slip.iter().copied())
+            .unit("m/s")
             .numbers("friction_force", self.friction_force.iter().copied())
+            .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
+            .unit("N")
             .texts("phase", self.phase.iter().map(|phase| Some((*phase).to_owned())))
     }
 

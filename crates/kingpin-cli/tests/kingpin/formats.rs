@@ -99,6 +99,9 @@ fn csv_and_parquet_have_the_same_columns() {
         assert!(lines.all(|line| line.split(',').count() == names.len()));
         assert_eq!(metadata[0].0, "schema");
         assert!(metadata[1].1.contains("\"l_c\":0.012"), "{metadata:?}");
+        let units: Value = serde_json::from_str(&metadata[2].1).unwrap();
+        let first = if command == HOPF { "frequency" } else { names[usize::from(command == CYCLES) * 3] };
+        assert!(units[first].is_string() && metadata[2].0 == "units", "{command}: {units}");
         assert_eq!(folder.files(), ["result.csv", "result.parquet"]);
     }
 }

@@ -3,6 +3,7 @@
 mod bad_input;
 mod basin;
 mod branches;
+mod curves;
 mod formats;
 #[cfg(unix)]
 mod interruption;
