@@ -8,8 +8,8 @@
 
 use super::equations::{Collocation, MOST_NODES, combine};
 use super::problem::PeriodicProblem;
+use super::resolution::Resolution;
 use crate::continuation::Adaptation;
-use crate::cycle::Resolution;
 use crate::error::Error;
 
 /// Ratio of the largest to the smallest mesh width of neighbours-to-be is limited through this floor on

@@ -7,3 +7,4 @@ pub(crate) mod gauss;
 pub(crate) mod linear_problem;
 pub(crate) mod mesh;
 pub(crate) mod problem;
+pub(crate) mod resolution;

@@ -1,9 +1,10 @@
 //! One step: predict, correct, adapt the discretisation, shorten where the corrector fails or the curve turns too much.
 
-use super::corrector::{correct, inner, norm};
+use super::corrector::{correct, finish};
 use super::curve::{Adaptation, Curve};
+use super::metric::{inner, metric_image, norm};
 use super::settings::Settings;
-use super::solution::{Bound, Solution, finish, metric_image};
+use super::solution::{Bound, Solution};
 use super::stop::Stop;
 use crate::error::{CorrectionFailure, Error};
 

@@ -3,8 +3,9 @@
 use super::curve::Curve;
 use super::events::{Event, Events, Unlocated};
 use super::follow::Followed;
+use super::metric::{along, distance};
 use super::requested::Origin;
-use super::solution::{Solution, along, distance};
+use super::solution::Solution;
 use super::stop::Stop;
 use crate::error::Error;
 

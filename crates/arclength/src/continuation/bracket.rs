@@ -1,10 +1,11 @@
 //! Zeros of test functions between two neighbouring solutions, by the Illinois variant of regula falsi with a correction at
 //! every trial point: starts for Newton's method on a defining system.
 
-use super::corrector::correct;
+use super::corrector::{correct, finish};
 use super::curve::Curve;
+use super::metric::{along, metric_image};
 use super::settings::Settings;
-use super::solution::{Solution, along, finish, interpolate, metric_image};
+use super::solution::{Solution, interpolate};
 use crate::error::Error;
 
 /// Most trial points.

@@ -1,8 +1,10 @@
-//! Newton's method on the bordered system, with chord steps while they contract well.
+//! Newton's method on the bordered system, with chord steps while they contract well, and the solutions that it gives.
 
 use super::curve::Curve;
+use super::metric::{along, metric_image, norm};
 use super::settings::Settings;
-use crate::error::CorrectionFailure;
+use super::solution::{Solution, interpolate};
+use crate::error::{CorrectionFailure, Error};
 
 /// How a correction went.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,15 +91,64 @@ pub fn correct<C: Curve>(
     Err(CorrectionFailure::Diverged)
 }
 
-/// Length of a vector in the curve's metric; `image` is scratch memory.
-pub(super) fn norm<C: Curve>(curve: &C, vector: &[f64], image: &mut [f64]) -> f64 {
-    curve.apply_metric(vector, image);
-    let square = inner(vector, image);
-    // Rounding may make it negative; a number that is not finite stays one.
-    if square < 0.0 { 0.0 } else { square.sqrt() }
+/// The solution with `unknown` up to a correction across the tangent of `origin`.
+///
+/// # Errors
+/// [`Error::NotFound`] when the corrector fails.
+pub(crate) fn across<C: Curve>(
+    curve: &mut C,
+    origin: &Solution<C::Point>,
+    mut unknown: Vec<f64>,
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    let border = metric_image(curve, &origin.tangent);
+    correct(curve, &mut unknown, &border, settings)
+        .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
+    finish(curve, unknown, &origin.tangent)
 }
 
-/// Euclidean inner product.
-pub(super) fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// A solution between two neighbours, at a fraction of the way.
+///
+/// # Errors
+/// [`Error::NotFound`] when the corrector fails.
+pub(crate) fn between<C: Curve>(
+    curve: &mut C,
+    before: &Solution<C::Point>,
+    after: &Solution<C::Point>,
+    fraction: f64,
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    let length = along(curve, before, &after.unknown);
+    across(curve, before, interpolate(before, after, length, fraction), settings)
+}
+
+/// Completes a corrected solution: tangent in the direction of `old_tangent`, orientation, point.
+///
+/// # Errors
+/// When the bordered Jacobian is singular or the point cannot be inspected.
+pub(crate) fn finish<C: Curve>(
+    curve: &mut C,
+    unknown: Vec<f64>,
+    old_tangent: &[f64],
+) -> Result<Solution<C::Point>, Error> {
+    let border = metric_image(curve, old_tangent);
+    let mut tangent = vec![0.0; unknown.len()];
+    let singular = Error::NotFound { sought: "tangent", cause: CorrectionFailure::Singular };
+    let sign = curve.factorize(&unknown, &border, &mut tangent);
+    if sign == 0.0 {
+        return Err(singular);
+    }
+    tangent.fill(0.0);
+    if let Some(last) = tangent.last_mut() {
+        *last = 1.0;
+    }
+    curve.solve(&mut tangent);
+    let mut image = vec![0.0; tangent.len()];
+    let length = norm(curve, &tangent, &mut image);
+    if !(length.is_finite() && length > 0.0) {
+        return Err(singular);
+    }
+    tangent.iter_mut().for_each(|entry| *entry /= length);
+    let point = curve.inspect(&unknown, &tangent, sign)?;
+    Ok(Solution { unknown, tangent, orientation: sign, point })
 }

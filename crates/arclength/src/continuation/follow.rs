@@ -2,11 +2,13 @@
 
 use super::advance::{STEP_REDUCTION, advance, converge};
 use super::closure::Closure;
+use super::corrector::between;
 use super::curve::{Curve, Ending};
 use super::events::{EventSearch, Events, Unlocated};
+use super::metric::along;
 use super::requested::{Between, Origin, Target, first_exit, fix, insert_targets, insert_values};
 use super::settings::Settings;
-use super::solution::{Bound, Solution, along, between};
+use super::solution::{Bound, Solution};
 use super::stop::Stop;
 use crate::error::Error;
 use std::ops::ControlFlow;

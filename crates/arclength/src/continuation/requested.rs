@@ -1,10 +1,11 @@
 //! Solutions that were asked for: at values of the parameter, where a monitor has a value, at the ends of ranges.
 
 use super::bracket::locate;
-use super::corrector::correct;
+use super::corrector::{correct, finish};
 use super::curve::Curve;
+use super::metric::along;
 use super::settings::Settings;
-use super::solution::{Bound, Solution, along, finish, interpolate};
+use super::solution::{Bound, Solution, interpolate};
 use crate::error::Error;
 use std::fmt;
 

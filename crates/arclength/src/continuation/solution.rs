@@ -1,9 +1,4 @@
-//! Solutions on a curve and the geometry of its metric: lengths, positions along a tangent, points between two neighbours.
-
-use super::corrector::{correct, inner, norm};
-use super::curve::Curve;
-use super::settings::Settings;
-use crate::error::{CorrectionFailure, Error};
+//! Solutions on a curve, the range that bounds it, and the cubic between two neighbours.
 
 /// A converged solution on a curve.
 #[derive(Clone, Debug)]
@@ -56,26 +51,6 @@ impl Bound {
     }
 }
 
-/// `W vector`.
-pub(crate) fn metric_image<C: Curve>(curve: &C, vector: &[f64]) -> Vec<f64> {
-    let mut image = vec![0.0; vector.len()];
-    curve.apply_metric(vector, &mut image);
-    image
-}
-
-/// Position along the tangent at `origin`, in the metric of the curve.
-pub(crate) fn along<C: Curve>(curve: &C, origin: &Solution<C::Point>, unknown: &[f64]) -> f64 {
-    let image = metric_image(curve, &origin.tangent);
-    let offset = unknown.iter().zip(&origin.unknown).map(|(there, here)| there - here);
-    offset.zip(&image).map(|(offset, weight)| offset * weight).sum()
-}
-
-/// Distance between two solutions in the metric of the curve.
-pub(crate) fn distance<C: Curve>(curve: &C, one: &[f64], other: &[f64]) -> f64 {
-    let offset: Vec<f64> = one.iter().zip(other).map(|(a, b)| b - a).collect();
-    norm(curve, &offset, &mut vec![0.0; offset.len()])
-}
-
 /// The cubic through two neighbours with their tangents, at a fraction of the way; `length` is that of the way.
 pub(crate) fn interpolate<P>(
     before: &Solution<P>,
@@ -89,73 +64,4 @@ pub(crate) fn interpolate<P>(
     let ends = before.unknown.iter().zip(&after.unknown);
     let tangents = before.tangent.iter().zip(&after.tangent);
     ends.zip(tangents).map(|((a, b), (u, v))| a + step * (b - a) + departure * u + arrival * v).collect()
-}
-
-/// The solution with `unknown` up to a correction across the tangent of `origin`.
-///
-/// # Errors
-/// [`Error::NotFound`] when the corrector fails.
-pub(crate) fn across<C: Curve>(
-    curve: &mut C,
-    origin: &Solution<C::Point>,
-    mut unknown: Vec<f64>,
-    settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
-    let border = metric_image(curve, &origin.tangent);
-    correct(curve, &mut unknown, &border, settings)
-        .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
-    finish(curve, unknown, &origin.tangent)
-}
-
-/// A solution between two neighbours, at a fraction of the way.
-///
-/// # Errors
-/// [`Error::NotFound`] when the corrector fails.
-pub(crate) fn between<C: Curve>(
-    curve: &mut C,
-    before: &Solution<C::Point>,
-    after: &Solution<C::Point>,
-    fraction: f64,
-    settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
-    let length = along(curve, before, &after.unknown);
-    across(curve, before, interpolate(before, after, length, fraction), settings)
-}
-
-/// Completes a corrected solution: tangent in the direction of `old_tangent`, orientation, point.
-///
-/// # Errors
-/// When the bordered Jacobian is singular or the point cannot be inspected.
-pub(crate) fn finish<C: Curve>(
-    curve: &mut C,
-    unknown: Vec<f64>,
-    old_tangent: &[f64],
-) -> Result<Solution<C::Point>, Error> {
-    let border = metric_image(curve, old_tangent);
-    let mut tangent = vec![0.0; unknown.len()];
-    let singular = Error::NotFound { sought: "tangent", cause: CorrectionFailure::Singular };
-    let sign = curve.factorize(&unknown, &border, &mut tangent);
-    if sign == 0.0 {
-        return Err(singular);
-    }
-    tangent.fill(0.0);
-    if let Some(last) = tangent.last_mut() {
-        *last = 1.0;
-    }
-    curve.solve(&mut tangent);
-    let mut image = vec![0.0; tangent.len()];
-    let length = norm(curve, &tangent, &mut image);
-    if !(length.is_finite() && length > 0.0) {
-        return Err(singular);
-    }
-    tangent.iter_mut().for_each(|entry| *entry /= length);
-    let point = curve.inspect(&unknown, &tangent, sign)?;
-    Ok(Solution { unknown, tangent, orientation: sign, point })
-}
-
-/// Cosine of the angle between a tangent and the way to another solution at a given distance.
-pub(crate) fn cosine<C: Curve>(curve: &C, origin: &Solution<C::Point>, other: &[f64], distance: f64) -> f64 {
-    let image = metric_image(curve, &origin.tangent);
-    let size = inner(&origin.tangent, &image).max(0.0).sqrt();
-    along(curve, origin, other).abs() / (size * distance)
 }

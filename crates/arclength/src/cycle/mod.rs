@@ -1,6 +1,7 @@
 //! Limit cycles: collocation, meshes, Floquet multipliers, special points.
 
 mod branch;
+mod contract;
 pub(crate) mod curve;
 pub(crate) mod defining;
 pub(crate) mod eigenfunctions;
@@ -17,8 +18,8 @@ mod special;
 mod start;
 mod switching;
 
+pub use crate::collocation::resolution::Resolution;
 pub use branch::{CycleBranch, CyclePoint};
-pub use curve::Resolution;
 pub use end::CycleEnd;
 pub use orbit::Orbit;
 pub use start::{CycleProblem, CycleStart, Cycles};

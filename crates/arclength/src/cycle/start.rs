@@ -1,13 +1,14 @@
 //! Asking for a branch of limit cycles: where it starts, how it is followed.
 
 use super::branch::{CycleBranch, CyclePoint};
-use super::curve::{CycleCurve, CycleInspection, Resolution};
+use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::switching::{Branching, Departure, HopfStart};
 use crate::branch::{Branch, Continuation, Label, Problem, SpecialKind, invalid, observer, request};
 use crate::collocation::equations::Collocation;
+use crate::collocation::resolution::Resolution;
 use crate::continuation::events::around_start;
 use crate::continuation::{
     BothWays, Bound, Curve, Followed, Observer, Origin, Request, Settings, Solution, Stop, both_ways,

@@ -6,6 +6,7 @@
 
 mod branch;
 mod branch_point;
+mod contract;
 mod curve;
 pub(crate) mod defining;
 mod departure;

@@ -9,6 +9,7 @@
 
 mod branch;
 mod codimension_two;
+mod contract;
 mod curve;
 mod cycles;
 mod gauge;

@@ -4,9 +4,10 @@
 //! together may exhaust the division of a step. The number of unstable directions still tells: bisection brackets every place
 //! where it changes. What crosses there is located by the curve, one by one.
 
+use super::event::Event;
 use super::node::Node;
-use super::search::Event;
-use crate::continuation::solution::{between, distance};
+use crate::continuation::corrector::between;
+use crate::continuation::metric::distance;
 use crate::continuation::{Curve, Settings, Solution};
 use crate::error::Error;
 

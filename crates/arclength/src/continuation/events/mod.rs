@@ -11,19 +11,26 @@
 //!
 //! A solution that happens to be a special point itself decides nothing: the one a little further along stands for it.
 
+mod count;
 mod crossings;
+mod event;
+mod found;
+mod memory;
+mod neighbour;
 mod node;
 mod path;
 mod scan;
 mod search;
+mod spectrum;
 mod start;
 mod suspicion;
 mod test_function;
 mod verification;
 
-pub use node::Spectrum;
+pub use event::{Event, Unlocated};
+pub(crate) use found::Events;
 pub(crate) use path::nearest_partners as partners;
-pub use search::{Event, Unlocated};
-pub(crate) use search::{EventSearch, Events};
+pub(crate) use search::EventSearch;
+pub use spectrum::Spectrum;
 pub(crate) use start::around_start;
 pub use test_function::{Location, Reading, TestFunction};

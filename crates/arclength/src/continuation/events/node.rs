@@ -1,44 +1,13 @@
 //! A solution as the event engine sees it: values of the test functions, growth exponents and their rates along the curve.
 
+use super::path::partners;
+use super::spectrum::Spectrum;
 use super::test_function::Reading;
-use crate::continuation::corrector::norm;
-use crate::continuation::solution::{across, distance};
+use crate::continuation::corrector::across;
+use crate::continuation::metric::{distance, norm};
 use crate::continuation::{Curve, Settings, Solution};
 use num_complex::Complex64;
-use std::f64::consts::{PI, TAU};
-
-/// Growth exponents of a solution: eigenvalues of an equilibrium, logarithms of the multipliers of a cycle.
-#[derive(Clone, Debug, Default)]
-pub struct Spectrum {
-    /// The exponents; those with a positive real part are unstable.
-    pub exponents: Vec<Complex64>,
-    /// Number of unstable ones, decided or not.
-    pub unstable: usize,
-    /// Whether that number is beyond doubt.
-    pub decided: bool,
-    /// Real parts below this may be rounding.
-    pub noise: f64,
-    /// Whether imaginary parts are known up to multiples of 2 pi only.
-    pub is_periodic: bool,
-}
-
-impl Spectrum {
-    /// Whether an exponent is no member of a complex pair.
-    pub(super) fn is_real(&self, exponent: Complex64) -> bool {
-        exponent.im == 0.0 || self.is_periodic && exponent.im.abs() == PI
-    }
-
-    /// Distance of two exponents.
-    pub(super) fn separation(&self, one: Complex64, other: Complex64) -> f64 {
-        let difference = one - other;
-        if self.is_periodic {
-            let turns = (difference.im / TAU).round();
-            difference.re.hypot(difference.im - turns * TAU)
-        } else {
-            difference.norm()
-        }
-    }
-}
+use std::f64::consts::TAU;
 
 /// A solution with what is known of it.
 #[derive(Debug)]
@@ -107,7 +76,7 @@ impl<C: Curve> Node<C> {
         let there = across(curve, &self.solution, self.solution.ahead(DISPLACEMENT * step), settings).ok()?;
         let length = distance(curve, &self.solution.unknown, &there.unknown);
         let there = Node::new(curve, there);
-        let partners = super::path::partners(&self.spectrum, &there.spectrum, None);
+        let partners = partners(&self.spectrum, &there.spectrum, None);
         let exponents = self.spectrum.exponents.iter().zip(partners).map(|(here, partner)| {
             let mut change = there.spectrum.exponents[partner] - here;
             if self.spectrum.is_periodic {

@@ -1,6 +1,6 @@
 //! How a quantity runs between two solutions, as far as values and rates at both tell: how often it may pass zero.
 
-use super::node::Spectrum;
+use super::spectrum::Spectrum;
 use num_complex::Complex64;
 
 /// A quantity that a cubic says shrinks to this part of the smaller of its end values is looked at.

@@ -1,12 +1,15 @@
 //! The division of a step until it holds one special point at most.
 
+use super::count::reachable;
 use super::crossings::crossings;
+use super::event::{Event, Unlocated};
+use super::memory::Memory;
 use super::node::Node;
-use super::search::{Event, Memory, Unlocated};
 use super::suspicion::suspicious;
 use super::test_function::Location;
-use super::verification::reachable;
-use crate::continuation::solution::{Bound, between, cosine, distance};
+use crate::continuation::corrector::between;
+use crate::continuation::metric::{cosine, distance};
+use crate::continuation::solution::Bound;
 use crate::continuation::{Curve, Settings, Solution};
 use crate::error::Error;
 

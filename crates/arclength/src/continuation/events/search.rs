@@ -1,74 +1,13 @@
 //! The search for special points along a curve, step by step.
 
-use super::node::{Node, Spectrum, undecided};
-use super::scan::Scan;
-use super::start::beyond;
-use crate::continuation::solution::{Bound, distance};
+use super::found::{Events, search};
+use super::memory::Memory;
+use super::neighbour::beyond;
+use super::node::{Node, undecided};
+use crate::continuation::metric::distance;
+use crate::continuation::solution::Bound;
 use crate::continuation::{Curve, Settings, Solution};
 use crate::error::Error;
-
-/// A special point that was found between two solutions.
-#[derive(Clone, Debug)]
-pub struct Event<K, P> {
-    /// What it is.
-    pub kind: K,
-    /// Whether it satisfies its defining system; otherwise it was bracketed.
-    pub is_located: bool,
-    /// The point.
-    pub solution: Solution<P>,
-}
-
-/// A change of sign, or of the number of unstable directions, behind which no special point could be located.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unlocated<K> {
-    /// The kind whose test function changed its sign; `None` where only the number of unstable directions changed.
-    pub kind: Option<K>,
-    /// Values of the bounded parameters between which it changed.
-    pub between: [Vec<f64>; 2],
-}
-
-/// Special points between two solutions, in the order of the curve, and what could not be located.
-pub(crate) struct Events<C: Curve + ?Sized> {
-    pub found: Vec<Event<C::Kind, C::Point>>,
-    pub unlocated: Vec<Unlocated<C::Kind>>,
-}
-
-impl<C: Curve> Default for Events<C> {
-    fn default() -> Self {
-        Self { found: Vec::new(), unlocated: Vec::new() }
-    }
-}
-
-/// Values and exponents at the solution before the last: how much they change from step to step.
-#[derive(Debug, Default)]
-pub(super) struct Memory {
-    readings: Vec<Option<f64>>,
-    spectrum: Option<Spectrum>,
-}
-
-impl Memory {
-    fn of<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> Self {
-        let readings = curve.test_functions().iter().map(|test| Some(curve.test(test.kind, solution)?.value));
-        Self { readings: readings.collect(), spectrum: Some(curve.spectrum(solution)) }
-    }
-
-    /// Change of the real part of an exponent; infinite where there is nothing to compare with.
-    pub fn change_of_exponent(&self, spectrum: &Spectrum, index: usize) -> f64 {
-        let Some(previous) = &self.spectrum else { return f64::INFINITY };
-        let here = spectrum.exponents[index];
-        let nearest = previous.exponents.iter().min_by(|one, other| {
-            previous.separation(here, **one).total_cmp(&previous.separation(here, **other))
-        });
-        nearest.map_or(f64::INFINITY, |value| (value.re - here.re).abs())
-    }
-
-    /// Change of a test function.
-    pub fn change_of_reading(&self, index: usize, value: f64) -> f64 {
-        self.readings.get(index).map_or(f64::INFINITY, |previous| {
-            previous.map_or(f64::INFINITY, |previous| (value - previous).abs())
-        })
-    }
-}
 
 /// What a run remembers from step to step.
 pub(crate) struct EventSearch {
@@ -124,18 +63,4 @@ impl EventSearch {
         self.memory = Memory::of(curve, before);
         Ok(events)
     }
-}
-
-/// Special points between two solutions, in order.
-pub(super) fn search<C: Curve>(
-    curve: &mut C,
-    ends: [&mut Node<C>; 2],
-    memory: &Memory,
-    bounds: &[Bound],
-    settings: &Settings,
-) -> Result<Events<C>, Error> {
-    let mut scan = Scan::new(curve, memory, bounds, settings);
-    let found = scan.verified(ends)?;
-    let unlocated = scan.unlocated;
-    Ok(Events { found, unlocated })
 }

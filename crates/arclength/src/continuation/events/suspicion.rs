@@ -5,9 +5,9 @@
 //! twice, and test functions that are not made of exponents. Where rates cost a solution of their own they are computed only if
 //! a quantity comes close to zero compared with its changes from step to step.
 
+use super::memory::Memory;
 use super::node::Node;
 use super::path::{Path, partners};
-use super::search::Memory;
 use crate::continuation::{Curve, Settings};
 use num_complex::Complex64;
 

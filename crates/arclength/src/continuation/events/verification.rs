@@ -1,10 +1,12 @@
 //! Whether the points that were found explain how the number of unstable directions changes; where they do not, the surroundings
 //! are searched again.
 
+use super::count::reachable;
+use super::event::Event;
 use super::node::Node;
 use super::scan::Scan;
-use super::search::Event;
-use crate::continuation::solution::{across, along};
+use crate::continuation::corrector::across;
+use crate::continuation::metric::along;
 use crate::continuation::{Curve, Solution};
 use crate::error::Error;
 
@@ -16,22 +18,6 @@ const SURROUNDINGS: f64 = 0.02;
 const COINCIDENT: f64 = 1e-8;
 /// Distance, in the metric, within which two points of one kind are one that was found twice.
 const SAME_PLACE: f64 = 1e-7;
-
-/// Whether a change of the number of unstable directions is a sum of changes, each with either sign, one of each list. An empty
-/// list explains nothing and forbids nothing.
-pub(super) fn reachable<'a>(change: usize, lists: impl Iterator<Item = &'a [usize]>) -> bool {
-    let mut sums = vec![0_isize];
-    for list in lists.filter(|list| !list.is_empty()) {
-        let next = sums
-            .iter()
-            .flat_map(|sum| list.iter().flat_map(move |&part| [sum + part as isize, sum - part as isize]));
-        let mut next: Vec<isize> = next.collect();
-        next.sort_unstable();
-        next.dedup();
-        sums = next;
-    }
-    sums.contains(&(change as isize))
-}
 
 impl<C: Curve> Scan<'_, C> {
     /// Special points between two solutions, each with the change in the number of unstable directions that belongs to it.
@@ -212,24 +198,5 @@ impl<C: Curve> Scan<'_, C> {
         let low = across(self.curve, origin, low, self.settings).ok()?;
         let high = across(self.curve, origin, high, self.settings).ok()?;
         Some((Node::new(self.curve, low), Node::new(self.curve, high)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::reachable;
-
-    #[test]
-    fn changes_of_the_count_are_sums_with_either_sign() {
-        let pair: &[usize] = &[0, 2];
-        let one: &[usize] = &[1];
-        assert!(reachable(0, [].into_iter()));
-        assert!(!reachable(1, [].into_iter()));
-        assert!(reachable(1, [one].into_iter()));
-        assert!(!reachable(0, [one].into_iter()));
-        assert!(reachable(3, [one, pair].into_iter()));
-        assert!(reachable(0, [one, one].into_iter()));
-        assert!(!reachable(2, [one].into_iter()));
-        assert!(reachable(2, [pair, &[]].into_iter()));
     }
 }

@@ -1,0 +1,236 @@
+//! What continuation asks of a curve of cycles: residuals, meshes, test functions, where special points lie, where the curve ends.
+
+use super::curve::{CycleCurve, CycleInspection, state_metric};
+use super::end::CycleEnd;
+use super::extrema::ranges;
+use super::floquet::floquet;
+use super::special;
+use crate::branch::SpecialKind;
+use crate::collocation::mesh::{error_profile, fit_mesh};
+use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::resolution::Resolution;
+use crate::continuation::events::{Event, Location, Reading, Spectrum, TestFunction};
+use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop};
+use crate::error::{CorrectionFailure, Error};
+
+/// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
+/// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
+const MULTIPLIER_PART: f64 = 0.1;
+/// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time. Rounding sets an end
+/// to it, too.
+const FINEST: f64 = 1e-4;
+const FINEST_TOLERANCE: f64 = 1e-10;
+const REFINEMENT: (f64, f64) = (0.1, 0.5);
+/// Where the error is less than this part of what is allowed, the factor of the tolerance grows by `RELAXATION` from point to
+/// point.
+const MUCH_LESS: f64 = 0.01;
+const RELAXATION: f64 = 1.5;
+/// On the branch that turns at a pitchfork the parameter turns too, and a multiplier touches one. Two real multipliers with the
+/// product one change the test of torus bifurcations as well.
+const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
+    TestFunction::new(SpecialKind::BranchPointOfCycles)
+        .changing(&[0, 1])
+        .absorbing(&[SpecialKind::FoldOfCycles])
+        .of_spectrum(),
+    TestFunction::new(SpecialKind::FoldOfCycles).changing(&[1]).turning(),
+    TestFunction::new(SpecialKind::PeriodDoubling).changing(&[1]).of_spectrum(),
+    TestFunction::new(SpecialKind::Torus).changing(&[0, 2]).of_spectrum(),
+];
+/// Rate of change of the parameter, as part of its range, that may be rounding, and one below which a cycle may be a fold.
+const PARAMETER_ROUNDING: f64 = 1e-13;
+const NEARLY_FOLD: f64 = 1e-8;
+/// Difference of the arguments of two pairs of multipliers.
+const DISTINCT: f64 = 1e-6;
+
+impl Curve for CycleCurve<'_> {
+    type Point = CycleInspection;
+    type Kind = SpecialKind;
+    type Reason = CycleEnd;
+
+    fn unknowns(&self) -> usize {
+        self.collocation.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.collocation.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.collocation.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.collocation.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        let end = vector.len() - 2;
+        state_metric(&self.collocation, &self.collocation.problem.scales, vector, image);
+        image[end] = vector[end] / (self.period_scale * self.period_scale);
+        image[end + 1] = vector[end + 1] / (self.parameter_scale * self.parameter_scale);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        // Equilibria and cycles with the time reversed solve the equations too, and Newton's method may jump there.
+        let end = unknown.len() - 2;
+        if unknown[end] <= 0.0 || self.sizes.is_equilibrium(&unknown[..end]) {
+            return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
+        }
+        self.rescale(unknown);
+        let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
+        let finer = Resolution { tolerance: self.refinement * self.resolution.tolerance, ..self.resolution };
+        let (adaptation, worst) = match fit_mesh(&mut self.collocation, &errors, &finer, unknown, vectors) {
+            Err(Error::MeshLimit { .. }) if self.refinement < 1.0 => {
+                fit_mesh(&mut self.collocation, &errors, &self.resolution, unknown, vectors)?
+            }
+            result => result?,
+        };
+        self.error_estimate = worst;
+        Ok(adaptation)
+    }
+
+    fn inspect(
+        &mut self,
+        unknown: &[f64],
+        _tangent: &[f64],
+        _orientation: f64,
+    ) -> Result<CycleInspection, Error> {
+        let floquet = floquet(&self.collocation, unknown, &self.collocation.problem.scales, &mut self.schur)?;
+        let n = self.collocation.problem.dimension();
+        Ok(CycleInspection {
+            error_estimate: self.error_estimate,
+            floquet,
+            ranges: ranges(&self.collocation, unknown, n),
+            mesh: self.collocation.mesh().to_vec(),
+            normal_form: Vec::new(),
+            branching: None,
+        })
+    }
+
+    fn resolves(&mut self, point: &CycleInspection) -> bool {
+        let floquet = &point.floquet;
+        let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
+        let error = if floquet.is_contradictory() { f64::INFINITY } else { floquet.trivial_error };
+        if error <= allowed {
+            if error < MUCH_LESS * allowed {
+                self.refinement = (RELAXATION * self.refinement).min(1.0);
+            }
+            return true;
+        }
+        let (strongest, weakest) = REFINEMENT;
+        let reached = (self.error_estimate / self.resolution.tolerance).min(self.refinement);
+        let finer = reached * (allowed / error).clamp(strongest, weakest);
+        let finest = FINEST.max(FINEST_TOLERANCE / self.resolution.tolerance).min(1.0);
+        self.refinement = finer.max(finest);
+        finer < finest
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<CycleInspection>) -> Option<Reading> {
+        let floquet = &solution.point.floquet;
+        let reading = match kind {
+            // On the explosion of a canard the parameter may vary by its rounding only.
+            SpecialKind::FoldOfCycles => {
+                return Some(Reading::exact(self.turn(&solution.tangent)).with_noise(PARAMETER_ROUNDING));
+            }
+            SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
+            SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
+            SpecialKind::Torus => {
+                let (value, undecided) = floquet.torus_test();
+                Reading::exact(value).in_class(undecided)
+            }
+            _ => return None,
+        };
+        Some(Reading { resolved: !floquet.is_contradictory(), ..reading })
+    }
+
+    fn spectrum(&self, solution: &Solution<CycleInspection>) -> Spectrum {
+        solution.point.floquet.growth()
+    }
+
+    fn undecided(&self, solution: &Solution<CycleInspection>) -> usize {
+        let (_, certain) = solution.point.floquet.unstable();
+        usize::from(!certain) + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+    }
+
+    fn locate(
+        &mut self,
+        kind: SpecialKind,
+        between: [&Solution<CycleInspection>; 2],
+    ) -> Result<Location<CycleInspection>, Error> {
+        special::locate(self, kind, between)
+    }
+
+    fn locate_crossing(
+        &mut self,
+        between: [&Solution<CycleInspection>; 2],
+        _near: Solution<CycleInspection>,
+        change: usize,
+        _half: f64,
+    ) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
+        special::crossing(self, between, change)
+    }
+
+    fn are_distinct(&self, one: &CycleInspection, other: &CycleInspection) -> bool {
+        // Torus bifurcations of pairs with different arguments.
+        let argument = |point: &CycleInspection| {
+            point.normal_form.iter().find(|(name, _)| *name == "argument").map(|entry| entry.1)
+        };
+        matches!((argument(one), argument(other)), (Some(one), Some(other)) if (one - other).abs() > DISTINCT)
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        let n = self.collocation.problem.dimension();
+        let mut signature = vec![(unknown[unknown.len() - 2].ln(), 1.0)];
+        signature.extend(self.sizes.signature(&ranges(&self.collocation, unknown, n)));
+        signature
+    }
+
+    fn ending(
+        &mut self,
+        before: &Solution<CycleInspection>,
+        after: &Solution<CycleInspection>,
+    ) -> Option<Ending<CycleEnd>> {
+        let end = after.unknown.len() - 2;
+        let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
+        let rate = after.tangent[end] / self.period_scale;
+        let sensitivity = (rate / self.turn(&after.tangent)).abs();
+        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
+            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodUnbounded { period, parameter })));
+        }
+        if self.doubled
+            && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
+        {
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling {
+                parameter,
+                period: 0.5 * period,
+            })));
+        }
+        let parameter_before = before.unknown[end + 1];
+        let (here, there) = (&before.unknown[..end], &after.unknown[..end]);
+        if let Some(parameter) =
+            self.sizes.amplitude_passes_zero((here, parameter_before), (there, parameter))
+        {
+            let frequency = 2.0 * std::f64::consts::PI / period;
+            return Some(Ending::Between(Stop::Problem(CycleEnd::HopfPoint {
+                parameter,
+                frequency,
+                located: false,
+            })));
+        }
+        // Cycles that are not known to be doubled ones may be so; then they pass what looks like a branch point.
+        if !self.doubled
+            && before.orientation * after.orientation < 0.0
+            && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
+        {
+            return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling {
+                parameter,
+                period: 0.5 * period,
+            })));
+        }
+        None
+    }
+}

@@ -1,0 +1,206 @@
+//! What continuation asks of a curve of equilibria: residuals, test functions, where special points lie, where the curve ends.
+
+use super::curve::{EquilibriumCurve, Inspection};
+use super::end::EquilibriumEnd;
+use super::locating;
+use super::special::SpecialPoint;
+use crate::branch::{SpecialKind, Stability};
+use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
+use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, events};
+use crate::error::Error;
+use num_complex::Complex64;
+
+/// On the branch that turns at a pitchfork the parameter turns too, and an eigenvalue touches zero. At a neutral saddle the
+/// Hopf test vanishes as well.
+const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
+    TestFunction::new(SpecialKind::BranchPoint)
+        .changing(&[0, 1])
+        .absorbing(&[SpecialKind::Fold])
+        .of_spectrum(),
+    TestFunction::new(SpecialKind::Fold).changing(&[1]).turning(),
+    TestFunction::new(SpecialKind::Hopf).changing(&[0, 2]).of_spectrum(),
+];
+/// A rate of change of the parameter along the curve that may be rounding error, and one below which a solution may be a fold
+/// itself.
+const UNDECIDED_FOLD: f64 = 1e-13;
+const NEARLY_FOLD: f64 = 1e-9;
+/// Displacement along the tangent for the rates of the eigenvalues. Small enough that curvature does not matter,
+/// large enough that rounding does not.
+const DISPLACEMENT: f64 = 1e-7;
+/// Rate of change of the parameter, as part of the whole, and growth of a state since the start that together mean that the
+/// state grows without bound.
+const VERTICAL: f64 = 1e-9;
+const UNBOUNDED_GROWTH: f64 = 1e6;
+/// Part of its range by which the parameter has to change in [`MOST_IDLE_STEPS`] steps.
+const IDLE: f64 = 1e-13;
+const MOST_IDLE_STEPS: usize = 20;
+
+impl Curve for EquilibriumCurve<'_> {
+    type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = EquilibriumEnd;
+
+    fn unknowns(&self) -> usize {
+        self.dimension() + 1
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.system.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.system.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.system.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        self.system.apply_metric(vector, image);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, _vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        let n = self.dimension();
+        self.system.grow_scales(unknown, n);
+        Ok(Adaptation::Unchanged)
+    }
+
+    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Inspection, Error> {
+        let n = self.dimension();
+        let determinant = self.system.determinant_size();
+        let spectrum = self.spectrum()?;
+        let nearby: Vec<f64> =
+            unknown.iter().zip(tangent).map(|(value, slope)| value + DISPLACEMENT * slope).collect();
+        let mut residual = vec![0.0; n + 1];
+        self.system.linearize(&nearby, &mut residual);
+        let rates = match self.spectrum() {
+            Ok(there) => {
+                let partners = partners(&spectrum.growth(), &there.growth());
+                let pairs = spectrum.eigenvalues.iter().zip(partners);
+                pairs.map(|(here, index)| (there.eigenvalues[index] - here) / DISPLACEMENT).collect()
+            }
+            Err(_) => vec![Complex64::ZERO; n],
+        };
+        Ok(Inspection { spectrum, rates, orientation, determinant, special: None })
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+        let point = &solution.point;
+        match kind {
+            SpecialKind::Fold => {
+                Some(Reading::exact(self.turn(&solution.tangent)).with_noise(UNDECIDED_FOLD))
+            }
+            SpecialKind::BranchPoint => Some(Reading::exact(solution.orientation * point.determinant)),
+            SpecialKind::Hopf => {
+                Some(Reading::exact(point.spectrum.hopf_test).in_class(point.spectrum.hopf_undecided))
+            }
+            _ => None,
+        }
+    }
+
+    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+        solution.point.spectrum.growth()
+    }
+
+    fn exponent_rates(&self, solution: &Solution<Inspection>) -> Option<Vec<Complex64>> {
+        let direction = solution.orientation * solution.point.orientation;
+        Some(solution.point.rates.iter().map(|rate| rate * direction).collect())
+    }
+
+    fn undecided(&self, solution: &Solution<Inspection>) -> usize {
+        let spectrum = &solution.point.spectrum;
+        spectrum.hopf_undecided
+            + usize::from(spectrum.stability == Stability::Undecided)
+            + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+    }
+
+    fn locate(
+        &mut self,
+        kind: SpecialKind,
+        [before, after]: [&Solution<Inspection>; 2],
+    ) -> Result<Location<Inspection>, Error> {
+        let located = match kind {
+            SpecialKind::Fold => locating::fold(self, before, after)?,
+            SpecialKind::BranchPoint => locating::branch_point(self, before, after)?,
+            _ => locating::hopf(self, before, after)?,
+        };
+        Ok(match located.point.special.as_deref() {
+            Some(SpecialPoint::Degenerate { .. }) => Location::Bracketed(located),
+            _ => Location::At(located),
+        })
+    }
+
+    fn locate_crossing(
+        &mut self,
+        [before, _]: [&Solution<Inspection>; 2],
+        near: Solution<Inspection>,
+        change: usize,
+        half: f64,
+    ) -> Result<Vec<Event<SpecialKind, Inspection>>, Error> {
+        locating::crossing(self, before, near, change, half)
+    }
+
+    fn are_distinct(&self, one: &Inspection, other: &Inspection) -> bool {
+        match (one.special.as_deref(), other.special.as_deref()) {
+            (Some(SpecialPoint::Hopf(one)), Some(SpecialPoint::Hopf(other))) => {
+                locating::are_distinct(one.frequency, other.frequency)
+            }
+            _ => false,
+        }
+    }
+
+    fn kind_at(&self, point: &Inspection) -> Option<SpecialKind> {
+        point.special.as_ref().map(|special| special.kind())
+    }
+
+    fn changes_at(&self, point: &Inspection) -> Option<&'static [usize]> {
+        match point.special.as_deref()? {
+            SpecialPoint::Hopf(_) => Some(&[2]),
+            SpecialPoint::NeutralSaddle(_) => Some(&[0]),
+            _ => None,
+        }
+    }
+
+    fn ending(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<EquilibriumEnd>> {
+        let n = self.dimension();
+        let range = self.system.scales[n];
+        let parameter = after.unknown[n];
+        if (parameter - before.unknown[n]).abs() > IDLE * range {
+            self.idle_steps = 0;
+        } else {
+            self.idle_steps += 1;
+        }
+        let grown = self
+            .system
+            .scales
+            .iter()
+            .zip(&self.first_scales)
+            .any(|(now, first)| *now > UNBOUNDED_GROWTH * first);
+        let vertical = self.turn(&after.tangent).abs() < VERTICAL;
+        if self.idle_steps > MOST_IDLE_STEPS || (vertical && grown) {
+            return Some(Ending::After(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })));
+        }
+        // The parameter creeps up to the end of its range and never reaches it.
+        let end = [self.bound.lower, self.bound.upper]
+            .into_iter()
+            .find(|end| (parameter - end).abs() < IDLE * range);
+        match end {
+            Some(value) if vertical => Some(Ending::After(Stop::RangeEnd { bound: 0, value })),
+            _ => None,
+        }
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        let states = unknown.iter().copied().zip(self.system.scales.iter().copied());
+        states.take(self.dimension()).collect()
+    }
+}

@@ -1,0 +1,111 @@
+//! What continuation asks of a curve of special equilibria: residuals, test functions, where points of codimension two lie.
+
+use super::curve::{Inspection, LocusCurve};
+use super::kind::{Linearized, LocusKind};
+use super::locating;
+use crate::branch::SpecialKind;
+use crate::continuation::events::{self, Location, Reading, TestFunction};
+use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, distance};
+use crate::equilibrium::spectrum::without;
+use crate::error::Error;
+use std::convert::Infallible;
+
+/// Perturbation of the field, relative to its fastest rate, beyond which a branch point does not persist.
+const UNPERTURBED: f64 = 1e-8;
+/// A real part, relative to the largest modulus, of an eigenvalue that is not critical below which its sign is not decided: next
+/// to another bifurcation eigenvalues are known to the root of rounding only.
+const UNDECIDED: f64 = 1e-7;
+
+impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
+    type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = Infallible;
+
+    fn unknowns(&self) -> usize {
+        self.system.problem.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.system.residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.system.factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.system.solve(right_hand_side);
+    }
+
+    fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
+        self.system.apply_metric(vector, image);
+    }
+
+    fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error> {
+        self.renormalize(unknown, vectors)?;
+        Ok(Adaptation::Unchanged)
+    }
+
+    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+        let n = self.states.len();
+        let spectrum = self.spectrum(unknown)?;
+        let point = Linearized {
+            unknown,
+            matrix: &self.matrix[..n * n],
+            eigenvalues: &spectrum.eigenvalues,
+            scales: &self.states,
+        };
+        let monitor = self.system.problem.monitor(&point)?;
+        Ok(Inspection { spectrum, monitor, special: None })
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        K::TEST_FUNCTIONS
+    }
+
+    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+        solution.point.monitor.test(kind).map(Reading::exact)
+    }
+
+    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+        let all = &solution.point.spectrum.eigenvalues;
+        let rest = without(all, &self.system.problem.critical_eigenvalues(&solution.unknown));
+        let noise = UNDECIDED * all.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        events::Spectrum {
+            unstable: rest.iter().filter(|value| value.re > 0.0).count(),
+            decided: rest.iter().all(|value| value.re.abs() > noise),
+            exponents: rest,
+            noise,
+            is_periodic: false,
+        }
+    }
+
+    fn locate(
+        &mut self,
+        kind: SpecialKind,
+        [before, after]: [&Solution<Inspection>; 2],
+    ) -> Result<Location<Inspection>, Error> {
+        let distance = distance(self, &before.unknown, &after.unknown);
+        let found = locating::codimension_two(self, before, after, distance, kind)?;
+        Ok(found.map_or(Location::Nothing, Location::At))
+    }
+
+    fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
+        let states = unknown.iter().copied().zip(self.system.scales.iter().copied()).take(self.states.len());
+        let last = unknown.last().map(|value| (*value, self.ranges[1]));
+        states.chain(last).collect()
+    }
+
+    fn ending(
+        &mut self,
+        _before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Option<Ending<Infallible>> {
+        if K::KIND != SpecialKind::BranchPoint {
+            return None;
+        }
+        let perturbation = after.unknown[2 * self.states.len()];
+        let limit = UNPERTURBED * self.system.scales[2 * self.states.len()];
+        (perturbation.abs() > limit).then_some(Ending::Between(Stop::Failed(Error::BranchPointBreaksUp)))
+    }
+}
