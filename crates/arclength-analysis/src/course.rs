@@ -3,6 +3,7 @@
 use crate::branch::stability;
 use crate::end::End;
 use crate::labels::is_bifurcation;
+use crate::varying_parameter::VaryingParameter;
 use kingpin_report::Story;
 use kingpin_report::numbers::readable;
 
@@ -32,11 +33,11 @@ pub fn tell_ends(story: &mut Story, ends: &[End; 2]) {
 }
 
 /// Tells the way along the branch: stretches of equal stability between the special points, and the steps.
-pub fn tell_way(story: &mut Story, key: &str, places: &[Place<'_>]) {
+pub fn tell_way(story: &mut Story, along: &VaryingParameter, places: &[Place<'_>]) {
     // A stretch of equal stability reaches from one special point to the next.
     let mut stretch: Option<(f64, f64, Option<bool>)> = None;
     let told = |(start, end, stable): (f64, f64, Option<bool>)| {
-        format!("{} from {key} = {} to {}", stability(stable, false), readable(start), readable(end))
+        format!("{} from {} to {}", stability(stable, false), along.at(start), along.quantity(end))
     };
     let mut special = None;
     for place in places {
@@ -47,7 +48,7 @@ pub fn tell_way(story: &mut Story, key: &str, places: &[Place<'_>]) {
             let remark = place.remark.as_deref().filter(|text| !text.is_empty());
             let remark = remark.map(|text| format!(": {text}")).unwrap_or_default();
             let label = place.label.unwrap_or_default();
-            story.tell("course", format!("{label} at {key} = {}{remark}", readable(place.value)));
+            story.tell("course", format!("{label} at {}{remark}", along.at(place.value)));
             special = Some(place.value);
             continue;
         }
@@ -72,10 +73,11 @@ pub fn tell_way(story: &mut Story, key: &str, places: &[Place<'_>]) {
         story.tell(
             "steps",
             format!(
-                "{} points; from one to the next {key} changes by {} to {}",
+                "{} points; from one to the next {} changes by {} to {}",
                 places.len(),
+                along.key,
                 readable(smallest),
-                readable(largest)
+                along.quantity(largest)
             ),
         );
     }

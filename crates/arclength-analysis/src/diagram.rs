@@ -13,8 +13,8 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
         match result {
             ResultFile::Equilibria(result) => Some(vec![result.along.key.clone()]),
             ResultFile::Cycles(result) => Some(vec![result.along.key.clone()]),
-            ResultFile::Locus(result) => Some(result.keys().map(str::to_owned).to_vec()),
-            ResultFile::CycleLocus(result) => Some(result.keys().map(str::to_owned).to_vec()),
+            ResultFile::Locus(result) => Some(result.curve.keys().map(str::to_owned).to_vec()),
+            ResultFile::CycleLocus(result) => Some(result.curve.keys().map(str::to_owned).to_vec()),
             ResultFile::History(_) => None,
         }
     };
@@ -52,8 +52,8 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
         let curves: Vec<Curve> = results
             .iter()
             .filter_map(|result| match result {
-                ResultFile::Locus(result) => Some(result.curve()),
-                ResultFile::CycleLocus(result) => Some(result.curve()),
+                ResultFile::Locus(result) => Some(result.curve.drawn()),
+                ResultFile::CycleLocus(result) => Some(result.curve.drawn()),
                 _ => None,
             })
             .collect();

@@ -1,6 +1,7 @@
 //! Why a branch ends, as results tell it.
 
-use arclength::continuation::{Explanation, Reason, Stop};
+use crate::varying_parameter::VaryingParameter;
+use arclength::continuation::{Reason, Stop, Wording};
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
@@ -17,11 +18,29 @@ pub struct End {
 }
 
 impl End {
-    /// The end of a branch, with its last good point, along parameters with these names; of one that starts at a point of another
-    /// branch where there is no stop.
-    pub fn of<R: Reason>(stop: Option<&Stop<R>>, keys: &[&str], last: NamedNumbers) -> Self {
-        let explanation = stop.map_or_else(|| Explanation::of("starts there"), |stop| stop.explain(keys));
+    /// The start of a branch at a point where it begins.
+    pub fn start(last: NamedNumbers) -> Self {
+        Self { cause: "starts there".to_owned(), last, remedy: None }
+    }
+
+    /// The end of a branch along these parameters, with its last good point. Where the parameters have units, they are those of
+    /// the SI.
+    pub fn of<R: Reason>(stop: &Stop<R>, varying: &[VaryingParameter], last: NamedNumbers) -> Self {
+        let named = varying.iter().map(|parameter| (parameter.key.as_str(), parameter.unit.as_deref()));
+        let explanation = stop.explain(&Wording::of(named));
         Self { cause: explanation.cause, last, remedy: explanation.remedy.map(str::to_owned) }
+    }
+
+    /// The same where a branch may start at a point of another one: then there is no stop.
+    pub fn of_either<R: Reason>(
+        stop: Option<&Stop<R>>,
+        varying: &[VaryingParameter],
+        last: NamedNumbers,
+    ) -> Self {
+        match stop {
+            Some(stop) => Self::of(stop, varying, last),
+            None => Self::start(last),
+        }
     }
 
     /// In one line.

@@ -7,7 +7,6 @@
 //! requests.
 
 pub mod branch;
-mod control;
 pub mod course;
 pub mod cycles;
 pub mod diagram;
@@ -30,8 +29,8 @@ mod stored_model;
 mod unlocated;
 mod varying_parameter;
 
+pub use arclength::control::{Control, Progress};
 pub use branch::Origin;
-pub use control::{Control, Progress};
 pub use end::End;
 pub use error::{AnalysisError, Error, InvalidField};
 pub use interval::{Assignment, Interval, IntervalError, SampledInterval, Values};

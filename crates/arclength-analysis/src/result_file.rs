@@ -60,9 +60,11 @@ impl ResultFile {
                 result.points.iter().filter_map(|point| point.label.clone()).collect()
             }
             Self::Cycles(result) => result.points.iter().filter_map(|point| point.label.clone()).collect(),
-            Self::Locus(result) => result.points.iter().filter_map(|point| point.label.clone()).collect(),
+            Self::Locus(result) => {
+                result.curve.points.iter().filter_map(|point| point.label.clone()).collect()
+            }
             Self::CycleLocus(result) => {
-                result.points.iter().filter_map(|point| point.label.clone()).collect()
+                result.curve.points.iter().filter_map(|point| point.label.clone()).collect()
             }
             Self::History(_) => vec![HistoryResult::END.to_owned()],
         }

@@ -61,8 +61,9 @@ impl LabelledPoint {
                 Ok(Self::new(reference, chosen, What::Equilibrium(point.special.clone())))
             }
             ResultFile::Locus(result) => {
-                let point = result.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
-                let [one, two] = result.keys();
+                let point =
+                    result.curve.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
+                let [one, two] = result.curve.keys();
                 let parameters = at(&result.parameters, &[(one, point.values[0]), (two, point.values[1])]);
                 let chosen = choose(reference, result.model.clone(), &parameters, Some(&point.state))?;
                 Ok(Self::new(reference, chosen, What::Equilibrium(None)))
@@ -79,8 +80,9 @@ impl LabelledPoint {
                 Self::cycle(reference, chosen, point.orbit.as_ref(), branching)
             }
             ResultFile::CycleLocus(result) => {
-                let point = result.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
-                let [one, two] = result.keys();
+                let point =
+                    result.curve.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
+                let [one, two] = result.curve.keys();
                 let parameters = at(&result.parameters, &[(one, point.values[0]), (two, point.values[1])]);
                 let chosen = choose(reference, result.model.clone(), &parameters, None)?;
                 Self::cycle(reference, chosen, point.orbit.as_ref(), None)

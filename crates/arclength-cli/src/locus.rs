@@ -58,8 +58,8 @@ impl Locus {
         let progress = Progress::spinner("curve", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
-        output.deliver(&result)?;
         output.warn_of(&result.warnings());
+        output.deliver(&result)?;
         interruption.check_branch()
     }
 }

@@ -13,11 +13,11 @@ pub(crate) struct Assignment {
 }
 
 impl Assignment {
-    pub fn value<'a>(&self, line: &'a Text) -> std::borrow::Cow<'a, str> {
+    pub(crate) fn value<'a>(&self, line: &'a Text) -> std::borrow::Cow<'a, str> {
         line.string(self.value_start, self.value_end).into()
     }
 
-    pub fn has_value(&self) -> bool {
+    pub(crate) fn has_value(&self) -> bool {
         self.value_end > self.value_start
     }
 }

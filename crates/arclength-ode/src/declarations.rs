@@ -40,7 +40,7 @@ pub(crate) struct Declarations {
 
 impl Declarations {
     /// Reads all lines, which are already expanded.
-    pub fn read(lines: &[Text]) -> Result<Self, OdeError> {
+    pub(crate) fn read(lines: &[Text]) -> Result<Self, OdeError> {
         let mut declarations = Self::default();
         for line in lines {
             if line.skip_blanks(0) < line.len() {
@@ -174,7 +174,7 @@ impl Declarations {
     }
 
     /// Index of the state of that name.
-    pub fn state(&self, name: &Name) -> Result<usize, OdeError> {
+    pub(crate) fn state(&self, name: &Name) -> Result<usize, OdeError> {
         match self.symbols.names.get(&name.key()) {
             Some(&Symbol::State(index)) => Ok(index),
             _ => Err(OdeError::UnknownName {

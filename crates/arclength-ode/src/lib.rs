@@ -31,6 +31,8 @@
 //! equations (delays, algebraic equations, noise, tables, integral equations, Markov variables,
 //! events, maps, external libraries) is refused with an [`OdeError::Unsupported`] that says what to do.
 
+#![warn(unreachable_pub)]
+
 mod assignments;
 mod compile;
 mod declarations;

@@ -27,26 +27,26 @@ pub(crate) struct Text {
 }
 
 impl Text {
-    pub fn push(&mut self, character: char, place: (u32, u32)) {
+    pub(crate) fn push(&mut self, character: char, place: (u32, u32)) {
         self.characters.push(character);
         self.places.push(place);
     }
 
-    pub fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.characters.len()
     }
 
     /// The character at `index`; NUL past the end.
-    pub fn at(&self, index: usize) -> char {
+    pub(crate) fn at(&self, index: usize) -> char {
         self.characters.get(index).copied().unwrap_or('\0')
     }
 
     /// The character at `index` in lower case; NUL past the end.
-    pub fn lower_at(&self, index: usize) -> char {
+    pub(crate) fn lower_at(&self, index: usize) -> char {
         self.at(index).to_ascii_lowercase()
     }
 
-    pub fn place(&self, index: usize) -> (u32, u32) {
+    pub(crate) fn place(&self, index: usize) -> (u32, u32) {
         match self.places.get(index) {
             Some(&place) => place,
             // Past the end: one column after the last character.
@@ -55,14 +55,14 @@ impl Text {
     }
 
     /// Span of the characters `start..end`, as far as they lie on one line of the source.
-    pub fn span(&self, start: usize, end: usize) -> Span {
+    pub(crate) fn span(&self, start: usize, end: usize) -> Span {
         let (line, column) = self.place(start);
         let last = self.place(end.max(start + 1) - 1);
         let length = if last.0 == line && last.1 >= column { last.1 - column + 1 } else { 1 };
         Span { line, column, length }
     }
 
-    pub fn string(&self, start: usize, end: usize) -> String {
+    pub(crate) fn string(&self, start: usize, end: usize) -> String {
         self.characters
             .get(start..end.min(self.len()))
             .map(|slice| slice.iter().collect())
@@ -70,17 +70,17 @@ impl Text {
     }
 
     /// First index from `start` that holds no white space; the length if there is none.
-    pub fn skip_blanks(&self, start: usize) -> usize {
+    pub(crate) fn skip_blanks(&self, start: usize) -> usize {
         (start..self.len()).find(|&index| !self.at(index).is_whitespace()).unwrap_or(self.len())
     }
 
     /// First index from `start` whose character satisfies `stop`; the length if there is none.
-    pub fn find(&self, start: usize, stop: impl Fn(char) -> bool) -> usize {
+    pub(crate) fn find(&self, start: usize, stop: impl Fn(char) -> bool) -> usize {
         (start..self.len()).find(|&index| stop(self.at(index))).unwrap_or(self.len())
     }
 
     /// End of the identifier that starts at `start`; `start` itself when there is none.
-    pub fn identifier_end(&self, start: usize) -> usize {
+    pub(crate) fn identifier_end(&self, start: usize) -> usize {
         if !is_identifier_start(self.at(start)) {
             return start;
         }

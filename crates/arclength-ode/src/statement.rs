@@ -16,7 +16,7 @@ pub(crate) struct Name {
 
 impl Name {
     /// The name as XPPAUT compares names.
-    pub fn key(&self) -> String {
+    pub(crate) fn key(&self) -> String {
         self.text.to_ascii_lowercase()
     }
 }

@@ -104,7 +104,7 @@ impl Default for Range {
 }
 
 impl Range {
-    pub fn include(&mut self, value: f64) {
+    pub(crate) fn include(&mut self, value: f64) {
         if !value.is_finite() {
             return;
         }
@@ -115,7 +115,7 @@ impl Range {
         }
     }
 
-    pub fn all(&self) -> Option<(f64, f64)> {
+    pub(crate) fn all(&self) -> Option<(f64, f64)> {
         (self.low <= self.high).then_some((self.low, self.high))
     }
 
@@ -134,7 +134,7 @@ pub(crate) struct Scale {
 
 impl Scale {
     /// 0 at the low limit, 1 at the high one; not a number for what a logarithmic axis cannot show.
-    pub fn fraction(&self, value: f64) -> f64 {
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
         if self.logarithmic {
             if value <= 0.0 {
                 return f64::NAN;
@@ -146,7 +146,7 @@ impl Scale {
     }
 
     /// The value at a fraction of the axis.
-    pub fn value(&self, fraction: f64) -> f64 {
+    pub(crate) fn value(&self, fraction: f64) -> f64 {
         if self.logarithmic {
             self.low * (self.high / self.low).powf(fraction)
         } else {
@@ -154,7 +154,7 @@ impl Scale {
         }
     }
 
-    pub fn ticks(&self, target: usize) -> Ticks {
+    pub(crate) fn ticks(&self, target: usize) -> Ticks {
         if self.logarithmic {
             ticks::logarithmic(self.low, self.high, target)
         } else {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FigureError {
     /// The ending of the file names no format this crate writes.
     #[error("cannot tell the picture format of '{}': the ending must be .svg, .png or .pdf", path.display())]

@@ -48,7 +48,7 @@ impl Font {
     }
 
     /// The glyph of a character: from this font, else from the text font, else the font's sign for a missing glyph.
-    pub fn glyph(self, character: char) -> Glyph {
+    pub(crate) fn glyph(self, character: char) -> Glyph {
         [self, Font::Text].into_iter().find_map(|font| font.find(character)).unwrap_or_else(|| self.entry(0))
     }
 
@@ -86,12 +86,12 @@ impl Font {
 
 impl Glyph {
     /// Advance width in font units.
-    pub fn advance(self) -> f64 {
+    pub(crate) fn advance(self) -> f64 {
         f64::from(self.advance)
     }
 
     /// Outline in font units, y downwards, origin on the baseline.
-    pub fn outline(self) -> Path {
+    pub(crate) fn outline(self) -> Path {
         let table = self.font.table();
         let mut reader = OutlineReader { table, at: self.start + 1, short: table[self.start] == 0 };
         let mut path = Path::default();

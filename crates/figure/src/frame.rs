@@ -112,7 +112,7 @@ pub(crate) struct Frame {
 
 impl Frame {
     /// Sets the surroundings for a panel of the given size.
-    pub fn new(panel: &Panel, width: f64, height: f64) -> Self {
+    pub(crate) fn new(panel: &Panel, width: f64, height: f64) -> Self {
         let (x_scale, y_scale) = panel.scales();
         let x = SetAxis::new(&panel.x, x_scale, width, true);
         let y = SetAxis::new(&panel.y, y_scale, height, false);
@@ -194,7 +194,7 @@ impl Frame {
     }
 
     /// Draws frame, ticks and labels around the panel; `margins` are those common to a row and a column of panels.
-    pub fn draw(&self, scene: &mut Scene, plot: &Rect, margins: &Margins) {
+    pub(crate) fn draw(&self, scene: &mut Scene, plot: &Rect, margins: &Margins) {
         self.draw_ticks(scene, plot);
         let line = Stroke { color: palette::BLACK, width: FRAME_WIDTH, dash: Dash::Solid };
         scene.stroke(Path::rectangle(plot), line);
@@ -253,7 +253,7 @@ impl Frame {
     }
 
     /// Where the legend stands, if it is not inside the panel: its upper left corner.
-    pub fn take_legend(&mut self, plot: &Rect) -> Option<(LegendLayout, Option<Point>)> {
+    pub(crate) fn take_legend(&mut self, plot: &Rect) -> Option<(LegendLayout, Option<Point>)> {
         let legend = self.legend.take()?;
         let bar = self.bar.as_ref().map_or(0.0, ColorBar::width);
         let corner = match self.place {

@@ -70,44 +70,44 @@ pub(crate) struct Rect {
 }
 
 impl Rect {
-    pub fn new(left: f64, top: f64, right: f64, bottom: f64) -> Self {
+    pub(crate) fn new(left: f64, top: f64, right: f64, bottom: f64) -> Self {
         Self { left, top, right, bottom }
     }
 
-    pub fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.right - self.left
     }
 
-    pub fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.bottom - self.top
     }
 
-    pub fn center(&self) -> Point {
+    pub(crate) fn center(&self) -> Point {
         Point::new(0.5 * (self.left + self.right), 0.5 * (self.top + self.bottom))
     }
 
-    pub fn expanded(&self, by: f64) -> Rect {
+    pub(crate) fn expanded(&self, by: f64) -> Rect {
         Rect::new(self.left - by, self.top - by, self.right + by, self.bottom + by)
     }
 
-    pub fn contains(&self, p: Point) -> bool {
+    pub(crate) fn contains(&self, p: Point) -> bool {
         p.x >= self.left && p.x <= self.right && p.y >= self.top && p.y <= self.bottom
     }
 
-    pub fn encloses(&self, other: &Rect) -> bool {
+    pub(crate) fn encloses(&self, other: &Rect) -> bool {
         other.left >= self.left
             && other.right <= self.right
             && other.top >= self.top
             && other.bottom <= self.bottom
     }
 
-    pub fn overlap_area(&self, other: &Rect) -> f64 {
+    pub(crate) fn overlap_area(&self, other: &Rect) -> f64 {
         let width = self.right.min(other.right) - self.left.max(other.left);
         let height = self.bottom.min(other.bottom) - self.top.max(other.top);
         width.max(0.0) * height.max(0.0)
     }
 
-    pub fn corners(&self) -> [Point; 4] {
+    pub(crate) fn corners(&self) -> [Point; 4] {
         [
             Point::new(self.left, self.top),
             Point::new(self.right, self.top),

@@ -71,7 +71,7 @@ pub(crate) struct LegendLayout {
 
 impl LegendLayout {
     /// Arranges the entries in rows that fit a width, or below each other when no width is given.
-    pub fn new(entries: &[LegendEntry], available: Option<f64>) -> Self {
+    pub(crate) fn new(entries: &[LegendEntry], available: Option<f64>) -> Self {
         let mut placed = Vec::with_capacity(entries.len());
         let (mut left, mut row, mut widest) = (0.0, 0, 0.0_f64);
         for (i, entry) in entries.iter().enumerate() {
@@ -91,7 +91,7 @@ impl LegendLayout {
     }
 
     /// Draws the legend with its upper left corner at a point, on a white ground where it lies on the panel.
-    pub fn draw(self, scene: &mut Scene, corner: Point, ground: bool) {
+    pub(crate) fn draw(self, scene: &mut Scene, corner: Point, ground: bool) {
         if ground {
             let rect = Rect::new(corner.x, corner.y, corner.x + self.width, corner.y + self.height);
             scene.fill(Path::rectangle(&rect), palette::WHITE.with_opacity(0.85));

@@ -31,6 +31,8 @@
 //!
 //! Labels are plain text with mathematics between dollar signs: `$\psi_0$ (rad)`, `$v_{\mathrm{crit}}$`, `$10^{-3}$`.
 
+#![warn(unreachable_pub)]
+
 mod axis;
 mod color;
 mod contour;

@@ -18,23 +18,23 @@ pub(crate) enum Segment {
 }
 
 impl Path {
-    pub fn polyline(points: &[Point]) -> Self {
+    pub(crate) fn polyline(points: &[Point]) -> Self {
         let mut path = Path::default();
         path.add_polyline(points);
         path
     }
 
-    pub fn polygon(points: &[Point]) -> Self {
+    pub(crate) fn polygon(points: &[Point]) -> Self {
         let mut path = Path::polyline(points);
         path.segments.push(Segment::Close);
         path
     }
 
-    pub fn rectangle(rect: &Rect) -> Self {
+    pub(crate) fn rectangle(rect: &Rect) -> Self {
         Path::polygon(&rect.corners())
     }
 
-    pub fn circle(center: Point, radius: f64) -> Self {
+    pub(crate) fn circle(center: Point, radius: f64) -> Self {
         // Control points at this distance make a cubic deviate from a quarter circle by at most 0.03 %.
         let k = 0.552_284_749_8 * radius;
         let (c, r) = (center, radius);
@@ -50,7 +50,7 @@ impl Path {
         }
     }
 
-    pub fn add_polyline(&mut self, points: &[Point]) {
+    pub(crate) fn add_polyline(&mut self, points: &[Point]) {
         for (i, &p) in points.iter().enumerate() {
             self.segments.push(if i == 0 { Segment::Move(p) } else { Segment::Line(p) });
         }

@@ -41,7 +41,7 @@ pub(crate) struct PlacedName {
 
 impl Obstacles {
     /// Adds the visible pieces of one curve and returns its number.
-    pub fn add_curve(&mut self, pieces: &[Vec<Point>]) -> usize {
+    pub(crate) fn add_curve(&mut self, pieces: &[Vec<Point>]) -> usize {
         let curve = self.curves;
         self.curves += 1;
         for piece in pieces {
@@ -50,12 +50,12 @@ impl Obstacles {
         curve
     }
 
-    pub fn add_box(&mut self, rect: Rect) {
+    pub(crate) fn add_box(&mut self, rect: Rect) {
         self.boxes.push(rect);
     }
 
     /// Whether the rectangle covers a curve.
-    pub fn covers_curve(&self, rect: &Rect) -> bool {
+    pub(crate) fn covers_curve(&self, rect: &Rect) -> bool {
         self.segments.iter().any(|(a, b, _)| length_inside(*a, *b, rect) > 0.0)
     }
 
@@ -72,7 +72,13 @@ impl Obstacles {
     }
 
     /// Where the baseline of a label for `point` starts; the label is kept inside `frame` where it fits.
-    pub fn beside_point(&mut self, point: Point, radius: f64, layout: &TextLayout, frame: &Rect) -> Point {
+    pub(crate) fn beside_point(
+        &mut self,
+        point: Point,
+        radius: f64,
+        layout: &TextLayout,
+        frame: &Rect,
+    ) -> Point {
         let (width, height) = (layout.width, layout.height());
         let mut best = (f64::INFINITY, point);
         for ring in 0..4 {
@@ -108,7 +114,7 @@ impl Obstacles {
 
     /// Where the name of a curve stands: on the curve, which it interrupts, or close beside it where the curve has too
     /// near a neighbour; `None` when the curve is too short for it.
-    pub fn along_curve(
+    pub(crate) fn along_curve(
         &mut self,
         curve: usize,
         pieces: &[Vec<Point>],
@@ -181,7 +187,7 @@ impl Obstacles {
     }
 
     /// The upper left corner of a box of the given size where it covers least, corners preferred.
-    pub fn emptiest(&mut self, width: f64, height: f64, frame: &Rect) -> Point {
+    pub(crate) fn emptiest(&mut self, width: f64, height: f64, frame: &Rect) -> Point {
         let inner = frame.expanded(-4.0);
         let (room_x, room_y) = ((inner.width() - width).max(0.0), (inner.height() - height).max(0.0));
         let mut best = (f64::INFINITY, Point::new(inner.left, inner.top));

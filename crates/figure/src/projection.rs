@@ -99,7 +99,7 @@ pub(crate) struct View {
 
 impl View {
     /// The page point of a point of the unit cube.
-    pub fn point(&self, point: [f64; 3]) -> Point {
+    pub(crate) fn point(&self, point: [f64; 3]) -> Point {
         let image = self.projection.image(point);
         self.shift.offset(self.scale * image.x, self.scale * image.y)
     }

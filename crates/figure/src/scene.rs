@@ -77,19 +77,26 @@ pub(crate) struct Raster {
 }
 
 impl Scene {
-    pub fn stroke(&mut self, path: Path, stroke: Stroke) {
+    pub(crate) fn stroke(&mut self, path: Path, stroke: Stroke) {
         if !path.segments.is_empty() {
             self.items.push(Item::Shape { path, fill: None, stroke: Some(stroke) });
         }
     }
 
-    pub fn fill(&mut self, path: Path, color: Color) {
+    pub(crate) fn fill(&mut self, path: Path, color: Color) {
         if !path.segments.is_empty() {
             self.items.push(Item::Shape { path, fill: Some(color), stroke: None });
         }
     }
 
-    pub fn text(&mut self, layout: TextLayout, at: Point, degrees: f64, color: Color, halo: Option<Halo>) {
+    pub(crate) fn text(
+        &mut self,
+        layout: TextLayout,
+        at: Point,
+        degrees: f64,
+        color: Color,
+        halo: Option<Halo>,
+    ) {
         if !layout.glyphs.is_empty() {
             self.items.push(Item::Text { layout, at, degrees, color, halo });
         }

@@ -52,23 +52,23 @@ pub enum Anchor {
 
 impl TextLayout {
     /// Sets a label with markup at a font size in points.
-    pub fn new(source: &str, size: f64) -> Self {
+    pub(crate) fn new(source: &str, size: f64) -> Self {
         Self::with_font(source, size, Font::Text)
     }
 
-    pub fn with_font(source: &str, size: f64, font: Font) -> Self {
+    pub(crate) fn with_font(source: &str, size: f64, font: Font) -> Self {
         let mut layout = TextLayout::default();
         let width = set(&parse(source), size, Point::new(0.0, 0.0), font, &mut layout);
         layout.width = width;
         layout
     }
 
-    pub fn height(&self) -> f64 {
+    pub(crate) fn height(&self) -> f64 {
         self.ascent + self.descent
     }
 
     /// Where the baseline starts when the anchor of the label is at `point`.
-    pub fn origin(&self, point: Point, anchor: Anchor, size: f64) -> Point {
+    pub(crate) fn origin(&self, point: Point, anchor: Anchor, size: f64) -> Point {
         let middle = point.y + 0.5 * CAPITAL_HEIGHT * size;
         match anchor {
             Anchor::Left => Point::new(point.x, middle),
@@ -80,7 +80,7 @@ impl TextLayout {
     }
 
     /// The rectangle the label covers when its baseline starts at `origin`.
-    pub fn bounds(&self, origin: Point) -> Rect {
+    pub(crate) fn bounds(&self, origin: Point) -> Rect {
         Rect::new(origin.x, origin.y - self.ascent, origin.x + self.width, origin.y + self.descent)
     }
 }

@@ -1,5 +1,6 @@
-//! The parameter along which branches of the wheel are followed.
+//! The parameters along which branches and curves of the wheel are followed.
 
+use crate::axis_label;
 use arclength_analysis::{Interval, VaryingParameter};
 use kingpin::branches::Along;
 use kingpin::{Key, KingpinError};
@@ -19,11 +20,6 @@ pub fn varying(along: &Along) -> VaryingParameter {
     VaryingParameter { key, unit: Some(unit), start, end }
 }
 
-/// A value of the parameter as the continuation knows it, which follows `1/r` in place of `r`; and back.
-pub fn as_followed(along: &Along, value: f64) -> f64 {
-    if along.key() == Key::TurningRadius { value.recip() } else { value }
-}
-
 /// Where a value is drawn: an `r` that reaches infinity is drawn as a curvature.
 pub fn drawn_as(along: &Along) -> (Key, fn(f64) -> f64) {
     if along.key() == Key::TurningRadius && along.ends().1.is_infinite() {
@@ -31,4 +27,37 @@ pub fn drawn_as(along: &Along) -> (Key, fn(f64) -> f64) {
     } else {
         (along.key(), |value| value)
     }
+}
+
+/// Two parameters of the wheel and their intervals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane(pub [Along; 2]);
+
+impl Plane {
+    /// The plane of two parameters in a result.
+    ///
+    /// # Errors
+    /// An unknown key, or ends that a parameter may not take.
+    pub fn of([one, two]: &[VaryingParameter; 2]) -> Result<Self, KingpinError> {
+        let axis = |VaryingParameter { key, start, end, .. }: &VaryingParameter| {
+            along(&Interval::new(key, *start, *end))
+        };
+        Ok(Self([axis(one)?, axis(two)?]))
+    }
+
+    /// The keys of both.
+    pub fn keys(&self) -> [Key; 2] {
+        self.0.map(|along| along.key())
+    }
+
+    /// The parameters and their intervals, in results.
+    pub fn varying(&self) -> [VaryingParameter; 2] {
+        [varying(&self.0[0]), varying(&self.0[1])]
+    }
+}
+
+/// The labels of both axes, and how values are drawn on them.
+pub fn axes(plane: &Plane) -> ([String; 2], [fn(f64) -> f64; 2]) {
+    let drawn = plane.0.map(|along| drawn_as(&along));
+    (drawn.map(|(key, _)| axis_label::of(key)), drawn.map(|(_, scale)| scale))
 }

@@ -4,13 +4,6 @@ use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Speed, caster length and radius, and every other parameter that is not the paper's; without those that vary.
-///
-/// ```
-/// use kingpin::{Key, Wheel};
-/// let wheel = Wheel::default().with(Key::CQ, 0.05)?;
-/// assert_eq!(kingpin_cli::description::of(&wheel, &[Key::V]), "l = 0.08 m, r = 1 m, c_q = 0.05 N s/m");
-/// # Ok::<(), kingpin::KingpinError>(())
-/// ```
 pub fn of(wheel: &Wheel, varying: &[Key]) -> String {
     let always = [Key::V, Key::L, Key::TurningRadius];
     let varies = |key: Key| varying.iter().any(|active| active.sets().contains(&key));
@@ -25,4 +18,15 @@ pub fn of(wheel: &Wheel, varying: &[Key]) -> String {
 pub fn quantity(key: Key, value: f64) -> String {
     let unit = if key.unit() == "1" || value.is_infinite() { "" } else { key.unit() };
     format!("{key} = {} {unit}", readable(value)).trim_end().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_the_papers_is_told() {
+        let wheel = Wheel::default().with(Key::CQ, 0.05).unwrap();
+        assert_eq!(of(&wheel, &[Key::V]), "l = 0.08 m, r = 1 m, c_q = 0.05 N s/m");
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::classification::NamedFate;
 use crate::error::Error;
+use arclength_analysis::Control;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, Fate, SafeKick};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, Wheel};
@@ -106,23 +107,27 @@ impl DisturbanceRequest {
     /// The edges in the positive and in the negative direction, where there are any. A step of the curvature has one direction.
     ///
     /// # Errors
-    /// A motion that cannot be followed.
+    /// A motion that cannot be followed, [`SimulationError::Interrupted`].
     pub fn edges(
         &self,
         wheel: &Wheel,
         model: ContactModel,
         settings: ClassificationSettings,
+        control: &Control<'_>,
     ) -> Result<[Option<Edge>; 2], SimulationError> {
         let largest = self.largest(wheel);
-        let edge = |largest: f64| -> Result<Option<Edge>, SimulationError> {
-            let kick = SafeKick::find(wheel, model, settings, self.disturbance(), largest)?;
+        let edge = |largest: f64, control: &Control<'_>| -> Result<Option<Edge>, SimulationError> {
+            let kick = SafeKick::find(wheel, model, settings, self.disturbance(), largest, control)?;
             Ok(kick.map(|SafeKick { returns, fails, fate, .. }| Edge {
                 returns,
                 fails,
                 fate: fate.map(NamedFate),
             }))
         };
-        let negative = if self.kind == DisturbanceKind::StepSteer { None } else { edge(-largest)? };
-        Ok([edge(largest)?, negative])
+        if self.kind == DisturbanceKind::StepSteer {
+            return Ok([edge(largest, control)?, None]);
+        }
+        let negative = edge(-largest, &control.part(0.0..0.5))?;
+        Ok([edge(largest, &control.part(0.5..1.0))?, negative])
     }
 }

@@ -1,8 +1,10 @@
 //! Why an analysis of a wheel gives no result.
 
+use arclength::control::Interrupted;
 use arclength::integration::IntegrationError;
 use arclength_analysis::{AnalysisError, Control, InvalidField};
 use kingpin::KingpinError;
+use kingpin::shimmy::ShimmyError;
 use kingpin::simulation::SimulationError;
 use kingpin_figure::FigureError;
 use kingpin_report::ReportError;
@@ -19,7 +21,7 @@ pub enum Error {
     Start(#[from] arclength_analysis::Error),
     /// The wheel is at fault, or has no such motion.
     #[error(transparent)]
-    Wheel(#[from] KingpinError),
+    Wheel(KingpinError),
     /// A parameter that is set.
     #[error("set {given}: {source}")]
     Set {
@@ -30,16 +32,16 @@ pub enum Error {
     },
     /// A simulation could not be run.
     #[error(transparent)]
-    Simulation(#[from] SimulationError),
+    Simulation(SimulationError),
     /// A periodic motion with sliding phases could not be found or followed.
     #[error(transparent)]
-    Shimmy(#[from] kingpin::shimmy::ShimmyError),
+    Shimmy(ShimmyError),
     /// A continuation failed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),
     /// A motion that cannot be followed to its end.
     #[error("the motion cannot be followed: {0}")]
-    Integration(#[from] IntegrationError),
+    Integration(#[source] IntegrationError),
     /// Nothing was found where something was sought.
     #[error("{0}")]
     NothingFound(String),
@@ -109,6 +111,50 @@ pub(crate) fn unless_stopped(control: &Control<'_>) -> Result<(), Error> {
     if control.is_stopped() { Err(Error::Stopped) } else { Ok(()) }
 }
 
+// What was interrupted is told as that, however deep inside it happened.
+
+impl From<Interrupted> for Error {
+    fn from(_: Interrupted) -> Self {
+        Self::Stopped
+    }
+}
+
+impl From<KingpinError> for Error {
+    fn from(error: KingpinError) -> Self {
+        match error {
+            KingpinError::Interrupted(interrupted) => interrupted.into(),
+            error => Self::Wheel(error),
+        }
+    }
+}
+
+impl From<SimulationError> for Error {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Interrupted(interrupted) => interrupted.into(),
+            error => Self::Simulation(error),
+        }
+    }
+}
+
+impl From<ShimmyError> for Error {
+    fn from(error: ShimmyError) -> Self {
+        match error {
+            ShimmyError::Interrupted(interrupted) => interrupted.into(),
+            error => Self::Shimmy(error),
+        }
+    }
+}
+
+impl From<IntegrationError> for Error {
+    fn from(error: IntegrationError) -> Self {
+        match error {
+            IntegrationError::Interrupted(interrupted) => interrupted.into(),
+            error => Self::Integration(error),
+        }
+    }
+}
+
 impl AnalysisError for Error {
     fn is_bad_request(&self) -> bool {
         match self {
@@ -144,9 +190,9 @@ impl AnalysisError for Error {
 
 fn is_bad_wheel(error: &KingpinError) -> bool {
     match error {
-        KingpinError::NoUniformMotion { .. } | KingpinError::Cancelled | KingpinError::Continuation(_) => {
-            false
-        }
+        KingpinError::NoUniformMotion { .. }
+        | KingpinError::Interrupted(_)
+        | KingpinError::Continuation(_) => false,
         KingpinError::InFile { source, .. } => is_bad_wheel(source),
         _ => true,
     }

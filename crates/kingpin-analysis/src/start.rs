@@ -1,72 +1,116 @@
-//! Points of earlier results of `hopf` and `cycles`, from which cycles can start.
+//! Labelled points of earlier results from which computations start, checked to be what they claim.
 
 use crate::error::Error;
+use crate::result_file::ResultFile;
 use arclength::cycle::{Branching, Orbit};
 use arclength_analysis::PointReference;
-use kingpin_report::{NamedNumbers, Number, Schema};
-use serde::Deserialize;
-use std::path::Path;
+use kingpin::branches::Along;
+use kingpin::{Key, Wheel};
 
-/// What is read of a result file.
-#[derive(Debug, Deserialize)]
-struct ResultFile {
-    schema: Schema,
-    parameters: NamedNumbers,
-    along: StoredParameter,
-    points: Vec<StoredPoint>,
-}
-
-#[derive(Debug, Deserialize)]
-struct StoredParameter {
-    key: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct StoredPoint {
-    value: Number,
-    label: Option<String>,
-    orbit: Option<Orbit>,
-    branching: Option<Branching>,
-}
-
-/// A labelled point: all parameters, and the cycle where it is one.
-#[derive(Clone, Debug, PartialEq)]
+/// A labelled point with its wheel.
+#[derive(Clone, Debug)]
 pub struct LabelledPoint {
-    /// Every parameter of the model there.
-    pub parameters: Vec<(String, f64)>,
-    /// The cycle, where it is one.
-    pub orbit: Option<Orbit>,
-    /// The branch that leaves there, and the parameter along which it was found.
-    pub branching: Option<(Branching, String)>,
+    /// The wheel there.
+    pub wheel: Wheel,
+    /// What it is.
+    pub what: What,
+}
+
+/// What a labelled point is.
+#[derive(Clone, Debug)]
+pub enum What {
+    /// A Hopf point, with a parameter along which it was found.
+    Hopf(Along),
+    /// A cycle.
+    Cycle {
+        /// The cycle itself.
+        orbit: Orbit,
+        /// The start of the branch that leaves there, with the parameter along which it was found.
+        branching: Option<(Branching, Key)>,
+    },
 }
 
 impl LabelledPoint {
-    /// Reads the point from its file.
+    /// Reads a labelled point from its file.
     ///
     /// # Errors
-    /// [`Error::Start`]: no such file, not a result of one of the commands, no such label.
-    pub fn read(reference: &PointReference, schemas: &[&str]) -> Result<Self, Error> {
-        let mut file = read_file(&reference.path, schemas).map_err(|problem| reference.failure(problem))?;
-        let labels: Vec<String> = file.points.iter().filter_map(|point| point.label.clone()).collect();
-        let place = file.points.iter().position(|point| point.label.as_ref() == Some(&reference.label));
-        let Some(place) = place else {
-            return Err(reference.no_such_label(&labels).into());
+    /// [`Error::Start`]: no such file, not a result that can be started from, no such label, or a point that does not fit its
+    /// wheel.
+    pub fn read(reference: &PointReference) -> Result<Self, Error> {
+        let file = ResultFile::read(&reference.path).map_err(|problem| reference.failure(problem))?;
+        let labels = file.labels();
+        let missing = || reference.no_such_label(&labels);
+        let is_wanted = |label: &Option<String>| label.as_ref() == Some(&reference.label);
+        let at = |wheel: Wheel, values: &[(Key, f64)]| {
+            let wheel = values.iter().try_fold(wheel, |wheel, &(key, value)| wheel.with(key, value));
+            wheel.map_err(|error| reference.failure(error.to_string()))
         };
-        let point = file.points.swap_remove(place);
-        let mut parameters = file.parameters.0;
-        let branching = point.branching.map(|branching| (branching, file.along.key.clone()));
-        parameters.push((file.along.key, point.value.0));
-        Ok(Self { parameters, orbit: point.orbit, branching })
+        match file {
+            ResultFile::Hopf(result) => {
+                let point = result.points.iter().find(|point| point.label == reference.label);
+                let point = point.ok_or_else(missing)?;
+                let wheel = at(result.wheel, &[(result.interval.key(), point.value)])?;
+                Ok(Self { wheel, what: What::Hopf(result.interval) })
+            }
+            ResultFile::Cycles(result) => {
+                let place = result.points.iter().position(|point| is_wanted(&point.cycle.label));
+                let cycle = &result.points[place.ok_or_else(missing)?].cycle;
+                let wheel = at(result.wheel, &[(result.interval.key(), cycle.value)])?;
+                let Some(orbit) = cycle.orbit.clone() else {
+                    return Ok(Self { wheel, what: What::Hopf(result.interval) });
+                };
+                let branching = cycle.branching.clone().map(|branching| (branching, result.interval.key()));
+                Self::cycle(reference, wheel, orbit, branching)
+            }
+            ResultFile::HopfLocus(result) => {
+                let point = result.curve.points.iter().find(|point| is_wanted(&point.label));
+                let [one, two] = point.ok_or_else(missing)?.values;
+                let [first, second] = result.plane.keys();
+                let wheel = at(result.wheel, &[(first, one), (second, two)])?;
+                Ok(Self { wheel, what: What::Hopf(result.plane.0[0]) })
+            }
+            ResultFile::CycleLocus(result) => {
+                let point = result.curve.points.iter().find(|point| is_wanted(&point.label));
+                let point = point.ok_or_else(missing)?;
+                let [first, second] = result.plane.keys();
+                let wheel = at(result.wheel, &[(first, point.values[0]), (second, point.values[1])])?;
+                let orbit = point.orbit.clone();
+                let orbit = orbit.ok_or_else(|| {
+                    reference.failure(format!("{} is stored without its orbit", reference.label))
+                })?;
+                Self::cycle(reference, wheel, orbit, None)
+            }
+        }
     }
-}
 
-fn read_file(path: &Path, schemas: &[&str]) -> Result<ResultFile, String> {
-    let text = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
-    let allowed = format!("allowed: a file that --out FILE.json of {} wrote", schemas.join(" or "));
-    let file: ResultFile = serde_json::from_slice(&text)
-        .map_err(|error| format!("not such a result file: {error}; {allowed}"))?;
-    if file.schema.version != 1 || !schemas.contains(&file.schema.name.as_str()) {
-        return Err(format!("it is a {} of version {}; {allowed}", file.schema.name, file.schema.version));
+    fn cycle(
+        reference: &PointReference,
+        wheel: Wheel,
+        orbit: Orbit,
+        branching: Option<(Branching, Key)>,
+    ) -> Result<Self, Error> {
+        if let Some((branching, _)) = &branching {
+            branching.check(orbit.dimension).map_err(|error| reference.failure(error.to_string()))?;
+        }
+        Ok(Self { wheel, what: What::Cycle { orbit, branching } })
     }
-    Ok(file)
+
+    /// That the orbit is one of a wheel.
+    ///
+    /// # Errors
+    /// [`Error::Start`].
+    pub fn check_orbit(reference: &PointReference, wheel: &Wheel, orbit: &Orbit) -> Result<(), Error> {
+        let states = wheel.free_states();
+        if orbit.dimension != states.len() {
+            let problem = format!(
+                "the orbit of {} has {} states, this wheel {} ({}): leave k_u as it is in the file",
+                reference.label,
+                orbit.dimension,
+                states.len(),
+                states.join(", ")
+            );
+            return Err(reference.failure(problem).into());
+        }
+        Ok(reference.check(orbit, states.len())?)
+    }
 }

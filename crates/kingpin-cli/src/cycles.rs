@@ -4,7 +4,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::{Interval, PointReference, Values};
 use clap::Args;
 use kingpin_analysis::cycles::CyclesRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress, requested_values};
+use kingpin_terminal::{Failure, MeshOptions, OutputOptions, Progress, StepOptions, requested_values};
 
 const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
          kingpin cycles --from cycles.json:AT3 --along r=1:inf";
@@ -21,7 +21,7 @@ pub struct Cycles {
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
 
-    /// Start from a labelled point of a file that `hopf` or `cycles` wrote, with its wheel
+    /// Start from a labelled point of a file that `hopf`, `cycles` or `locus` wrote, with its wheel
     #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "wheel")]
     from: Option<PointReference>,
 
@@ -29,8 +29,16 @@ pub struct Cycles {
     #[arg(long, requires = "from")]
     stay: bool,
 
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
     #[command(flatten)]
     wheel: WheelOptions,
+    #[command(flatten)]
+    steps: StepOptions,
+    #[command(flatten)]
+    mesh: MeshOptions,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -41,13 +49,15 @@ impl Cycles {
     /// # Errors
     /// Why it failed.
     pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare()?;
+        let output = self.output.prepare()?.explain(self.explain);
         let request = CyclesRequest {
             wheel: self.wheel.request(),
             along: self.along.clone(),
             at: requested_values(&self.at, &self.along.key, |given, key| given == key)?,
             from: self.from.clone(),
             stay: self.stay,
+            steps: self.steps.into(),
+            mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
         let progress = Progress::spinner("cycles", output.is_quiet());

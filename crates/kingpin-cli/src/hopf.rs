@@ -4,7 +4,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::Interval;
 use clap::Args;
 use kingpin_analysis::hopf::HopfRequest;
-use kingpin_terminal::{Failure, OutputOptions};
+use kingpin_terminal::{Failure, OutputOptions, Progress, StepOptions};
 
 const EXAMPLE: &str = "kingpin hopf --along v=0.5:12 -s l=0.1";
 
@@ -16,8 +16,14 @@ pub struct Hopf {
     #[arg(long, value_name = "KEY=A:B")]
     along: Interval,
 
+    /// Tell the story of the run after the table
+    #[arg(long)]
+    explain: bool,
+
     #[command(flatten)]
     wheel: WheelOptions,
+    #[command(flatten)]
+    steps: StepOptions,
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -28,8 +34,15 @@ impl Hopf {
     /// # Errors
     /// Why it failed.
     pub fn run(&self) -> Result<(), Failure> {
-        let output = self.output.prepare_without_picture()?;
-        let request = HopfRequest { wheel: self.wheel.request(), along: self.along.clone() };
-        output.deliver(&request.validate()?.run()?)
+        let output = self.output.prepare_without_picture()?.explain(self.explain);
+        let request =
+            HopfRequest { wheel: self.wheel.request(), along: self.along.clone(), steps: self.steps.into() };
+        let analysis = request.validate()?;
+        let progress = Progress::spinner("uniform motions", output.is_quiet());
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let result = result?;
+        output.warn_of(&result.warnings());
+        output.deliver(&result)?;
+        interruption.check_branch()
     }
 }

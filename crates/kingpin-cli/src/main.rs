@@ -6,6 +6,7 @@ mod classification_options;
 mod cycles;
 mod disturbance_options;
 mod hopf;
+mod locus;
 mod margin;
 mod paper;
 mod safe_kick;
@@ -38,6 +39,7 @@ enum Command {
     Chart(chart::Chart),
     Hopf(hopf::Hopf),
     Cycles(cycles::Cycles),
+    Locus(locus::Locus),
     Simulate(simulate::Simulate),
     Study(study::StudyCommand),
     Basin(basin::Basin),
@@ -54,6 +56,7 @@ impl Command {
             Self::Chart(command) => command.run(),
             Self::Hopf(command) => command.run(),
             Self::Cycles(command) => command.run(),
+            Self::Locus(command) => command.run(),
             Self::Simulate(command) => command.run(),
             Self::Study(command) => command.run(),
             Self::Basin(command) => command.run(),

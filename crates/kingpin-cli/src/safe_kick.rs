@@ -43,9 +43,8 @@ impl SafeKick {
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
-        let progress = Progress::spinner("smallest disturbance that does not return", output.is_quiet());
-        let result = analysis.run()?;
-        drop(progress);
-        output.deliver(&result)
+        let progress = Progress::bar("smallest disturbance that does not return", output.is_quiet());
+        let (result, _) = output.watch(progress, |control| analysis.run(control))?;
+        output.deliver(&result?)
     }
 }

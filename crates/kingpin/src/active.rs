@@ -37,7 +37,7 @@ pub(crate) struct ActiveParameters {
 impl ActiveParameters {
     /// # Errors
     /// That these keys cannot vary together, or not from this wheel.
-    pub fn new(wheel: &Wheel, keys: &[Key]) -> Result<Self, KingpinError> {
+    pub(crate) fn new(wheel: &Wheel, keys: &[Key]) -> Result<Self, KingpinError> {
         Key::check_independent(keys)?;
         let (longitudinal, lateral) = (wheel.get(Key::KU), wheel.get(Key::KQ));
         if keys.contains(&Key::K) && longitudinal != lateral {
@@ -62,36 +62,36 @@ impl ActiveParameters {
         })
     }
 
-    pub fn wheel(&self) -> &Wheel {
+    pub(crate) fn wheel(&self) -> &Wheel {
         &self.wheel
     }
 
-    pub fn keys(&self) -> &[Key] {
+    pub(crate) fn keys(&self) -> &[Key] {
         &self.keys
     }
 
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         self.keys.iter().map(Key::to_string).collect()
     }
 
     /// The values of the active keys in the wheel.
-    pub fn values(&self) -> Vec<f64> {
+    pub(crate) fn values(&self) -> Vec<f64> {
         self.keys.iter().map(|&key| self.wheel.get(key)).collect()
     }
 
     /// The wheel at other values of the active keys.
-    pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+    pub(crate) fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
         self.keys.iter().zip(parameters).try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, value))
     }
 
     /// Whether the parameter is active or not zero.
-    pub fn matters(&self, key: Key) -> bool {
+    pub(crate) fn matters(&self, key: Key) -> bool {
         self.wheel.get(key) != 0.0 || self.keys.contains(&key)
     }
 
     /// Towing speed and yaw rate.
     #[inline(always)]
-    pub fn towing<T: Scalar>(&self, parameters: &[T]) -> (T, T) {
+    pub(crate) fn towing<T: Scalar>(&self, parameters: &[T]) -> (T, T) {
         let v = match self.speed {
             Some(index) => parameters[index],
             None => T::from(self.wheel.get(Key::V)),
@@ -106,13 +106,13 @@ impl ActiveParameters {
 
     /// The body, where no active parameter changes it.
     #[inline(always)]
-    pub fn fixed_body(&self) -> Option<&Body<f64>> {
+    pub(crate) fn fixed_body(&self) -> Option<&Body<f64>> {
         self.fixed_body.as_ref()
     }
 
     /// The body at these values of the active parameters.
     #[inline]
-    pub fn body<T: Scalar>(&self, parameters: &[T]) -> Body<T> {
+    pub(crate) fn body<T: Scalar>(&self, parameters: &[T]) -> Body<T> {
         Body::new(|key| {
             let sets = |active: &Key| *active == key || active.sets().contains(&key);
             match self.keys.iter().position(sets) {

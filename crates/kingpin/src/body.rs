@@ -31,7 +31,7 @@ pub(crate) struct Body<C> {
 
 impl<C: Arithmetic> Body<C> {
     #[inline(always)]
-    pub fn new(get: impl Fn(Key) -> C) -> Self {
+    pub(crate) fn new(get: impl Fn(Key) -> C) -> Self {
         let arm = get(Key::L) - get(Key::LC);
         let static_moment = get(Key::MC) * arm;
         let wheel_radius = get(Key::WheelRadius);

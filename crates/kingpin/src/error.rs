@@ -34,6 +34,7 @@ impl fmt::Display for Position {
 
 /// Why a wheel has no uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoUniformMotion {
     /// The towing point stands still.
     #[error("at v = 0 every caster angle is an equilibrium; set v above 0")]
@@ -81,6 +82,7 @@ pub enum NoUniformMotion {
 
 /// The error of this crate.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum KingpinError {
     /// A key that is in no table.
     #[error("{}unknown key `{given}`; the nearest known key is `{nearest}` ({}, {})",

@@ -15,6 +15,8 @@
 //! # Ok::<(), kingpin::KingpinError>(())
 //! ```
 
+#![warn(unreachable_pub)]
+
 mod active;
 mod arithmetic;
 pub mod basin;

@@ -9,7 +9,7 @@ use crate::lateral::{LATERAL_STATE_NAMES, LateralWheel};
 use crate::parameters::Key;
 use crate::rolling::{RollingWheel, STATE_NAMES};
 use crate::wheel::Wheel;
-use arclength::cycle::CyclePoint;
+use arclength::cycle::Orbit;
 use arclength::{Dual, Scalar, VectorField};
 
 /// Where the caster of a wheel with lateral elasticity only comes nearer than this to `psi = pi/2`, the errors of the other
@@ -89,16 +89,22 @@ impl RollingModel {
     /// Gives the extrema of a cycle of this vector field in the states `(u, q, psi, V, Omega)`. Those of a `V` that follows
     /// from the other states are its extrema along their interpolating polynomials; where the cycle comes near
     /// `psi = pi/2` these do not determine it, and it is not a number.
-    pub(crate) fn complete_extrema(&self, cycle: &mut CyclePoint, parameters: &[f64]) {
+    pub(crate) fn complete_extrema(
+        &self,
+        orbit: &Orbit,
+        largest: &mut Vec<f64>,
+        smallest: &mut Vec<f64>,
+        parameters: &[f64],
+    ) {
         let Self::Lateral(lateral) = self else { return };
         let parameters: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
-        let [lowest, highest] = cycle.orbit.range_of(|state| state[1].cos());
+        let [lowest, highest] = orbit.range_of(|state| state[1].cos());
         let [slowest, fastest] = if lowest < SMALLEST_COSINE && highest > -SMALLEST_COSINE {
             [f64::NAN; 2]
         } else {
-            cycle.orbit.range_of(|state| lateral.forward_speed_at(state, &parameters))
+            orbit.range_of(|state| lateral.forward_speed_at(state, &parameters))
         };
-        for (extremum, forward_speed) in [(&mut cycle.min, slowest), (&mut cycle.max, fastest)] {
+        for (extremum, forward_speed) in [(smallest, slowest), (largest, fastest)] {
             *extremum = vec![0.0, extremum[0], extremum[1], forward_speed, extremum[2]];
         }
     }

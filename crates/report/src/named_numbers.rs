@@ -37,25 +37,61 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// Fields of type `f64` that are written as a [`Number`]: `#[serde(with = "kingpin_report::number")]`.
+/// Fields of numbers that may be infinite, each written as a [`Number`]: `#[serde(with = "kingpin_report::number")]` on a field of
+/// type `f64`, `[f64; 2]` or `[[f64; 2]; 2]`.
 pub mod number {
     use super::Number;
+    use serde::de::DeserializeOwned;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    /// Writes a number, or the text `"inf"`.
+    /// A number, or pairs of them.
+    pub trait Numbers: Copy {
+        /// As it is written.
+        type Written: Serialize + DeserializeOwned;
+        /// As it is written.
+        fn written(self) -> Self::Written;
+        /// As it was read.
+        fn read(written: Self::Written) -> Self;
+    }
+
+    impl Numbers for f64 {
+        type Written = Number;
+
+        fn written(self) -> Number {
+            Number(self)
+        }
+
+        fn read(Number(value): Number) -> Self {
+            value
+        }
+    }
+
+    impl<N: Numbers> Numbers for [N; 2] {
+        type Written = [N::Written; 2];
+
+        fn written(self) -> Self::Written {
+            self.map(N::written)
+        }
+
+        fn read(written: Self::Written) -> Self {
+            written.map(N::read)
+        }
+    }
+
+    /// Writes numbers, or the text `"inf"` for one that is infinite.
     ///
     /// # Errors
     /// Those of the serializer.
-    pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-        Number(*value).serialize(serializer)
+    pub fn serialize<N: Numbers, S: Serializer>(value: &N, serializer: S) -> Result<S::Ok, S::Error> {
+        value.written().serialize(serializer)
     }
 
-    /// Reads a number, or the text `"inf"`.
+    /// Reads numbers, or the text `"inf"` for one that is infinite.
     ///
     /// # Errors
     /// Another text, and those of the deserializer.
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-        Number::deserialize(deserializer).map(|Number(value)| value)
+    pub fn deserialize<'de, N: Numbers, D: Deserializer<'de>>(deserializer: D) -> Result<N, D::Error> {
+        N::Written::deserialize(deserializer).map(N::read)
     }
 }
 

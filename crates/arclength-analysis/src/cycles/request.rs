@@ -2,7 +2,6 @@
 
 use super::result::CyclesResult;
 use crate::branch::Origin;
-use crate::control::Control;
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::labels::kind;
@@ -12,6 +11,7 @@ use crate::start::{LabelledPoint, What};
 use crate::steps::{Mesh, Steps};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
+use arclength::control::Control;
 use arclength::cycle::{CycleStart, Cycles, Orbit};
 use arclength::equilibrium::SpecialPoint;
 use kingpin_report::NamedNumbers;

@@ -1,17 +1,17 @@
 //! A branch of limit cycles as a result.
 
-use crate::branch::{Origin, pairs, parameters, shortened, stability, tests};
-use crate::course::{self, Place};
+use super::cycle::CycleResult;
+use super::story::tell;
+use crate::branch::{Origin, parameters, stability};
 use crate::end::End;
 use crate::interval::Interval;
 use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
-use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
-use crate::unlocated::UnlocatedResult;
+use crate::unlocated::{UnlocatedResult, warnings};
 use crate::varying_parameter::VaryingParameter;
-use arclength::cycle::{Branching, CycleBranch, CyclePoint, Orbit};
+use arclength::cycle::CycleBranch;
 use kingpin_figure::{Figure, FigureError, palette};
 use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
@@ -19,42 +19,6 @@ use std::io::{self, Write};
 
 /// Digits of parameter and period at labelled points.
 const DIGITS: usize = 11;
-
-/// A cycle in a result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct CycleResult {
-    /// Value of the parameter.
-    pub value: f64,
-    /// Period.
-    pub period: f64,
-    /// Largest value of every state.
-    pub max: NamedNumbers,
-    /// Smallest value of every state.
-    pub min: NamedNumbers,
-    /// Floquet multipliers, the largest modulus first.
-    pub multipliers: Vec<[Option<f64>; 2]>,
-    /// How far the computed trivial multiplier is from 1.
-    pub trivial_multiplier_error: f64,
-    /// Nothing where that is not decided.
-    pub stable: Option<bool>,
-    /// Error estimate relative to the amplitudes.
-    pub error_estimate: f64,
-    /// Mesh intervals.
-    pub intervals: usize,
-    /// Of special points, of values asked for, of the ends.
-    pub label: Option<String>,
-    /// Test functions by the label of the cycle at which each changes its sign.
-    pub tests: NamedNumbers,
-    /// The normal form of a special cycle, by name.
-    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
-    pub normal_form: NamedNumbers,
-    /// The cycle itself, where a computation can start from it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub orbit: Option<Orbit>,
-    /// The start of the branch that leaves there.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub branching: Option<Branching>,
-}
 
 /// A branch of limit cycles.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -94,7 +58,7 @@ impl CyclesResult {
             .map(|(index, point)| {
                 let own = point.label.map(|label| label.to_string());
                 let label = own.or_else(|| labels::of_end(index, count));
-                CycleResult::new(chosen, point, label)
+                CycleResult::new(point, label, |state| chosen.named_state(state))
             })
             .collect();
         let last = |point: Option<&CycleResult>| {
@@ -103,10 +67,10 @@ impl CyclesResult {
             NamedNumbers(values.into_iter().flatten().collect())
         };
         let [first, second] = &branch.stops;
-        let keys = [along.key.as_str()];
+        let varying = [VaryingParameter::from(along)];
         let ends = [
-            End::of(first.as_ref(), &keys, last(points.first())),
-            End::of(second.as_ref(), &keys, last(points.last())),
+            End::of_either(first.as_ref(), &varying, last(points.first())),
+            End::of_either(second.as_ref(), &varying, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&[active]),
@@ -114,17 +78,14 @@ impl CyclesResult {
             along: along.into(),
             from,
             ends,
-            unlocated: branch.unlocated.iter().map(UnlocatedResult::of).collect(),
+            unlocated: branch.unlocated.iter().map(UnlocatedResult::from).collect(),
             points,
         }
     }
 
-    /// What was detected but not located, each change once.
+    /// What was detected but not located.
     pub fn warnings(&self) -> Vec<String> {
-        let mut texts: Vec<String> =
-            self.unlocated.iter().map(|change| change.text(&self.along.key)).collect();
-        texts.dedup();
-        shortened(texts)
+        warnings(&self.unlocated, &self.along)
     }
 
     /// Names of the states.
@@ -145,33 +106,6 @@ impl CyclesResult {
             )
         };
         vec![curve(|point| &point.max), curve(|point| &point.min).without_labels()]
-    }
-}
-
-impl CycleResult {
-    fn new(chosen: &ChosenModel, point: CyclePoint, label: Option<String>) -> Self {
-        let finite = point.normal_form.iter().filter(|(_, value)| value.is_finite());
-        let normal_form = NamedNumbers(finite.map(|(name, value)| ((*name).to_owned(), *value)).collect());
-        Self {
-            value: point.value,
-            period: point.period,
-            max: chosen.named_state(&point.max),
-            min: chosen.named_state(&point.min),
-            multipliers: pairs(&point.multipliers),
-            trivial_multiplier_error: point.trivial_multiplier_error,
-            stable: point.stable,
-            error_estimate: point.error_estimate,
-            intervals: point.orbit.mesh.len().saturating_sub(1),
-            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
-            normal_form,
-            branching: point.branching,
-            orbit: label.as_ref().map(|_| point.orbit),
-            label,
-        }
-    }
-
-    fn remark(&self) -> String {
-        normal_form::of_cycle(self.label.as_deref(), &self.normal_form)
     }
 }
 
@@ -235,37 +169,9 @@ impl Report for CyclesResult {
     }
 
     fn story(&self) -> Option<Story> {
-        let places: Vec<Place<'_>> = self
-            .points
-            .iter()
-            .map(|point| Place {
-                value: point.value,
-                stable: point.stable,
-                label: point.label.as_deref(),
-                remark: is_bifurcation(point.label.as_deref()).then(|| point.remark()),
-            })
-            .collect();
         let mut story = Story::new();
         story.tell("start", self.from.text());
-        course::tell_ends(&mut story, &self.ends);
-        course::tell_way(&mut story, &self.along.key, &places);
-        let unlocated = self.unlocated.iter().map(|change| change.text(&self.along.key));
-        unlocated.for_each(|text| story.tell("not located", text));
-        let meshes = self.points.iter().map(|point| point.intervals);
-        if let (Some(fewest), Some(most)) = (meshes.clone().min(), meshes.max()) {
-            let degree = self.points.iter().find_map(|point| point.orbit.as_ref()).map(|orbit| orbit.degree);
-            let degree = degree.map_or(String::new(), |degree| format!(", polynomials of degree {degree}"));
-            story.tell("meshes", format!("{fewest} to {most} intervals{degree}"));
-        }
-        let largest = |values: fn(&CycleResult) -> f64| self.points.iter().map(values).fold(0.0, f64::max);
-        story.tell(
-            "errors",
-            format!(
-                "at most {:.1e} of the amplitudes, trivial multiplier at most {:.1e} from 1",
-                largest(|point| point.error_estimate),
-                largest(|point| point.trivial_multiplier_error)
-            ),
-        );
+        tell(&mut story, &self.along, &self.ends, &self.unlocated, &self.points.iter().collect::<Vec<_>>());
         Some(story)
     }
 }

@@ -2,13 +2,13 @@
 
 use super::result::EquilibriaResult;
 use crate::branch::Origin;
-use crate::control::Control;
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
 use crate::start::{LabelledPoint, What};
 use crate::steps::Steps;
+use arclength::control::Control;
 use arclength::equilibrium::{BranchPoint, Equilibria, SpecialPoint, equilibrium_settings};
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};

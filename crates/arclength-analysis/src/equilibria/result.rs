@@ -1,6 +1,6 @@
 //! A branch of equilibria as a result.
 
-use crate::branch::{Origin, pairs, parameters, shortened, stability, tests};
+use crate::branch::{Origin, pairs, parameters, stability, tests};
 use crate::course::{self, Place};
 use crate::end::End;
 use crate::interval::Interval;
@@ -9,7 +9,7 @@ use crate::model::ChosenModel;
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
-use crate::unlocated::UnlocatedResult;
+use crate::unlocated::{UnlocatedResult, warnings};
 use crate::varying_parameter::VaryingParameter;
 use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
 use kingpin_figure::{Figure, FigureError, palette};
@@ -85,9 +85,10 @@ impl EquilibriaResult {
             let states = point.iter().flat_map(|point| point.state.0.iter().cloned());
             NamedNumbers(value.into_iter().chain(states).collect())
         };
+        let varying = [VaryingParameter::from(along)];
         let ends = [
-            End::of(branch.stops[0].as_ref(), &[&along.key], last(points.first())),
-            End::of(branch.stops[1].as_ref(), &[&along.key], last(points.last())),
+            End::of_either(branch.stops[0].as_ref(), &varying, last(points.first())),
+            End::of_either(branch.stops[1].as_ref(), &varying, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&branch.active),
@@ -95,17 +96,14 @@ impl EquilibriaResult {
             along: along.into(),
             from,
             ends,
-            unlocated: branch.unlocated.iter().map(UnlocatedResult::of).collect(),
+            unlocated: branch.unlocated.iter().map(UnlocatedResult::from).collect(),
             points,
         }
     }
 
     /// What was detected but not located, each change once.
     pub fn warnings(&self) -> Vec<String> {
-        let mut texts: Vec<String> =
-            self.unlocated.iter().map(|change| change.text(&self.along.key)).collect();
-        texts.dedup();
-        shortened(texts)
+        warnings(&self.unlocated, &self.along)
     }
 
     /// Names of the states.
@@ -188,7 +186,7 @@ impl Report for EquilibriaResult {
         let mut story = Story::new();
         story.tell("start", self.from.text());
         course::tell_ends(&mut story, &self.ends);
-        course::tell_way(&mut story, &self.along.key, &places);
+        course::tell_way(&mut story, &self.along, &places);
         let degenerate =
             |point: &&EquilibriumResult| matches!(point.special, Some(SpecialPoint::Degenerate { .. }));
         for point in self.points.iter().filter(degenerate) {

@@ -1,113 +1,29 @@
-//! A curve of special cycles in two parameters as a result.
+//! A curve of special cycles of a model as a result.
 
-use crate::branch::{Origin, pairs, parameters, shortened, tests};
-use crate::course;
-use crate::end::End;
+use super::cycle_curve::CycleCurve;
+use crate::branch::{Origin, parameters};
 use crate::interval::Interval;
-use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
-use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
-use crate::unlocated::{subject, test_name};
 use crate::varying_parameter::VaryingParameter;
-use arclength::branch::{Label, SpecialKind, Unlocated};
-use arclength::cycle::Orbit;
-use arclength::locus::{CycleLocusBranch, CycleLocusPoint};
-use kingpin_figure::{Color, Figure, FigureError, palette};
-use kingpin_report::numbers::{readable, significant};
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
+use arclength::branch::SpecialKind;
+use arclength::locus::CycleLocusBranch;
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// Digits of the parameters at labelled points.
-const DIGITS: usize = 11;
-
-/// A cycle of the curve in a result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct CycleLocusPointResult {
-    /// Values of the two parameters.
-    pub values: [f64; 2],
-    /// Period.
-    pub period: f64,
-    /// Largest value of every state.
-    pub max: NamedNumbers,
-    /// Smallest value of every state.
-    pub min: NamedNumbers,
-    /// Floquet multipliers, the largest modulus first.
-    pub multipliers: Vec<[Option<f64>; 2]>,
-    /// How far the computed trivial multiplier is from 1.
-    pub trivial_multiplier_error: f64,
-    /// Error estimate of cycle and eigenfunctions relative to their sizes.
-    pub error_estimate: f64,
-    /// Mesh intervals.
-    pub intervals: usize,
-    /// Argument of the multipliers of a torus bifurcation.
-    pub argument: Option<f64>,
-    /// Coefficient of the normal form.
-    pub coefficient: Option<f64>,
-    /// Of points of codimension two, of values asked for, of the ends.
-    pub label: Option<String>,
-    /// Error estimates of the parameters at a point of codimension two.
-    pub location_error: Option<[f64; 2]>,
-    /// Test functions by the label of the point at which each changes its sign.
-    pub tests: NamedNumbers,
-    /// The cycle itself, where a computation can start from it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub orbit: Option<Orbit>,
-}
-
-/// A change of sign of a test function behind which no point of codimension two could be located.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct UnlocatedChangeResult {
-    /// What the test is for.
-    pub test: String,
-    /// Values of the two parameters between which it changed.
-    pub between: [[f64; 2]; 2],
-}
-
-impl UnlocatedChangeResult {
-    /// What the engine could not locate on a curve in two parameters.
-    pub(super) fn of(change: &Unlocated) -> Self {
-        let values =
-            |side: usize| [0, 1].map(|place| change.between[side].get(place).copied().unwrap_or_default());
-        Self { test: test_name(change.kind), between: [values(0), values(1)] }
-    }
-
-    /// In words, with what to try.
-    pub(super) fn text(&self, [one, two]: [&str; 2]) -> String {
-        let [from, to] = self
-            .between
-            .map(|[first, second]| format!("{one} = {}, {two} = {}", readable(first), readable(second)));
-        format!(
-            "{} changes between {from} and {to}, but no such point was located there; \
-             try: shorter steps (--finer 10)",
-            subject(&self.test)
-        )
-    }
-}
-
-/// A curve of special cycles in two parameters.
+/// A curve of special cycles of a model.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleLocusResult {
     /// The parameters that do not vary.
     #[serde(skip_serializing)]
     pub parameters: NamedNumbers,
-    /// What the curve consists of.
-    pub kind: SpecialKind,
     /// The model.
     pub model: StoredModel,
-    /// The parameters that vary.
-    #[serde(rename = "in")]
-    pub plane: [VaryingParameter; 2],
-    /// Where the curve starts.
-    pub from: Origin,
-    /// Why it ends, at its first and at its last point.
-    pub ends: [End; 2],
-    /// What was detected but not located.
-    #[serde(default)]
-    pub unlocated: Vec<UnlocatedChangeResult>,
-    /// The points in the order of the curve.
-    pub points: Vec<CycleLocusPointResult>,
+    /// The curve.
+    #[serde(flatten)]
+    pub curve: CycleCurve,
 }
 
 impl CycleLocusResult {
@@ -116,99 +32,18 @@ impl CycleLocusResult {
 
     /// The result of a curve.
     pub fn new(chosen: &ChosenModel, plane: [&Interval; 2], from: Origin, branch: CycleLocusBranch) -> Self {
-        let count = branch.points.len();
-        let points: Vec<CycleLocusPointResult> = (0..)
-            .zip(branch.points)
-            .map(|(index, point)| {
-                let label =
-                    point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count));
-                CycleLocusPointResult::new(chosen, point, label)
-            })
-            .collect();
-        let keys = [plane[0].key.as_str(), plane[1].key.as_str()];
-        let last = |point: Option<&CycleLocusPointResult>| {
-            let values = point.map(|point| {
-                let values = keys.iter().zip(point.values).map(|(key, value)| ((*key).to_owned(), value));
-                values.chain([("period".to_owned(), point.period)]).collect()
-            });
-            NamedNumbers(values.unwrap_or_default())
-        };
         Self {
             parameters: chosen.named_parameters(&branch.active),
-            kind: branch.kind.unwrap_or(SpecialKind::FoldOfCycles),
             model: chosen.stored.clone(),
-            plane: plane.map(VaryingParameter::from),
-            from,
-            ends: [
-                End::of(branch.stops[0].as_ref(), &keys, last(points.first())),
-                End::of(branch.stops[1].as_ref(), &keys, last(points.last())),
-            ],
-            unlocated: branch.unlocated.iter().map(UnlocatedChangeResult::of).collect(),
-            points,
-        }
-    }
-
-    /// What was detected but not located.
-    pub fn warnings(&self) -> Vec<String> {
-        let keys = self.keys();
-        shortened(self.unlocated.iter().map(|change| change.text(keys)).collect())
-    }
-
-    /// Names of the states.
-    fn states(&self) -> Vec<&str> {
-        let first = self.points.first();
-        first.iter().flat_map(|point| point.max.0.iter().map(|(name, _)| name.as_str())).collect()
-    }
-
-    /// What is drawn in the plane of the parameters.
-    pub fn curve(&self) -> Curve {
-        let (name, color): (&'static str, Color) = match self.kind {
-            SpecialKind::FoldOfCycles => ("folds of cycles", palette::SKY_BLUE),
-            SpecialKind::PeriodDoubling => ("period doublings", palette::ORANGE),
-            _ => ("torus bifurcations", palette::PURPLE),
-        };
-        let points = self.points.iter();
-        Curve::of(
-            name,
-            color,
-            points.map(|point| ((point.values[0], point.values[1]), Some(true), point.label.as_deref())),
-        )
-    }
-
-    /// Names of the two parameters.
-    pub fn keys(&self) -> [&str; 2] {
-        [&self.plane[0].key, &self.plane[1].key]
-    }
-}
-
-impl CycleLocusPointResult {
-    fn new(chosen: &ChosenModel, point: CycleLocusPoint, label: Option<String>) -> Self {
-        Self {
-            values: point.values,
-            period: point.period,
-            max: chosen.named_state(&point.max),
-            min: chosen.named_state(&point.min),
-            multipliers: pairs(&point.multipliers),
-            trivial_multiplier_error: point.trivial_multiplier_error,
-            error_estimate: point.error_estimate,
-            intervals: point.orbit.mesh.len().saturating_sub(1),
-            argument: point.argument,
-            coefficient: point.coefficient,
-            location_error: point.location_error,
-            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
-            orbit: label.as_ref().map(|_| point.orbit),
-            label,
-        }
-    }
-
-    /// What a point of codimension two is.
-    fn remark(&self) -> String {
-        let label = self.label.as_deref().and_then(|label| label.parse::<Label>().ok());
-        let name = label.filter(|label| label.kind != SpecialKind::Requested).map(|label| label.kind.name());
-        let name = name.unwrap_or_default();
-        match self.location_error.filter(|errors| errors.iter().all(|error| error.is_finite())) {
-            Some([one, two]) => format!("{name}, located to {}", significant(one.max(two), 2)),
-            None => name.to_owned(),
+            curve: CycleCurve::new(
+                branch.kind.unwrap_or(SpecialKind::FoldOfCycles),
+                plane.map(VaryingParameter::from),
+                from,
+                branch.points,
+                &branch.stops,
+                &branch.unlocated,
+                |state| chosen.named_state(state),
+            ),
         }
     }
 }
@@ -223,82 +58,22 @@ impl Report for CycleLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let what = self.kind.name();
-        writeln!(out, "curve: {what}, of {} at {}", self.model.name, parameters(&self.parameters.0))?;
-        writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
-        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
-        let [one, two] = self.keys();
-        let torus = self.kind == SpecialKind::Torus;
-        let argument = ["argument"].into_iter().filter(|_| torus);
-        let headings = ["label", one, two, "period", "coefficient"].into_iter().chain(argument);
-        let mut table = Table::new(headings.chain(["error", ""]));
-        for point in self.points.iter().filter(|point| point.label.is_some()) {
-            let mut cells: Vec<Cell> = vec![point.label.clone().into()];
-            cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
-            cells.extend([Cell::Digits(point.period, DIGITS), point.coefficient.into()]);
-            cells.extend(torus.then(|| Cell::from(point.argument)));
-            cells.extend([Cell::Digits(point.error_estimate, 2), point.remark().into()]);
-            table.row(cells);
-        }
-        table.write(out)
+        let (what, model) = (self.curve.kind.name(), &self.model.name);
+        let heading = format!("curve: {what}, of {model} at {}", parameters(&self.parameters.0));
+        self.curve.write_table(&heading, out)
     }
 
     fn columns(&self) -> Columns {
-        let points = || self.points.iter();
-        let [one, two] = self.keys();
-        let mut columns = Columns::new()
-            .texts("label", points().map(|point| point.label.clone()))
-            .numbers(one, points().map(|point| point.values[0]))
-            .numbers(two, points().map(|point| point.values[1]))
-            .numbers("period", points().map(|point| point.period))
-            .optional_numbers("coefficient", points().map(|point| point.coefficient))
-            .optional_numbers("argument", points().map(|point| point.argument))
-            .numbers("error_estimate", points().map(|point| point.error_estimate))
-            .counts("intervals", points().map(|point| point.intervals as u64));
-        for (index, name) in self.states().iter().enumerate() {
-            columns = columns
-                .optional_numbers(format!("max_{name}"), points().map(|point| point.max.get(index)))
-                .optional_numbers(format!("min_{name}"), points().map(|point| point.min.get(index)));
-        }
-        columns
-            .complex_numbers("multiplier", self.states().len(), points().map(|point| &point.multipliers))
-            .named_numbers("test", points().map(|point| &point.tests))
+        self.curve.columns()
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let [one, two] = self.keys();
-        let description = format!("{} of {} in {one} and {two}", self.kind.name(), self.model.name);
-        Ok(Some(picture::plane(&description, [one, two], &[self.curve()])))
+        let [one, two] = self.curve.keys();
+        let description = format!("{} of {} in {one} and {two}", self.curve.kind.name(), self.model.name);
+        Ok(Some(self.curve.figure(&description, [one, two], [|value| value; 2])))
     }
 
     fn story(&self) -> Option<Story> {
-        let mut story = Story::new();
-        story.tell("start", self.from.text());
-        course::tell_ends(&mut story, &self.ends);
-        let [one, two] = self.keys();
-        for point in self.points.iter().filter(|point| is_bifurcation(point.label.as_deref())) {
-            let [first, second] = point.values.map(readable);
-            let label = point.label.clone().unwrap_or_default();
-            let remark = point.remark();
-            story.tell("course", format!("{label} at {one} = {first}, {two} = {second}: {remark}"));
-        }
-        let unlocated = self.unlocated.iter().map(|change| change.text(self.keys()));
-        unlocated.for_each(|text| story.tell("not located", text));
-        story.tell("steps", format!("{} points", self.points.len()));
-        let meshes = self.points.iter().map(|point| point.intervals);
-        if let (Some(fewest), Some(most)) = (meshes.clone().min(), meshes.max()) {
-            story.tell("meshes", format!("{fewest} to {most} intervals"));
-        }
-        let largest =
-            |values: fn(&CycleLocusPointResult) -> f64| self.points.iter().map(values).fold(0.0, f64::max);
-        story.tell(
-            "errors",
-            format!(
-                "at most {:.1e} of the amplitudes, trivial multiplier at most {:.1e} from 1",
-                largest(|point| point.error_estimate),
-                largest(|point| point.trivial_multiplier_error)
-            ),
-        );
-        Some(story)
+        Some(self.curve.story())
     }
 }

@@ -1,73 +1,29 @@
-//! A curve of special equilibria in two parameters as a result.
+//! A curve of special equilibria of a model as a result.
 
-use super::of_cycles::UnlocatedChangeResult;
-use crate::branch::{Origin, pairs, parameters, shortened, tests};
-use crate::course;
-use crate::end::End;
+use super::equilibrium_curve::EquilibriumCurve;
+use crate::branch::{Origin, parameters};
 use crate::interval::Interval;
-use crate::labels;
 use crate::model::ChosenModel;
-use crate::normal_form;
-use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
 use crate::varying_parameter::VaryingParameter;
 use arclength::branch::SpecialKind;
-use arclength::locus::{CodimensionTwoPoint, EquilibriumLocusBranch, LocusPoint};
-use kingpin_figure::{Color, Figure, FigureError, palette};
-use kingpin_report::numbers::readable;
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
+use arclength::locus::EquilibriumLocusBranch;
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// States that are shown in a table.
-const SHOWN_STATES: usize = 3;
-/// Digits of the parameters at labelled points.
-const DIGITS: usize = 12;
-
-/// A point of the curve in a result.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct EquilibriumLocusPointResult {
-    /// Values of the two parameters.
-    pub values: [f64; 2],
-    /// The equilibrium.
-    pub state: NamedNumbers,
-    /// Eigenvalues by descending real part.
-    pub eigenvalues: Vec<[Option<f64>; 2]>,
-    /// Angular frequency of a Hopf point; nothing at a neutral saddle.
-    pub frequency: Option<f64>,
-    /// First Lyapunov coefficient of a Hopf point.
-    pub first_lyapunov: Option<f64>,
-    /// Of points of codimension two, of values asked for, of the ends.
-    pub label: Option<String>,
-    /// Test functions by the label of the point at which each changes its sign.
-    pub tests: NamedNumbers,
-    /// What is known about a point of codimension two.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub special: Option<CodimensionTwoPoint>,
-}
-
-/// A curve of special points in two parameters.
+/// A curve of special equilibria of a model.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EquilibriumLocusResult {
     /// The parameters that do not vary.
     #[serde(skip_serializing)]
     pub parameters: NamedNumbers,
-    /// What the curve consists of.
-    pub kind: SpecialKind,
     /// The model.
     pub model: StoredModel,
-    /// The parameters that vary.
-    #[serde(rename = "in")]
-    pub plane: [VaryingParameter; 2],
-    /// Where the curve starts.
-    pub from: Origin,
-    /// Why it ends, at its first and at its last point.
-    pub ends: [End; 2],
-    /// What was detected but not located.
-    #[serde(default)]
-    pub unlocated: Vec<UnlocatedChangeResult>,
-    /// The points in the order of the curve.
-    pub points: Vec<EquilibriumLocusPointResult>,
+    /// The curve.
+    #[serde(flatten)]
+    pub curve: EquilibriumCurve,
 }
 
 impl EquilibriumLocusResult {
@@ -81,75 +37,19 @@ impl EquilibriumLocusResult {
         from: Origin,
         branch: &EquilibriumLocusBranch,
     ) -> Self {
-        let count = branch.points.len();
-        let point = |(index, point): (usize, &LocusPoint)| EquilibriumLocusPointResult {
-            values: point.values,
-            state: chosen.named_state(&point.state),
-            eigenvalues: pairs(&point.eigenvalues),
-            frequency: point.frequency,
-            first_lyapunov: point.first_lyapunov,
-            label: point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count)),
-            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
-            special: point.special.as_deref().cloned(),
-        };
-        let points: Vec<EquilibriumLocusPointResult> = branch.points.iter().enumerate().map(point).collect();
-        let keys = [plane[0].key.as_str(), plane[1].key.as_str()];
-        let last = |point: Option<&EquilibriumLocusPointResult>| {
-            let values = point.map(|point| {
-                let values = keys.iter().zip(point.values).map(|(key, value)| ((*key).to_owned(), value));
-                values.chain(point.state.0.iter().cloned()).collect()
-            });
-            NamedNumbers(values.unwrap_or_default())
-        };
-        let ends = [
-            End::of(branch.stops[0].as_ref(), &keys, last(points.first())),
-            End::of(branch.stops[1].as_ref(), &keys, last(points.last())),
-        ];
         Self {
             parameters: chosen.named_parameters(&branch.active),
-            kind: branch.kind.unwrap_or(SpecialKind::Fold),
             model: chosen.stored.clone(),
-            plane: plane.map(VaryingParameter::from),
-            from,
-            ends,
-            unlocated: branch.unlocated.iter().map(UnlocatedChangeResult::of).collect(),
-            points,
+            curve: EquilibriumCurve::new(
+                branch.kind.unwrap_or(SpecialKind::Fold),
+                plane.map(VaryingParameter::from),
+                from,
+                &branch.points,
+                &branch.stops,
+                &branch.unlocated,
+                |state| chosen.named_state(state),
+            ),
         }
-    }
-
-    /// What was detected but not located.
-    pub fn warnings(&self) -> Vec<String> {
-        let keys = [self.plane[0].key.as_str(), self.plane[1].key.as_str()];
-        shortened(self.unlocated.iter().map(|change| change.text(keys)).collect())
-    }
-
-    /// Names of the states.
-    fn states(&self) -> Vec<&str> {
-        let first = self.points.first();
-        first.iter().flat_map(|point| point.state.0.iter().map(|(name, _)| name.as_str())).collect()
-    }
-
-    /// What is drawn in the plane of the parameters: neutral saddles on a curve of Hopf points are dashed.
-    pub fn curve(&self) -> Curve {
-        let (name, color): (&'static str, Color) = match self.kind {
-            SpecialKind::Fold => ("folds", palette::BLUE),
-            SpecialKind::Hopf => ("Hopf points", palette::VERMILION),
-            SpecialKind::BranchPoint => ("branch points", palette::GREEN),
-            _ => ("special points", palette::PURPLE),
-        };
-        Curve::of(
-            name,
-            color,
-            self.points.iter().map(|point| {
-                let real = self.kind != SpecialKind::Hopf || point.frequency.is_some();
-                ((point.values[0], point.values[1]), Some(real), point.label.as_deref())
-            }),
-        )
-    }
-
-    /// Names of the two parameters.
-    pub fn keys(&self) -> [&str; 2] {
-        [&self.plane[0].key, &self.plane[1].key]
     }
 }
 
@@ -163,77 +63,22 @@ impl Report for EquilibriumLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let what = self.kind.name();
-        writeln!(out, "curve of {what}s of {} at {}", self.model.name, parameters(&self.parameters.0))?;
-        writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
-        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
-        let [one, two] = self.keys();
-        let hopf = self.kind == SpecialKind::Hopf;
-        let of_hopf = ["frequency", "l1"].into_iter().filter(|_| hopf);
-        let states = self.states().into_iter().take(SHOWN_STATES);
-        let mut table = Table::new(["label", one, two].into_iter().chain(states).chain(of_hopf).chain([""]));
-        for point in self.points.iter().filter(|point| point.label.is_some()) {
-            let mut cells: Vec<Cell> = vec![point.label.clone().into()];
-            cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
-            cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
-            if hopf {
-                cells.extend([point.frequency, point.first_lyapunov].map(Cell::from));
-            }
-            cells
-                .push(point.special.as_ref().map(normal_form::of_codimension_two).unwrap_or_default().into());
-            table.row(cells);
-        }
-        table.write(out)
+        let (what, model) = (self.curve.kind.name(), &self.model.name);
+        let heading = format!("curve of {what}s of {model} at {}", parameters(&self.parameters.0));
+        self.curve.write_table(&heading, out)
     }
 
     fn columns(&self) -> Columns {
-        let points = || self.points.iter();
-        let [one, two] = self.keys();
-        let mut columns = Columns::new()
-            .texts("label", points().map(|point| point.label.clone()))
-            .numbers(one, points().map(|point| point.values[0]))
-            .numbers(two, points().map(|point| point.values[1]))
-            .optional_numbers("frequency", points().map(|point| point.frequency))
-            .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov));
-        let states = self.states();
-        for (index, name) in states.iter().enumerate() {
-            columns = columns.optional_numbers(*name, points().map(|point| point.state.get(index)));
-        }
-        columns
-            .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))
-            .named_numbers("test", points().map(|point| &point.tests))
+        self.curve.columns()
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let [one, two] = self.keys();
-        let description = format!("{}s of {} in {one} and {two}", self.kind.name(), self.model.name);
-        Ok(Some(picture::plane(&description, [one, two], &[self.curve()])))
+        let [one, two] = self.curve.keys();
+        let description = format!("{}s of {} in {one} and {two}", self.curve.kind.name(), self.model.name);
+        Ok(Some(self.curve.figure(&description, [one, two], [|value| value; 2])))
     }
 
     fn story(&self) -> Option<Story> {
-        let mut story = Story::new();
-        story.tell("start", self.from.text());
-        course::tell_ends(&mut story, &self.ends);
-        let [one, two] = self.keys();
-        for point in &self.points {
-            if let Some(special) = &point.special {
-                let [first, second] = point.values.map(readable);
-                let label = point.label.clone().unwrap_or_default();
-                story.tell(
-                    "course",
-                    format!(
-                        "{label} at {one} = {first}, {two} = {second}: {}",
-                        normal_form::of_codimension_two(special)
-                    ),
-                );
-            }
-        }
-        story.tell("steps", format!("{} points", self.points.len()));
-        let errors = self.points.iter().filter_map(|point| Some(point.special.as_ref()?.location_error));
-        let largest = errors.flatten().filter(|error| error.is_finite()).fold(0.0, f64::max);
-        if largest > 0.0 {
-            story.tell("errors", format!("points of codimension two: at most {largest:.1e}"));
-        }
-        Some(story)
+        Some(self.curve.story())
     }
 }

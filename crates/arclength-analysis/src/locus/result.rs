@@ -21,8 +21,8 @@ impl LocusResult {
     /// What was detected but not located.
     pub fn warnings(&self) -> Vec<String> {
         match self {
-            Self::Equilibria(curve) => curve.warnings(),
-            Self::Cycles(curve) => curve.warnings(),
+            Self::Equilibria(result) => result.curve.warnings(),
+            Self::Cycles(result) => result.curve.warnings(),
         }
     }
 }
@@ -30,43 +30,43 @@ impl LocusResult {
 impl Report for LocusResult {
     fn schema(&self) -> Schema {
         match self {
-            Self::Equilibria(curve) => curve.schema(),
-            Self::Cycles(curve) => curve.schema(),
+            Self::Equilibria(result) => result.schema(),
+            Self::Cycles(result) => result.schema(),
         }
     }
 
     fn parameters(&self) -> NamedNumbers {
         match self {
-            Self::Equilibria(curve) => curve.parameters(),
-            Self::Cycles(curve) => curve.parameters(),
+            Self::Equilibria(result) => result.parameters(),
+            Self::Cycles(result) => result.parameters(),
         }
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         match self {
-            Self::Equilibria(curve) => curve.write_table(out),
-            Self::Cycles(curve) => curve.write_table(out),
+            Self::Equilibria(result) => result.write_table(out),
+            Self::Cycles(result) => result.write_table(out),
         }
     }
 
     fn columns(&self) -> Columns {
         match self {
-            Self::Equilibria(curve) => curve.columns(),
-            Self::Cycles(curve) => curve.columns(),
+            Self::Equilibria(result) => result.columns(),
+            Self::Cycles(result) => result.columns(),
         }
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
         match self {
-            Self::Equilibria(curve) => curve.figure(),
-            Self::Cycles(curve) => curve.figure(),
+            Self::Equilibria(result) => result.figure(),
+            Self::Cycles(result) => result.figure(),
         }
     }
 
     fn story(&self) -> Option<Story> {
         match self {
-            Self::Equilibria(curve) => curve.story(),
-            Self::Cycles(curve) => curve.story(),
+            Self::Equilibria(result) => result.story(),
+            Self::Cycles(result) => result.story(),
         }
     }
 }

@@ -31,7 +31,7 @@ fn towed_wheel() {
     let branch = study.equilibria("v=0.5:12");
     let hopf = branch.hopf_points().next().unwrap();
     let derivation = || Source::ClosedForm("docs/derivation.md");
-    page.row("Hopf point: v", 8.43103697014, derivation(), LOCATED, hopf.parameter);
+    page.row("Hopf point: v", 8.43103697014, derivation(), LOCATED, hopf.value);
     page.row("its angular frequency", 43.2553921186, derivation(), LOCATED, hopf.frequency);
     let lyapunov = Source::ClosedForm("Kuznetsov's formula in 30-digit arithmetic");
     page.row(
@@ -43,9 +43,9 @@ fn towed_wheel() {
     );
     let along = Along::new(Key::V, 0.5, 12.0).unwrap();
     let wheel = Wheel::default();
-    let rust = wheel.hopf_points(along).unwrap().points.remove(0);
+    let rust = wheel.hopf_points(along, &arclength::control::Control::none()).unwrap().points.remove(0);
     let model = || Source::ClosedForm("the Rust model");
-    page.row("Hopf point: v", rust.value, model(), Tolerance::Relative(1e-12), hopf.parameter);
+    page.row("Hopf point: v", rust.value, model(), Tolerance::Relative(1e-12), hopf.value);
     page.row(
         "its first Lyapunov coefficient",
         rust.first_lyapunov.unwrap(),
@@ -57,7 +57,7 @@ fn towed_wheel() {
     let speeds = SHOOTING.map(|(v, ..)| v);
     let cycles = study.cycles_from(&branch, 0, "v=0.5:12", &speeds);
     let options = CycleOptions { at: speeds.to_vec(), ..CycleOptions::default() };
-    let same = rust.cycles(along, &options, |_, _| ControlFlow::Continue(())).unwrap();
+    let same = rust.cycles(along, &options, |_| ControlFlow::Continue(())).unwrap();
     for (v, period, largest, smallest, multiplier) in SHOOTING {
         let cycle = at(&cycles, v);
         let shooting = || Source::Published("single shooting, tolerance 3e-14");

@@ -28,7 +28,7 @@ pub(crate) enum Operation {
 }
 
 impl Operation {
-    pub fn operands(self) -> impl Iterator<Item = NodeId> {
+    pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
         let list = match self {
             Self::Constant(_) | Self::Time | Self::State(_) | Self::Parameter(_) => [None; 3],
             Self::Unary(_, a) | Self::WholePower(a, _) => [Some(a), None, None],
@@ -47,32 +47,32 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    pub fn operations(&self) -> &[Operation] {
+    pub(crate) fn operations(&self) -> &[Operation] {
         &self.operations
     }
 
-    pub fn insert(&mut self, operation: Operation) -> NodeId {
+    pub(crate) fn insert(&mut self, operation: Operation) -> NodeId {
         *self.known.entry(operation).or_insert_with(|| {
             self.operations.push(operation);
             (self.operations.len() - 1) as NodeId
         })
     }
 
-    pub fn constant(&mut self, value: f64) -> NodeId {
+    pub(crate) fn constant(&mut self, value: f64) -> NodeId {
         // One zero and one NaN, so that equal values are equal nodes.
         let value = if value == 0.0 { 0.0 } else { value };
         self.insert(Operation::Constant(if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }))
     }
 
     /// The value of a node that does not vary.
-    pub fn constant_value(&self, node: NodeId) -> Option<f64> {
+    pub(crate) fn constant_value(&self, node: NodeId) -> Option<f64> {
         match self.operations[node as usize] {
             Operation::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
 
-    pub fn unary(&mut self, operation: UnaryOperation, operand: NodeId) -> NodeId {
+    pub(crate) fn unary(&mut self, operation: UnaryOperation, operand: NodeId) -> NodeId {
         if let Some(value) = self.constant_value(operand) {
             return self.constant(apply_unary(operation, value));
         }
@@ -98,7 +98,7 @@ impl Graph {
         self.insert(Operation::Unary(operation, operand))
     }
 
-    pub fn binary(&mut self, operation: BinaryOperation, a: NodeId, b: NodeId) -> NodeId {
+    pub(crate) fn binary(&mut self, operation: BinaryOperation, a: NodeId, b: NodeId) -> NodeId {
         use BinaryOperation::{Add, Divide, Multiply, Power, Subtract};
         let values = (self.constant_value(a), self.constant_value(b));
         if let (Some(a), Some(b)) = values {
@@ -184,7 +184,7 @@ impl Graph {
         }
     }
 
-    pub fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
+    pub(crate) fn select(&mut self, condition: NodeId, yes: NodeId, no: NodeId) -> NodeId {
         match self.constant_value(condition) {
             Some(value) => {
                 if value != 0.0 {

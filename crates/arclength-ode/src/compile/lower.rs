@@ -27,7 +27,7 @@ pub(crate) enum Symbol {
 
 impl Symbol {
     /// What the symbol is, for messages.
-    pub fn kind(self) -> &'static str {
+    pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::State(_) => "a state",
             Self::Parameter(_) => "a parameter",
@@ -69,7 +69,7 @@ pub(crate) struct Symbols {
 
 impl FunctionDefinition {
     /// The function as it is called.
-    pub fn signature(&self) -> String {
+    pub(crate) fn signature(&self) -> String {
         let arguments: Vec<&str> = self.arguments.iter().map(|argument| argument.text.as_str()).collect();
         format!("{}({})", self.name.text, arguments.join(","))
     }
@@ -120,7 +120,7 @@ struct Environment<'a> {
 }
 
 impl<'a> Lowering<'a> {
-    pub fn new(symbols: &'a Symbols) -> Self {
+    pub(crate) fn new(symbols: &'a Symbols) -> Self {
         Self {
             graph: Graph::default(),
             warnings: Vec::new(),
@@ -135,25 +135,25 @@ impl<'a> Lowering<'a> {
     }
 
     /// Adds an expression to the graph and returns its value.
-    pub fn lower(&mut self, expression: &Expression, scope: Scope) -> Result<NodeId, OdeError> {
+    pub(crate) fn lower(&mut self, expression: &Expression, scope: Scope) -> Result<NodeId, OdeError> {
         self.expression(expression, Environment { scope, arguments: &[], sum_index: None, fixed: None })
     }
 
     /// The number that an expression without states, parameters and time stands for.
-    pub fn lower_constant(&mut self, expression: &Expression, what: &str) -> Result<f64, OdeError> {
+    pub(crate) fn lower_constant(&mut self, expression: &Expression, what: &str) -> Result<f64, OdeError> {
         let node = self.lower(expression, Scope::Nothing)?;
         let span = expression.nodes.last().map_or(Span { line: 1, column: 1, length: 1 }, |node| node.1);
         self.constant(node, span, what)
     }
 
     /// Lowers fixed quantity number `index`, whether or not an equation uses it.
-    pub fn fixed_quantity(&mut self, index: usize) -> Result<NodeId, OdeError> {
+    pub(crate) fn fixed_quantity(&mut self, index: usize) -> Result<NodeId, OdeError> {
         let span = self.symbols.fixed[index].name.span;
         self.fixed(index, span, None)
     }
 
     /// Lowers derived parameter number `index`.
-    pub fn derived_parameter(&mut self, index: usize) -> Result<NodeId, OdeError> {
+    pub(crate) fn derived_parameter(&mut self, index: usize) -> Result<NodeId, OdeError> {
         let span = self.symbols.derived[index].name.span;
         self.derived(index, span)
     }

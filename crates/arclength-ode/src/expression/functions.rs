@@ -56,12 +56,12 @@ pub(crate) enum BinaryOperation {
 }
 
 impl BinaryOperation {
-    pub fn is_comparison(self) -> bool {
+    pub(crate) fn is_comparison(self) -> bool {
         use BinaryOperation::{Equal, Greater, GreaterOrEqual, Less, LessOrEqual, NotEqual};
         matches!(self, Equal | Greater | GreaterOrEqual | Less | LessOrEqual | NotEqual)
     }
 
-    pub fn is_arithmetic(self) -> bool {
+    pub(crate) fn is_arithmetic(self) -> bool {
         use BinaryOperation::{Add, Divide, Multiply, Power, Subtract};
         matches!(self, Add | Subtract | Multiply | Divide | Power)
     }

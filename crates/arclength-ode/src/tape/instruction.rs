@@ -86,7 +86,7 @@ const _: () = assert!(size_of::<Instruction<u16>>() == 16);
 
 impl<R: Copy> Instruction<R> {
     /// The registers read and those written.
-    pub fn registers(&self) -> (Vec<R>, Vec<R>) {
+    pub(super) fn registers(&self) -> (Vec<R>, Vec<R>) {
         use Instruction as I;
         match *self {
             I::Time(to) => (vec![], vec![to]),

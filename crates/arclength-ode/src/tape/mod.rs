@@ -84,7 +84,7 @@ impl<R: Copy + Into<usize>> Code<R> {
 
 impl Tape {
     /// Number of instructions.
-    pub fn instructions(&self) -> usize {
+    pub(crate) fn instructions(&self) -> usize {
         match &self.program {
             Program::OnStack(code) => code.instructions.len(),
             Program::OnHeap(code) => code.instructions.len(),
@@ -92,12 +92,12 @@ impl Tape {
     }
 
     /// Number of registers, states and parameters included.
-    pub fn registers(&self) -> usize {
+    pub(crate) fn registers(&self) -> usize {
         self.registers
     }
 
     /// Whether the results depend on the time.
-    pub fn uses_time(&self) -> bool {
+    pub(crate) fn uses_time(&self) -> bool {
         match &self.program {
             Program::OnStack(code) => code.uses_time(),
             Program::OnHeap(code) => code.uses_time(),
@@ -105,7 +105,7 @@ impl Tape {
     }
 
     /// Evaluates the results at a time, state and parameters.
-    pub fn evaluate<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
+    pub(crate) fn evaluate<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         // The same operations, so the same results, but on longer vectors: worth it for dual numbers.
         #[cfg(target_arch = "x86_64")]
         if size_of::<T>() > size_of::<f64>() && is_x86_feature_detected!("avx2") {

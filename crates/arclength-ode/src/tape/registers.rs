@@ -53,7 +53,7 @@ impl<T: Copy, const N: usize> Stack<T, N> {
     /// No register may be read before it is written, and none from `N` on may be read or written.
     /// [`Tape`](super::Tape) checks this once for its instructions when it is made.
     #[inline(always)]
-    pub unsafe fn new() -> Self {
+    pub(super) unsafe fn new() -> Self {
         Self { slots: [const { MaybeUninit::uninit() }; N] }
     }
 }

@@ -14,7 +14,7 @@ pub use request::{Continuation, Problem};
 pub(crate) use request::{check_length, invalid, observer, request};
 pub use stability::{Criticality, Stability};
 
-use crate::continuation::{BothWays, Explanation, Origin, Reason, Solution, Stop, events};
+use crate::continuation::{BothWays, Explanation, Origin, Reason, Solution, Stop, Wording, events};
 
 /// A change of sign of a test function, or of the number of unstable directions, behind which no special point could be
 /// located: look there with shorter steps.
@@ -27,12 +27,34 @@ pub trait Labelled {
 
     /// Values of the parameters that vary.
     fn values(&self) -> Vec<f64>;
+
+    /// What is special about it; `None` for a step, a point that was asked for or an end.
+    fn special_kind(&self) -> Option<SpecialKind> {
+        self.label().map(|label| label.kind).filter(|kind| *kind != SpecialKind::Requested)
+    }
 }
 
-/// A reason to end that tells a value of the parameter.
-pub trait WithParameter {
-    /// The same with the value told in another unit, such as a radius for a curvature.
-    fn with_parameter(self, convert: impl Fn(f64) -> f64) -> Self;
+/// A reason to end that tells values of the parameters.
+pub trait WithParameters {
+    /// The same with the values told in other units, such as a radius for a curvature; `convert` is given the index of the
+    /// parameter among those that vary, and a value.
+    fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self;
+}
+
+impl WithParameters for std::convert::Infallible {
+    fn with_parameters(self, _convert: impl Fn(usize, f64) -> f64) -> Self {
+        self
+    }
+}
+
+impl<R: WithParameters> WithParameters for Stop<R> {
+    fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self {
+        match self {
+            Self::RangeEnd { bound, value } => Self::RangeEnd { bound, value: convert(bound, value) },
+            Self::Problem(end) => Self::Problem(end.with_parameters(convert)),
+            other => other,
+        }
+    }
 }
 
 /// A branch: points in the order of the curve, and why it ends on both sides.
@@ -70,8 +92,8 @@ impl<P, R> Branch<P, R> {
     where
         R: Reason,
     {
-        let keys = self.keys();
-        [0, 1].map(|side| self.stops[side].as_ref().map(|stop| stop.explain(&keys)))
+        let wording = Wording::of_names(&self.keys());
+        [0, 1].map(|side| self.stops[side].as_ref().map(|stop| stop.explain(&wording)))
     }
 }
 
@@ -99,10 +121,7 @@ impl<P: Labelled, R> Branch<P, R> {
 
     /// Special points, in the order of the branch.
     pub fn special(&self) -> impl Iterator<Item = (SpecialKind, &P)> {
-        self.points.iter().filter_map(|point| {
-            let kind = point.label()?.kind;
-            (kind != SpecialKind::Requested).then_some((kind, point))
-        })
+        self.points.iter().filter_map(|point| Some((point.special_kind()?, point)))
     }
 }
 

@@ -18,12 +18,26 @@ pub struct Bracket<'a, P> {
     border: Vec<f64>,
     /// Length of the way.
     length: f64,
-    /// The bracket in parts of the distance between the ends, with the values there.
-    left: (f64, f64),
-    right: (f64, f64),
-    best: Solution<P>,
-    smallest: f64,
+    left: Side<P>,
+    right: Side<P>,
     trials: usize,
+}
+
+/// A solution on one side of the change.
+#[derive(Clone)]
+struct Side<P> {
+    /// Its place in parts of the distance between the ends.
+    fraction: f64,
+    solution: Solution<P>,
+    value: f64,
+    /// The value as the secant counts it, halved where the same side stays twice.
+    weight: f64,
+}
+
+impl<P: Clone> Side<P> {
+    fn new(fraction: f64, solution: Solution<P>, value: f64) -> Self {
+        Self { fraction, solution, value, weight: value }
+    }
 }
 
 impl<'a, P: Clone> Bracket<'a, P> {
@@ -39,16 +53,15 @@ impl<'a, P: Clone> Bracket<'a, P> {
             ends: [before, after],
             border: metric_image(curve, &before.tangent),
             length: along(curve, before, &after.unknown),
-            left: (0.0, left),
-            right: (1.0, right),
-            best: if left.abs() < right.abs() { before.clone() } else { after.clone() },
-            smallest: left.abs().min(right.abs()),
+            left: Side::new(0.0, before.clone(), left),
+            right: Side::new(1.0, after.clone(), right),
             trials: 0,
         })
     }
 
     /// Narrows the bracket to a part `tolerance` of the distance between the ends. `test` is given the curve and a finished
-    /// solution. Returns the solution where its modulus is smallest, `None` where it does not exist.
+    /// solution. Returns the side of the bracket where its modulus is smaller, `None` where it does not exist. A test function
+    /// may jump where its sign changes.
     ///
     /// # Errors
     /// When a trial point cannot be corrected.
@@ -60,35 +73,38 @@ impl<'a, P: Clone> Bracket<'a, P> {
         mut test: impl FnMut(&mut C, &Solution<P>) -> Option<f64>,
     ) -> Result<Option<&Solution<P>>, Error> {
         let [before, after] = self.ends;
-        while self.trials < MOST_TRIALS && self.right.0 - self.left.0 >= tolerance && self.smallest != 0.0 {
+        while self.trials < MOST_TRIALS
+            && self.right.fraction - self.left.fraction >= tolerance
+            && self.left.value != 0.0
+            && self.right.value != 0.0
+        {
             self.trials += 1;
-            let ((left, left_value), (right, right_value)) = (self.left, self.right);
-            let margin = DISTANCE_FROM_ENDS * (right - left);
-            let secant = (left * right_value - right * left_value) / (right_value - left_value);
-            let fraction = secant.clamp(left + margin, right - margin);
+            let (left, right) = (&mut self.left, &mut self.right);
+            let margin = DISTANCE_FROM_ENDS * (right.fraction - left.fraction);
+            let secant =
+                (left.fraction * right.weight - right.fraction * left.weight) / (right.weight - left.weight);
+            let fraction = secant.clamp(left.fraction + margin, right.fraction - margin);
             let mut unknown = interpolate(before, after, self.length, fraction);
             correct(curve, &mut unknown, &self.border, settings)
                 .map_err(|cause| Error::NotFound { sought: "solution between two points", cause })?;
             let trial = finish(curve, unknown, &before.tangent)?;
             let Some(value) = test(curve, &trial) else { return Ok(None) };
-            if value.abs() < self.smallest {
-                self.smallest = value.abs();
-                self.best = trial;
-            }
-            if value * left_value <= 0.0 {
-                self.right = (fraction, value);
-                self.left.1 *= 0.5;
+            let side = Side::new(fraction, trial, value);
+            if value * left.value <= 0.0 {
+                *right = side;
+                left.weight *= 0.5;
             } else {
-                self.left = (fraction, value);
-                self.right.1 *= 0.5;
+                *left = side;
+                right.weight *= 0.5;
             }
         }
-        Ok(Some(&self.best))
+        let nearer = if self.left.value.abs() < self.right.value.abs() { &self.left } else { &self.right };
+        Ok(Some(&nearer.solution))
     }
 }
 
-/// The solution where a test function that changes its sign between two neighbouring solutions has its smallest modulus in a
-/// bracket of a part `tolerance` of the distance between them; `None` where it does not exist or does not change its sign.
+/// The side where a test function that changes its sign between two neighbouring solutions has the smaller modulus, of a bracket
+/// of a part `tolerance` of the distance between them; `None` where it does not exist or does not change its sign.
 ///
 /// # Errors
 /// When a trial point cannot be corrected.

@@ -32,4 +32,4 @@ pub use requested::{Origin, Target};
 pub use settings::Settings;
 pub use solution::{Bound, Solution};
 pub(crate) use solution::{along, distance, finish};
-pub use stop::{Explanation, Reason, Stop};
+pub use stop::{Explanation, Reason, Stop, Wording};

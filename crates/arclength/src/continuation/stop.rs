@@ -1,7 +1,7 @@
 //! Why a continuation run ended, in words.
 
 use crate::error::{CorrectionFailure, Error};
-use crate::numbers::readable;
+use crate::numbers::{readable, significant};
 use std::convert::Infallible;
 use std::fmt;
 
@@ -63,27 +63,90 @@ impl Explanation {
 
 /// A reason of a problem's own for which a curve ends.
 pub trait Reason: Clone + fmt::Debug {
-    /// The reason in words; `keys` are the names of the parameters that vary, in the order of the bounds.
-    fn explain(&self, keys: &[&str]) -> Explanation;
+    /// The reason in words.
+    fn explain(&self, wording: &Wording<'_>) -> Explanation;
+}
+
+/// How numbers are told: names and units of the parameters that vary, in the order of the bounds, and of times.
+#[derive(Clone, Debug, Default)]
+pub struct Wording<'a> {
+    parameters: Vec<(&'a str, Option<&'a str>)>,
+}
+
+/// Digits of a number that is known roughly.
+const ROUGH: usize = 3;
+
+impl<'a> Wording<'a> {
+    /// Parameters with their names and, where they have units, those of the SI (`1` for numbers); times are then in seconds.
+    pub fn of(parameters: impl IntoIterator<Item = (&'a str, Option<&'a str>)>) -> Self {
+        Self { parameters: parameters.into_iter().collect() }
+    }
+
+    /// Parameters without units.
+    pub fn of_names(names: &[&'a str]) -> Self {
+        Self::of(names.iter().map(|name| (*name, None)))
+    }
+
+    fn parameter(&self, index: usize) -> (&'a str, Option<&'a str>) {
+        self.parameters.get(index).or(self.parameters.first()).copied().unwrap_or(("the parameter", None))
+    }
+
+    fn told(&self, index: usize, value: f64, text: &str) -> String {
+        match self.parameter(index) {
+            (name, Some(unit)) if unit != "1" && value.is_finite() => format!("{name} = {text} {unit}"),
+            (name, _) => format!("{name} = {text}"),
+        }
+    }
+
+    /// The name of a parameter.
+    pub fn name(&self, index: usize) -> &'a str {
+        self.parameter(index).0
+    }
+
+    /// A parameter with a value, `v = 4 m/s`.
+    pub fn at(&self, index: usize, value: f64) -> String {
+        self.told(index, value, &readable(value))
+    }
+
+    /// A parameter with a value that is known roughly.
+    pub fn near(&self, index: usize, value: f64) -> String {
+        self.told(index, value, &significant(value, ROUGH))
+    }
+
+    fn has_units(&self) -> bool {
+        self.parameters.iter().any(|(_, unit)| unit.is_some())
+    }
+
+    /// A time.
+    pub fn time(&self, value: f64) -> String {
+        format!("{}{}", readable(value), if self.has_units() { " s" } else { "" })
+    }
+
+    /// An angular frequency.
+    pub fn frequency(&self, value: f64) -> String {
+        format!("{}{}", readable(value), if self.has_units() { " rad/s" } else { "" })
+    }
+
+    /// An angular frequency that is known roughly.
+    pub fn rough_frequency(&self, value: f64) -> String {
+        format!("{}{}", significant(value, ROUGH), if self.has_units() { " rad/s" } else { "" })
+    }
 }
 
 impl Reason for Infallible {
-    fn explain(&self, _keys: &[&str]) -> Explanation {
+    fn explain(&self, _wording: &Wording<'_>) -> Explanation {
         match *self {}
     }
 }
 
 impl<R: Reason> Stop<R> {
-    /// The stop in words; `keys` are the names of the parameters that vary, in the order of the bounds.
-    pub fn explain(&self, keys: &[&str]) -> Explanation {
-        let key = |index: usize| keys.get(index).copied().unwrap_or("the parameter");
+    /// The stop in words.
+    pub fn explain(&self, wording: &Wording<'_>) -> Explanation {
         let shorter = "shorter steps from the start (--finer 10)";
         match self {
-            Self::RangeEnd { bound, value } => Explanation::of(format!(
-                "reached the end of the interval, {} = {}",
-                key(*bound),
-                readable(*value)
-            )),
+            Self::RangeEnd { bound, value } => {
+                Explanation::of(format!("reached the end of the interval, {}", wording.at(*bound, *value)))
+            }
             Self::Monitor { value, .. } => {
                 Explanation::of(format!("a monitor reached the value {} at which to stop", readable(*value)))
             }
@@ -95,7 +158,7 @@ impl<R: Reason> Stop<R> {
                 ),
             Self::MostSteps => Explanation::of("the most steps allowed were taken")
                 .try_this("allow more with --steps, or start again from this end"),
-            Self::Problem(reason) => reason.explain(keys),
+            Self::Problem(reason) => reason.explain(wording),
             Self::Interrupted => Explanation::of("interrupted").try_this("start again from this end"),
             Self::Failed(Error::MeshLimit { limit, error_estimate }) => Explanation::of(format!(
                 "the cycle needs more than {limit} mesh intervals (error estimate {})",
@@ -109,6 +172,6 @@ impl<R: Reason> Stop<R> {
 
 impl<R: Reason> fmt::Display for Stop<R> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.explain(&[]).cause)
+        formatter.write_str(&self.explain(&Wording::default()).cause)
     }
 }

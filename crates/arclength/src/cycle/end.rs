@@ -1,8 +1,7 @@
 //! Why a branch of cycles ends, apart from the reasons that all curves share.
 
-use crate::branch::WithParameter;
-use crate::continuation::{Explanation, Reason};
-use crate::numbers::{readable, significant};
+use crate::branch::WithParameters;
+use crate::continuation::{Explanation, Reason, Wording};
 use serde::{Deserialize, Serialize};
 
 /// The reason of its own for which a branch of cycles ends.
@@ -35,41 +34,40 @@ pub enum CycleEnd {
     },
 }
 
-impl WithParameter for CycleEnd {
-    fn with_parameter(mut self, convert: impl Fn(f64) -> f64) -> Self {
+impl WithParameters for CycleEnd {
+    fn with_parameters(mut self, convert: impl Fn(usize, f64) -> f64) -> Self {
         match &mut self {
             Self::HopfPoint { parameter, .. }
             | Self::PeriodDoubling { parameter, .. }
-            | Self::PeriodUnbounded { parameter, .. } => *parameter = convert(*parameter),
+            | Self::PeriodUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
         }
         self
     }
 }
 
 impl Reason for CycleEnd {
-    fn explain(&self, keys: &[&str]) -> Explanation {
-        let key = keys.first().copied().unwrap_or("the parameter");
+    fn explain(&self, wording: &Wording<'_>) -> Explanation {
         match self {
             Self::HopfPoint { parameter, frequency, located: false } => Explanation::of(format!(
-                "the cycles shrink to a Hopf point near {key} = {} with an angular frequency of about {}; it was not located",
-                significant(*parameter, 3),
-                significant(*frequency, 3)
+                "the cycles shrink to a Hopf point near {} with an angular frequency of about {}; it was not located",
+                wording.near(0, *parameter),
+                wording.rough_frequency(*frequency)
             ))
             .try_this("shorter steps (--finer 10)"),
             Self::HopfPoint { parameter, frequency, .. } => Explanation::of(format!(
-                "the cycles shrink to a Hopf point at {key} = {} with angular frequency {}",
-                readable(*parameter),
-                readable(*frequency)
+                "the cycles shrink to a Hopf point at {} with angular frequency {}",
+                wording.at(0, *parameter),
+                wording.frequency(*frequency)
             )),
             Self::PeriodDoubling { parameter, period } => Explanation::of(format!(
-                "the doubled cycles end at a period doubling at {key} = {}, where the single cycle has the period {}",
-                readable(*parameter),
-                readable(*period)
+                "the doubled cycles end at a period doubling at {}, where the single cycle has the period {}",
+                wording.at(0, *parameter),
+                wording.time(*period)
             )),
             Self::PeriodUnbounded { period, parameter } => Explanation::of(format!(
-                "the period grows without bound ({} at {key} = {}): a homoclinic or heteroclinic orbit is near",
-                readable(*period),
-                readable(*parameter)
+                "the period grows without bound ({} at {}): a homoclinic or heteroclinic orbit is near",
+                wording.time(*period),
+                wording.at(0, *parameter)
             )),
         }
     }

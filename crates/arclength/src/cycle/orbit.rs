@@ -30,6 +30,116 @@ const HISTORY_DEGREE: usize = 7;
 const HISTORY_CLOSURE: f64 = 0.05;
 
 impl Orbit {
+    /// An approximate periodic orbit from a function of time over one period, which need not be a solution: Newton's method
+    /// corrects it where a branch of [`Cycles`](super::Cycles) starts.
+    ///
+    /// ```
+    /// use arclength::cycle::Orbit;
+    /// use std::f64::consts::TAU;
+    /// let circle = Orbit::from_function(TAU, |time| vec![time.cos(), time.sin()]);
+    /// assert!((circle.state_at(1.0)[0] - 1_f64.cos()).abs() < 1e-10);
+    /// ```
+    pub fn from_function(period: f64, mut state_at: impl FnMut(f64) -> Vec<f64>) -> Self {
+        let gauss = Gauss::new(HISTORY_DEGREE);
+        let mesh: Vec<f64> =
+            (0..=HISTORY_INTERVALS).map(|index| index as f64 / HISTORY_INTERVALS as f64).collect();
+        let (mut states, mut dimension) = (Vec::new(), 0);
+        for pair in mesh.windows(2) {
+            for node in std::iter::once(0.0).chain(gauss.points.iter().copied()) {
+                let state = state_at(period * (pair[0] + node * (pair[1] - pair[0])));
+                dimension = state.len();
+                states.extend(state);
+            }
+        }
+        Self { mesh, degree: HISTORY_DEGREE, dimension, states, period }
+    }
+
+    /// An approximate periodic orbit from samples over one period, stable or not: the last sample is the first one, one period
+    /// later.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for fewer than [`Self::FEWEST_SAMPLES`] samples, times that do not grow, numbers that are not finite, states
+    /// of different lengths, or a last state that differs from the first by more than a twentieth of the size of the orbit.
+    ///
+    /// ```
+    /// use arclength::cycle::Orbit;
+    /// use std::f64::consts::TAU;
+    /// let times: Vec<f64> = (0..=100).map(|index| TAU * f64::from(index) / 100.0).collect();
+    /// let states: Vec<Vec<f64>> = times.iter().map(|time| vec![time.cos(), time.sin()]).collect();
+    /// let circle = Orbit::from_samples(&times, &states)?;
+    /// assert!((circle.period - TAU).abs() < 1e-15 && (circle.state_at(1.0)[1] - 1_f64.sin()).abs() < 1e-5);
+    /// # Ok::<(), arclength::Error>(())
+    /// ```
+    pub fn from_samples(times: &[f64], states: &[Vec<f64>]) -> Result<Self, Error> {
+        let wrong = |name: &str, value: String, allowed: &str| Error::Invalid {
+            name: name.into(),
+            value,
+            allowed: allowed.into(),
+        };
+        let count = times.len();
+        if count < Self::FEWEST_SAMPLES || states.len() != count {
+            let allowed = format!("at least {}, each with its time", Self::FEWEST_SAMPLES);
+            return Err(wrong("samples of the orbit", states.len().to_string(), &allowed));
+        }
+        if let Some(pair) = times.windows(2).find(|pair| !(pair[0] < pair[1] && pair[1].is_finite())) {
+            return Err(wrong(
+                "time of a sample",
+                pair[1].to_string(),
+                "a finite number larger than the one before",
+            ));
+        }
+        let dimension = states[0].len();
+        let bad = states.iter().position(|state| {
+            state.len() != dimension || dimension == 0 || state.iter().any(|value| !value.is_finite())
+        });
+        if let Some(index) = bad {
+            let allowed = format!("{dimension} finite numbers, as in the first");
+            return Err(wrong("state of a sample", format!("{:?}", states[index]), &allowed));
+        }
+        for component in 0..dimension {
+            let values = || states.iter().map(|state| state[component]);
+            let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                (low.min(value), high.max(value))
+            });
+            let gap = (states[count - 1][component] - states[0][component]).abs();
+            if gap > HISTORY_CLOSURE * (high - low) {
+                return Err(wrong(
+                    "last sample of the orbit",
+                    format!("{:?}", states[count - 1]),
+                    "the first sample, one period later",
+                ));
+            }
+        }
+        let period = times[count - 1] - times[0];
+        // Around the period: the last sample repeats the first.
+        let sample = |index: isize| {
+            let turns = index.div_euclid(count as isize - 1);
+            let place = index.rem_euclid(count as isize - 1) as usize;
+            (times[place] + turns as f64 * period, &states[place])
+        };
+        let slope = |index: isize, component: usize| {
+            let ((before, one), (after, other)) = (sample(index - 1), sample(index + 1));
+            (other[component] - one[component]) / (after - before)
+        };
+        Ok(Self::from_function(period, |time| {
+            let time = times[0] + time;
+            let index =
+                times.partition_point(|candidate| *candidate <= time).clamp(1, count - 1) as isize - 1;
+            let ((start, one), (end, other)) = (sample(index), sample(index + 1));
+            let (step, s) = (end - start, (time - start) / (end - start));
+            (0..dimension)
+                .map(|component| {
+                    let (a, b) = (one[component], other[component]);
+                    let (u, v) = (step * slope(index, component), step * slope(index + 1, component));
+                    a + s * (u + s * (3.0 * (b - a) - 2.0 * u - v + s * (u + v - 2.0 * (b - a))))
+                })
+                .collect()
+        }))
+    }
+
+    /// Fewest samples from which an orbit is made.
+    pub const FEWEST_SAMPLES: usize = 8;
+
     /// An approximate periodic orbit from the time history that starts at `initial`, which should have settled on a
     /// stable cycle with a period below `longest_period`.
     ///

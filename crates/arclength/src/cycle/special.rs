@@ -19,8 +19,10 @@ const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
 /// a part of the tolerance of the cycles, whose mesh may break a symmetry by so much, and never less than this.
 const UNPERTURBED_PART: f64 = 0.1;
 const UNPERTURBED: f64 = 1e-10;
-/// A special cycle may lie this part of the step outside it.
-const MARGIN: f64 = 0.1;
+/// A special cycle may lie this part of the step, and this far in the metric, outside it: cycles are known to the tolerance of
+/// Newton's method only, and close to homoclinic orbits brackets are shorter than what comes of it.
+const MARGIN: f64 = 0.01;
+const LEAST_MARGIN: f64 = 1e-6;
 
 type Node = Solution<CycleInspection>;
 
@@ -83,8 +85,20 @@ pub(super) fn crossing(
     Ok(found)
 }
 
-/// Whether the two multipliers behind the `rank` largest ones are a complex pair on one side at least.
+/// Whether a complex pair of multipliers crosses the unit circle between two solutions. The test function also changes its sign
+/// where the product of two real ones is one.
 fn is_pair_between(before: &Node, after: &Node, rank: usize) -> bool {
+    let complex = |node: &Node| {
+        let pairs = node.point.floquet.nontrivial.iter().filter(|multiplier| multiplier.argument > 0.0);
+        let outside =
+            pairs.clone().filter(|multiplier| !multiplier.is_real() && multiplier.log_modulus > 0.0);
+        (pairs.filter(|multiplier| !multiplier.is_real()).count(), outside.count())
+    };
+    let [(count, outside), (other_count, other_outside)] = [before, after].map(complex);
+    if count == other_count {
+        return outside != other_outside;
+    }
+    // Real ones have met in between.
     [before, after]
         .iter()
         .any(|node| node.point.floquet.nontrivial.get(rank).is_some_and(|multiplier| !multiplier.is_real()))
@@ -129,7 +143,8 @@ fn newton(
         let located = converged.filter(|located| {
             let position = along(curve, before, &located.solution.unknown);
             let perturbation = located.eigenfunctions.1.first().filter(|_| kind == Kind::BranchPoint);
-            (-MARGIN * length..=(1.0 + MARGIN) * length).contains(&position)
+            let margin = MARGIN * length + LEAST_MARGIN;
+            (-margin..=length + margin).contains(&position)
                 && perturbation.is_none_or(|perturbation| perturbation.abs() < unperturbed)
         });
         if located.is_some() {

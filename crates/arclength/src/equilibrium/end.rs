@@ -1,7 +1,7 @@
 //! Why a branch of equilibria ends, apart from the reasons that all curves share.
 
-use crate::branch::WithParameter;
-use crate::continuation::{Explanation, Reason};
+use crate::branch::WithParameters;
+use crate::continuation::{Explanation, Reason, Wording};
 use crate::numbers::readable;
 use serde::{Deserialize, Serialize};
 
@@ -17,17 +17,17 @@ pub enum EquilibriumEnd {
     },
 }
 
-impl WithParameter for EquilibriumEnd {
-    fn with_parameter(self, convert: impl Fn(f64) -> f64) -> Self {
+impl WithParameters for EquilibriumEnd {
+    fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self {
         let Self::StateUnbounded { parameter } = self;
-        Self::StateUnbounded { parameter: convert(parameter) }
+        Self::StateUnbounded { parameter: convert(0, parameter) }
     }
 }
 
 impl Reason for EquilibriumEnd {
-    fn explain(&self, keys: &[&str]) -> Explanation {
+    fn explain(&self, wording: &Wording<'_>) -> Explanation {
         let Self::StateUnbounded { parameter } = self;
-        let key = keys.first().copied().unwrap_or("the parameter");
+        let key = wording.name(0);
         Explanation::of(format!(
             "the state grows without bound while {key} tends to {}",
             readable(*parameter)

@@ -25,7 +25,7 @@ const LAST_BRACKET: f64 = 1e-10;
 /// Pairs of eigenvalues that are tried for a Hopf point.
 const CANDIDATES: usize = 3;
 /// A located point may lie this part of the bracket outside it.
-const MARGIN: f64 = 0.1;
+const MARGIN: f64 = 1e-6;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
 const UNPERTURBED: f64 = 1e-12;
 /// Distance, in the metric, of a point located by Newton's method from the bracket of its crossing.

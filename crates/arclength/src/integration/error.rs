@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// Why an integration stopped early or could not start.
 #[derive(Clone, Debug, Error, PartialEq)]
+#[non_exhaustive]
 pub enum IntegrationError {
     /// The step that the tolerances ask for is below the resolution of time.
     #[error(

@@ -22,6 +22,7 @@ const NEGLIGIBLE: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
 /// Why eigenvalues, multipliers or their vectors could not be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EigenvalueError {
     /// The slice does not hold as many numbers as the dimensions say.
     #[error("expected {expected} numbers ({description}), found {found}")]

@@ -11,7 +11,6 @@ use kingpin::basin::{Axis, BasinMap, Destinations, Fate, Tile};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Where motions end, depending on where they start: two states of the initial condition vary, the others are those of the
 /// uniform motion.
@@ -187,13 +186,8 @@ fn follow(
         }
     }
     let named = |fates: &[Fate]| fates.iter().copied().map(NamedFate).collect::<Vec<_>>();
-    let done = AtomicUsize::new(finished.len());
-    let keep = |tile: &Tile| {
-        journal.keep(tile.index, &named(&tile.fates), control.stop());
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        control.done(done as f64 / map.tiles() as f64);
-    };
-    let computed = map.run(control.stop(), |index| finished.contains_key(&index), keep)?;
+    let keep = |tile: &Tile| journal.keep(tile.index, &named(&tile.fates), control.stop());
+    let computed = map.run(control, |index| finished.contains_key(&index), keep)?;
     let computed = computed.into_iter().map(|tile| (tile.index, named(&tile.fates)));
     let all = journal.checked(computed, map.tiles())?;
     Ok(all.into_iter().flatten().map(|fate| fate.0).collect())

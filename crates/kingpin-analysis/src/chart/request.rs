@@ -75,12 +75,9 @@ impl ChartAnalysis {
     /// Computes the chart.
     ///
     /// # Errors
-    /// [`Error::Wheel`], also where the control stops it.
+    /// [`Error::Wheel`], and [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<ChartResult, Error> {
-        let chart = self.wheel.growth_rate_chart(&self.plane, self.points, &|part| {
-            control.done(part);
-            control.flow()
-        })?;
-        Ok(ChartResult::new(self.wheel, self.plane, chart))
+        let chart = self.wheel.growth_rate_chart(&self.plane, self.points, control)?;
+        ChartResult::new(self.wheel, self.plane, chart, &control.quiet())
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::axis_label;
 use crate::description;
+use crate::error::Error;
 use crate::parameters::parameters_of;
+use arclength_analysis::Control;
 use kingpin::{Axis, Curve, GrowthRateChart, Plane, Wheel};
 use kingpin_figure::{ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette};
 use kingpin_report::numbers::{readable, significant};
@@ -51,19 +53,27 @@ pub struct ChartResult {
 
 impl ChartResult {
     /// The result of a chart of a wheel over a plane.
-    pub(super) fn new(wheel: Wheel, plane: Plane, chart: GrowthRateChart) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] where the control stops the tracing of the boundaries.
+    pub(super) fn new(
+        wheel: Wheel,
+        plane: Plane,
+        chart: GrowthRateChart,
+        control: &Control<'_>,
+    ) -> Result<Self, Error> {
         let GrowthRateChart { x, y, growth_rate, stable, rolls } = chart;
-        Self {
+        Ok(Self {
             wheel,
             x: SampledAxis::new(plane.x(), x),
             y: SampledAxis::new(plane.y(), y),
             growth_rate,
             stable,
             rolls,
-            stability_boundary: points_of(wheel.stability_boundary(&plane)),
-            rolling_limit: points_of(wheel.rolling_limit(&plane)),
+            stability_boundary: points_of(wheel.stability_boundary(&plane, control)?),
+            rolling_limit: points_of(wheel.rolling_limit(&plane, control)?),
             plane,
-        }
+        })
     }
 
     fn keys(&self) -> [kingpin::Key; 2] {

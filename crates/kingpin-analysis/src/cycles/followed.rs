@@ -1,14 +1,11 @@
 //! Branches of cycles as they are followed, each with what it starts from.
 
-use crate::along::as_followed;
 use crate::error::Error;
-use crate::hopf::search::label;
+use crate::hopf::search::{label, same_value};
 use arclength::continuation::Stop;
+use arclength::cycle::{CycleEnd, CyclePoint};
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use std::ops::ControlFlow;
-
-/// Relative distance of parameter values within which two Hopf points are the same.
-const SAME_HOPF_POINT: f64 = 1e-6;
 
 /// A branch with the label of what it starts from.
 #[derive(Debug)]
@@ -33,7 +30,7 @@ pub fn from_hopf_points(
     only: Option<usize>,
     along: Along,
     options: &CycleOptions,
-    mut observer: impl FnMut(f64, f64) -> ControlFlow<()>,
+    mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
 ) -> Result<Vec<FollowedBranch>, Error> {
     let mut branches: Vec<FollowedBranch> = Vec::new();
     for (index, hopf) in points.iter().enumerate().filter(|(index, _)| only.is_none_or(|only| only == *index))
@@ -43,17 +40,12 @@ pub fn from_hopf_points(
             continue;
         }
         let cycles = hopf.cycles(along, options, &mut observer)?;
-        let reached = points.iter().enumerate().find(|(_, other)| match cycles.stops.1 {
-            Stop::HopfPoint { parameter, .. } => same_value(as_followed(&along, other.value), parameter),
+        let reached = points.iter().enumerate().find(|(_, other)| match cycles.stops[1] {
+            Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. })) => same_value(other.value, parameter),
             _ => false,
         });
         let reached = reached.map(|(index, other)| (label(index), other.clone()));
         branches.push(FollowedBranch { origin, hopf: Some(hopf.clone()), reached, cycles });
     }
     Ok(branches)
-}
-
-/// Whether two values of the parameter are those of one Hopf point.
-pub fn same_value(first: f64, second: f64) -> bool {
-    first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
 }

@@ -30,20 +30,20 @@ pub fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointRes
         let points: Vec<&CyclePointResult> = points.iter().filter(|point| point.branch == number).collect();
         for (largest, angle) in [(true, largest as fn(&CyclePointResult) -> f64), (false, smallest)] {
             let curve = Branch::new(
-                points.iter().map(|point| ((abscissa(point.value.0), angle(point)), stability(point))),
+                points.iter().map(|point| ((abscissa(point.cycle.value), angle(point)), stability(point))),
             )
             .color(palette::VERMILION);
             let first = largest && number == 1;
             panel = panel.curve(if first { curve.legend("limit cycle, extremes") } else { curve });
         }
         for point in points {
-            if let Some(label) = &point.label {
-                let at = (abscissa(point.value.0), point.psi_max);
+            if let Some(label) = &point.cycle.label {
+                let at = (abscissa(point.cycle.value), point.psi_max);
                 panel = panel.point(PointLabel::new(at, label.as_str()).marker(marker(label)));
             }
         }
     }
-    let anything_unstable = points.iter().any(|point| point.stable == Some(false));
+    let anything_unstable = points.iter().any(|point| point.cycle.stable == Some(false));
     if anything_unstable {
         panel = panel.legend_entry(LegendEntry::line("unstable", palette::BLACK, Dash::Dashed));
     }
@@ -64,7 +64,11 @@ fn smallest(point: &CyclePointResult) -> f64 {
 
 /// Nothing is claimed to be stable that is not known to be.
 fn stability(point: &CyclePointResult) -> Stability {
-    if point.is_bifurcation() { Stability::Changes } else { Stability::from(point.stable == Some(true)) }
+    if point.is_bifurcation() {
+        Stability::Changes
+    } else {
+        Stability::from(point.cycle.stable == Some(true))
+    }
 }
 
 fn marker(label: &str) -> Marker {
@@ -89,7 +93,7 @@ fn uniform_motion(
     let (_, abscissa) = drawn_as(along);
     let hopf_points = points.iter().filter(|point| point.is_hopf_point());
     let mut points: Vec<((f64, f64), Stability)> =
-        hopf_points.map(|point| ((abscissa(point.value.0), point.psi_max), Stability::Changes)).collect();
+        hopf_points.map(|point| ((abscissa(point.cycle.value), point.psi_max), Stability::Changes)).collect();
     for index in 0..=UNIFORM_MOTIONS {
         let value = low + (high - low) * index as f64 / UNIFORM_MOTIONS as f64;
         let motion = wheel.with(key, value).and_then(|wheel| wheel.uniform_motion());

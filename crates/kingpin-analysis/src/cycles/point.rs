@@ -3,86 +3,53 @@
 use crate::error::Error;
 use crate::states::named_state;
 use arclength::branch::SpecialKind;
-use arclength::cycle::{Branching, CyclePoint, Orbit};
+use arclength::cycle::CyclePoint;
+use arclength_analysis::branch::{pairs, stability};
+use arclength_analysis::cycles::CycleResult;
 use arclength_analysis::labels::{is_bifurcation, kind};
 use kingpin::branches::HopfPoint;
 use kingpin_report::numbers::significant;
-use kingpin_report::{Cell, NamedNumbers, Number};
+use kingpin_report::{Cell, NamedNumbers};
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Index of the caster angle among the states.
 const CASTER_ANGLE: usize = 2;
 
 /// A cycle, or the Hopf point at which a branch starts or ends.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CyclePointResult {
     /// Number of the branch, from 1.
     pub branch: u64,
-    /// Value of the parameter.
-    pub value: Number,
-    /// Period in s.
-    pub period: f64,
     /// Largest caster angle in rad.
     pub psi_max: f64,
     /// Smallest caster angle in rad.
     pub psi_min: f64,
-    /// Floquet multipliers, the largest modulus first.
-    pub multipliers: Vec<[f64; 2]>,
-    /// How far the computed trivial multiplier is from 1.
-    pub trivial_multiplier_error: f64,
-    /// Nothing where a multiplier is on the unit circle, or too near to say.
-    pub stable: Option<bool>,
-    /// Error estimate relative to the amplitudes.
-    pub error_estimate: f64,
-    /// Of special points and of values asked for.
-    pub label: Option<String>,
-    /// Largest value of every state.
-    pub max: NamedNumbers,
-    /// Smallest value of every state.
-    pub min: NamedNumbers,
-    /// The cycle itself, where a computation can start from it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub orbit: Option<Orbit>,
-    /// The start of the branch that leaves there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub branching: Option<Branching>,
+    /// The cycle.
+    #[serde(flatten)]
+    pub cycle: CycleResult,
 }
 
 impl CyclePointResult {
     /// Whether a multiplier is on the unit circle by definition.
     pub fn is_bifurcation(&self) -> bool {
-        is_bifurcation(self.label.as_deref())
+        is_bifurcation(self.cycle.label.as_deref())
     }
 
     /// Whether the uniform motion bifurcates here.
     pub fn is_hopf_point(&self) -> bool {
-        self.label.as_deref().is_some_and(|label| kind(label) == SpecialKind::Hopf.label())
+        self.cycle.label.as_deref().is_some_and(|label| kind(label) == SpecialKind::Hopf.label())
     }
 }
 
-fn pairs(multipliers: impl IntoIterator<Item = Complex64>) -> Vec<[f64; 2]> {
-    multipliers.into_iter().map(|multiplier| [multiplier.re, multiplier.im]).collect()
-}
-
 /// A cycle of a branch.
-pub(super) fn at_cycle(branch: u64, cycle: &CyclePoint, label: Option<String>) -> CyclePointResult {
+pub(super) fn at_cycle(branch: u64, cycle: CyclePoint, label: Option<String>) -> CyclePointResult {
     CyclePointResult {
         branch,
-        value: Number(cycle.value),
-        period: cycle.period,
         psi_max: cycle.max[CASTER_ANGLE],
         psi_min: cycle.min[CASTER_ANGLE],
-        multipliers: pairs(cycle.multipliers.iter().copied()),
-        trivial_multiplier_error: cycle.trivial_multiplier_error,
-        stable: cycle.stable,
-        error_estimate: cycle.error_estimate,
-        orbit: label.as_ref().map(|_| cycle.orbit.clone()),
-        branching: cycle.branching.clone(),
-        label,
-        max: named_state(&cycle.max),
-        min: named_state(&cycle.min),
+        cycle: CycleResult::new(cycle, label, named_state),
     }
 }
 
@@ -94,47 +61,54 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
         eigenvalues.iter().map(|eigenvalue| (eigenvalue * period).exp()).collect();
     let nearest =
         multipliers.iter().map(|multiplier| (multiplier - 1.0).norm()).fold(f64::INFINITY, f64::min);
+    let coefficients = [("first_lyapunov", hopf.first_lyapunov), ("c1_real", hopf.detail.c1_real)];
+    let coefficients = coefficients.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     Ok(CyclePointResult {
         branch,
-        value: Number(hopf.value),
-        period,
         psi_max: hopf.state[CASTER_ANGLE],
         psi_min: hopf.state[CASTER_ANGLE],
-        multipliers: pairs(multipliers),
-        trivial_multiplier_error: nearest,
-        stable: None,
-        error_estimate: 0.0,
-        label: Some(label),
-        max: named_state(&hopf.state),
-        min: named_state(&hopf.state),
-        orbit: None,
-        branching: None,
+        cycle: CycleResult {
+            value: hopf.value,
+            period,
+            max: named_state(&hopf.state),
+            min: named_state(&hopf.state),
+            multipliers: pairs(&multipliers),
+            trivial_multiplier_error: nearest,
+            stable: None,
+            error_estimate: 0.0,
+            intervals: 0,
+            label: Some(label),
+            tests: NamedNumbers::default(),
+            normal_form: NamedNumbers(coefficients.collect()),
+            orbit: None,
+            branching: None,
+        },
     })
 }
 
 /// Its row in a table.
-pub(super) fn cells(point: &CyclePointResult) -> [Cell; 8] {
-    let modulus = |multiplier: &[f64; 2]| multiplier[0].hypot(multiplier[1]);
-    // All but the trivial one, which is the nearest to 1.
-    let distance = |multiplier: &[f64; 2]| (multiplier[0] - 1.0).hypot(multiplier[1]);
-    let trivial = (0..point.multipliers.len())
-        .min_by(|&a, &b| distance(&point.multipliers[a]).total_cmp(&distance(&point.multipliers[b])));
-    let others = point.multipliers.iter().enumerate().filter(|(index, _)| Some(*index) != trivial);
-    let largest = others.map(|(_, multiplier)| modulus(multiplier)).max_by(f64::total_cmp);
-    let stability = match point.stable {
-        Some(true) => "stable",
-        Some(false) => "unstable",
-        None if point.is_bifurcation() => "",
-        None => "undecided",
-    };
+pub(super) fn cells(point: &CyclePointResult) -> [Cell; 9] {
+    let cycle = &point.cycle;
+    // All but the trivial multiplier, which is the nearest to 1.
+    let multipliers: Vec<Complex64> = cycle
+        .multipliers
+        .iter()
+        .filter_map(|[real, imaginary]| Some(Complex64::new((*real)?, (*imaginary)?)))
+        .collect();
+    let distance = |index: usize| (multipliers[index] - 1.0).norm();
+    let trivial = (0..multipliers.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
+    let others = multipliers.iter().enumerate().filter(|(index, _)| Some(*index) != trivial);
+    let largest = others.map(|(_, multiplier)| multiplier.norm()).max_by(f64::total_cmp);
+    let remark = if point.is_hopf_point() { String::new() } else { cycle.remark() };
     [
-        point.label.clone().into(),
-        point.value.0.into(),
-        point.period.into(),
+        cycle.label.clone().into(),
+        cycle.value.into(),
+        cycle.period.into(),
         point.psi_max.into(),
         point.psi_min.into(),
         largest.into(),
-        Cell::Text(significant(point.error_estimate, 2)),
-        stability.into(),
+        Cell::Text(significant(cycle.error_estimate, 2)),
+        stability(cycle.stable, point.is_bifurcation()).into(),
+        remark.into(),
     ]
 }

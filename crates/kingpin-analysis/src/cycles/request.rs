@@ -1,22 +1,20 @@
 //! What branches of limit cycles are asked for by, and how they are followed.
 
-use super::followed::{FollowedBranch, from_hopf_points, same_value};
+use super::followed::{FollowedBranch, from_hopf_points};
 use super::result::CyclesResult;
-use crate::along::{along, as_followed};
+use crate::along::along;
 use crate::error::Error;
-use crate::hopf::search::search;
-use crate::parameters::wheel_of;
-use crate::start::LabelledPoint;
+use crate::hopf::search::{same_value, search};
+use crate::start::{LabelledPoint, What};
 use crate::wheel_request::WheelRequest;
-use arclength::cycle::{Branching, CycleStart, Orbit};
-use arclength_analysis::{Control, Interval, PointReference};
+use arclength::continuation::Settings;
+use arclength::cycle::{Branching, CyclePoint, CycleStart, Orbit};
+use arclength::equilibrium::equilibrium_settings;
+use arclength_analysis::{Control, Interval, Mesh, PointReference, Steps};
 use kingpin::branches::{Along, CycleOptions};
-use kingpin::{KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Wheel};
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
-
-/// Results that a computation of cycles can start from.
-const SCHEMAS: [&str; 2] = ["kingpin.hopf", "kingpin.cycles"];
 
 /// Limit cycles along a parameter, from the Hopf points of the interval or from a labelled point of an earlier result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +34,12 @@ pub struct CyclesRequest {
     /// there.
     #[serde(default)]
     pub stay: bool,
+    /// How steps are taken.
+    #[serde(flatten)]
+    pub steps: Steps,
+    /// How finely cycles are resolved.
+    #[serde(flatten)]
+    pub mesh: Mesh,
 }
 
 /// A request that makes sense, with what it starts from.
@@ -44,6 +48,7 @@ pub struct CyclesAnalysis {
     wheel: Wheel,
     along: Along,
     start: Start,
+    steps: Steps,
     options: CycleOptions,
 }
 
@@ -61,7 +66,15 @@ enum Start {
 impl CyclesRequest {
     /// A request for the paper's wheel with the default of everything else.
     pub fn new(along: Interval) -> Self {
-        Self { wheel: WheelRequest::default(), along, at: Vec::new(), from: None, stay: false }
+        Self {
+            wheel: WheelRequest::default(),
+            along,
+            at: Vec::new(),
+            from: None,
+            stay: false,
+            steps: Steps::default(),
+            mesh: Mesh::default(),
+        }
     }
 
     /// Reads the wheel or the labelled point and checks every field.
@@ -75,8 +88,12 @@ impl CyclesRequest {
             None => (self.wheel.read()?, Start::HopfPoints),
             Some(reference) => self.start(reference, along)?,
         };
-        let options = CycleOptions { at: self.at.clone(), ..CycleOptions::default() };
-        Ok(CyclesAnalysis { wheel, along, start, options })
+        let options = CycleOptions {
+            at: self.at.clone(),
+            resolution: self.mesh.resolution(),
+            settings: self.steps.settings(Settings::default()),
+        };
+        Ok(CyclesAnalysis { wheel, along, start, steps: self.steps, options })
     }
 
     /// What starts at a labelled point.
@@ -85,55 +102,38 @@ impl CyclesRequest {
             let given = file.display().to_string();
             return Err(Error::invalid(&["wheel"], given, "the labelled point has a wheel", "wheel or from"));
         }
-        let LabelledPoint { parameters, orbit, branching } = LabelledPoint::read(reference, &SCHEMAS)?;
-        let wheel = wheel_of(&parameters).map_err(|error| reference.failure(error.to_string()))?;
+        let LabelledPoint { wheel, what } = LabelledPoint::read(reference)?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
         if !along.contains(value) {
             let (start, end) = along.ends();
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
         }
-        let start = match orbit {
-            Some(orbit) => self.cycle(reference, along, &wheel, orbit, branching)?,
-            None => Start::HopfPoint { label: reference.label.clone() },
+        let start = match what {
+            What::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
+            What::Cycle { orbit, branching } => {
+                LabelledPoint::check_orbit(reference, &wheel, &orbit)?;
+                self.cycle(&reference.label, along, orbit, branching)
+            }
         };
         Ok((wheel, start))
     }
 
-    fn cycle(
-        &self,
-        reference: &PointReference,
-        along: Along,
-        wheel: &Wheel,
-        orbit: Orbit,
-        branching: Option<(Branching, String)>,
-    ) -> Result<Start, Error> {
-        let label = &reference.label;
-        let states = wheel.free_states();
-        if orbit.dimension != states.len() {
-            let problem = format!(
-                "the orbit of {label} has {} states, this wheel {} ({}): leave k_u as it is in the file",
-                orbit.dimension,
-                states.len(),
-                states.join(", ")
-            );
-            return Err(reference.failure(problem).into());
-        }
-        reference.check(&orbit, states.len())?;
+    /// What starts at a cycle: the branch that bifurcates there, or the one through it.
+    fn cycle(&self, label: &str, along: Along, orbit: Orbit, branching: Option<(Branching, Key)>) -> Start {
         // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
         let branching = branching
-            .filter(|(branching, key)| branching.doubled || *key == along.key().to_string())
+            .filter(|(branching, key)| branching.doubled || *key == along.key())
             .and_then(|(branching, _)| if self.stay { branching.known_branch() } else { Some(branching) });
         let Some(branching) = branching else {
-            return Ok(Start::Cycle { origin: label.clone(), start: CycleStart::Orbit(orbit) });
+            return Start::Cycle { origin: label.to_owned(), start: CycleStart::Orbit(orbit) };
         };
-        branching.check(states.len()).map_err(|error| reference.failure(error.to_string()))?;
         let how = match (branching.doubled, self.stay) {
             (true, _) => "the doubled cycles",
             (false, true) => "the branch on which it was found",
             (false, false) => "the other branch through it",
         };
-        Ok(Start::Cycle { origin: format!("{label}, {how}"), start: CycleStart::Branching(branching) })
+        Start::Cycle { origin: format!("{label}, {how}"), start: CycleStart::Branching(branching) }
     }
 }
 
@@ -145,10 +145,11 @@ impl CyclesAnalysis {
     /// [`Error::NothingFound`] where there is no Hopf point to start from; [`Error::Wheel`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let along = self.along;
+        let settings = self.steps.settings(equilibrium_settings());
         let mut found = 0;
-        let mut observer = |value: f64, period: f64| {
+        let mut observer = |point: &CyclePoint| {
             found += 1;
-            let (value, period) = (readable(value), readable(period));
+            let (value, period) = (readable(point.value), readable(point.period));
             control.at(&format!("{found} cycles, {} = {value}, period {period} s", along.key()));
             control.flow()
         };
@@ -159,7 +160,7 @@ impl CyclesAnalysis {
                 vec![FollowedBranch { origin, hopf: None, reached: None, cycles }]
             }
             Start::HopfPoints => {
-                let points = search(&self.wheel, along)?.points;
+                let points = search(&self.wheel, along, settings, control)?.hopf_points;
                 from_hopf_points(&points, None, along, &self.options, &mut observer)?
             }
             Start::HopfPoint { label } => {
@@ -167,7 +168,7 @@ impl CyclesAnalysis {
                 // a search that starts at the point itself would not see the growth rate change its sign.
                 let value = self.wheel.get(along.key());
                 let wheel = self.wheel.with(along.key(), along.ends().0)?;
-                let points = search(&wheel, along)?.points;
+                let points = search(&wheel, along, settings, control)?.hopf_points;
                 let place = points.iter().position(|point| same_value(point.value, value));
                 let only = place.ok_or_else(|| {
                     Error::NothingFound(format!(
@@ -179,7 +180,8 @@ impl CyclesAnalysis {
                 from_hopf_points(&points, Some(only), along, &self.options, &mut observer)?
             }
         };
-        CyclesResult::new(self.wheel, along, &branches, self.missed(&branches))
+        let missed = self.missed(&branches);
+        CyclesResult::new(self.wheel, along, branches, missed)
     }
 
     /// The values asked for at which there is no cycle.
@@ -187,8 +189,6 @@ impl CyclesAnalysis {
         let on_branches = |value: f64| {
             branches.iter().flat_map(|branch| &branch.cycles.points).any(|cycle| cycle.value == value)
         };
-        // A radius that was asked for has gone through 1/r and back.
-        let followed = |value: f64| as_followed(&self.along, as_followed(&self.along, value));
-        self.options.at.iter().copied().filter(|value| !on_branches(followed(*value))).collect()
+        self.options.at.iter().copied().filter(|value| !on_branches(self.along.as_found(*value))).collect()
     }
 }

@@ -3,125 +3,187 @@
 use super::followed::FollowedBranch;
 use super::picture;
 use super::point::{CyclePointResult, at_cycle, at_hopf, cells};
-use crate::along::{as_followed, varying};
+use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
-use crate::parameters::parameters_of;
-use arclength::continuation::Stop;
-use arclength_analysis::VaryingParameter;
-use arclength_analysis::labels::Labels;
+use crate::parameters::{parameters_of, wheel_of};
+use arclength::branch::LabelCounter;
+use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
-use kingpin::Wheel;
+use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::Along;
 use kingpin::rolling::STATE_NAMES;
+use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
-use serde::Serialize;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
 /// Where a branch starts and why it ends.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct BranchResult {
     /// Its number, from 1.
     pub branch: u64,
     /// The label of what it starts from.
     pub from: String,
-    /// At the first point and at the last one.
+    /// Why it ends, at the first point and at the last one.
     pub ends: [String; 2],
+    /// The last good point in either direction.
+    #[serde(default)]
+    pub last: [NamedNumbers; 2],
+    /// What to try at either end, where anything is left to do.
+    #[serde(default)]
+    pub remedies: [Option<String>; 2],
+    /// What was detected but not located.
+    #[serde(default)]
+    pub unlocated: Vec<UnlocatedResult>,
+}
+
+impl BranchResult {
+    fn ends(&self) -> [End; 2] {
+        [0, 1].map(|index| End {
+            cause: self.ends[index].clone(),
+            last: self.last[index].clone(),
+            remedy: self.remedies[index].clone(),
+        })
+    }
 }
 
 /// Branches of limit cycles along a parameter.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "StoredCycles")]
 pub struct CyclesResult {
+    /// The wheel; its value of the parameter that varies is anywhere.
     #[serde(skip)]
-    wheel: Wheel,
+    pub wheel: Wheel,
+    /// The parameter and its interval.
     #[serde(skip)]
-    interval: Along,
+    pub interval: Along,
     /// The parameter that varies.
     pub along: VaryingParameter,
     /// The branches.
     pub branches: Vec<BranchResult>,
     /// Values that were asked for at which there is no cycle.
     #[serde(skip)]
-    missed: Vec<f64>,
+    pub missed: Vec<f64>,
     /// Their cycles, branch by branch.
     pub points: Vec<CyclePointResult>,
 }
 
+/// The result as it is read back.
+#[derive(Deserialize)]
+struct StoredCycles {
+    parameters: NamedNumbers,
+    along: VaryingParameter,
+    branches: Vec<BranchResult>,
+    points: Vec<CyclePointResult>,
+}
+
+impl TryFrom<StoredCycles> for CyclesResult {
+    type Error = KingpinError;
+
+    fn try_from(stored: StoredCycles) -> Result<Self, KingpinError> {
+        let VaryingParameter { key, start, end, .. } = &stored.along;
+        Ok(Self {
+            wheel: wheel_of(&stored.parameters.0)?,
+            interval: along(&Interval::new(key, *start, *end))?,
+            along: stored.along,
+            branches: stored.branches,
+            missed: Vec::new(),
+            points: stored.points,
+        })
+    }
+}
+
 impl CyclesResult {
-    /// The result of branches in their order.
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "kingpin.cycles";
+
+    /// The result of branches in their order, and the values that were asked for at which there is no cycle.
     ///
     /// # Errors
     /// [`Error::Wheel`] where a Hopf point has no uniform motion.
     pub(super) fn new(
         wheel: Wheel,
         interval: Along,
-        branches: &[FollowedBranch],
+        followed: Vec<FollowedBranch>,
         missed: Vec<f64>,
     ) -> Result<Self, Error> {
-        let mut labels = Labels::default();
-        let mut points = Vec::new();
-        let mut ends = Vec::new();
-        for (number, branch) in (1..).zip(branches) {
+        let along = varying(&interval);
+        let mut labels = LabelCounter::default();
+        let mut all = Vec::new();
+        let mut branches = Vec::new();
+        for (number, branch) in (1..).zip(followed) {
+            let mut points = Vec::new();
             if let Some(hopf) = &branch.hopf {
                 points.push(at_hopf(number, hopf, branch.origin.clone())?);
             }
-            for cycle in &branch.cycles.points {
-                points.push(at_cycle(number, cycle, labels.of(cycle)));
+            for cycle in branch.cycles.points {
+                // Numbered along the whole result.
+                let label = cycle.label.map(|label| labels.next(label.kind).to_string());
+                points.push(at_cycle(number, cycle, label));
             }
             if let Some((label, hopf)) = &branch.reached {
                 points.push(at_hopf(number, hopf, label.clone())?);
             }
-            let (first, last) = &branch.cycles.stops;
-            let first = match (first, &branch.hopf) {
-                (Some(stop), _) => ending(&interval, stop),
-                (None, Some(hopf)) => {
-                    format!("starts at the {} Hopf point {}", criticality(hopf.criticality), branch.origin)
-                }
-                (None, None) => format!("starts at {}", branch.origin),
+            let last = |point: Option<&CyclePointResult>| {
+                let values = point.map(|CyclePointResult { cycle, .. }| {
+                    [(along.key.clone(), cycle.value), ("period".to_owned(), cycle.period)]
+                });
+                NamedNumbers(values.into_iter().flatten().collect())
             };
-            ends.push(BranchResult {
+            let [first, second] = &branch.cycles.stops;
+            let varying = std::slice::from_ref(&along);
+            let first = match (first, &branch.hopf) {
+                (Some(stop), _) => End::of(stop, varying, last(points.first())),
+                (None, Some(hopf)) => End {
+                    cause: format!(
+                        "starts at the {} Hopf point {}",
+                        criticality(hopf.criticality),
+                        branch.origin
+                    ),
+                    ..End::start(last(points.first()))
+                },
+                (None, None) => {
+                    End { cause: format!("starts at {}", branch.origin), ..End::start(last(points.first())) }
+                }
+            };
+            let ends = [first, End::of_either(second.as_ref(), varying, last(points.last()))];
+            branches.push(BranchResult {
                 branch: number,
-                from: branch.origin.clone(),
-                ends: [first, ending(&interval, last)],
+                from: branch.origin,
+                ends: [0, 1].map(|index| ends[index].cause.clone()),
+                remedies: [0, 1].map(|index| ends[index].remedy.clone()),
+                last: ends.map(|end| end.last),
+                unlocated: branch.cycles.unlocated.iter().map(UnlocatedResult::from).collect(),
             });
+            all.extend(points);
         }
-        Ok(Self { wheel, interval, along: varying(&interval), branches: ends, points, missed })
+        Ok(Self { wheel, interval, along, branches, missed, points: all })
     }
 
-    /// What is worth knowing about it.
+    /// What was detected but not located, and what was asked for and not found.
     pub fn warnings(&self) -> Vec<String> {
-        let key = self.interval.key();
-        let missed = self.missed.iter();
-        missed
-            .map(|value| format!("no cycle at {key} = {}: no branch passes there", readable(*value)))
-            .collect()
+        let unlocated: Vec<UnlocatedResult> =
+            self.branches.iter().flat_map(|branch| branch.unlocated.iter().cloned()).collect();
+        let missed = |value: &f64| format!("no cycle at {}: no branch passes there", self.missing(*value));
+        let missed = self.missed.iter().map(missed);
+        missed.chain(warnings(&unlocated, &self.along)).collect()
     }
-}
 
-/// Why a branch ends, in values of the parameter.
-fn ending(along: &Along, stop: &Stop) -> String {
-    let at = |value: f64| description::quantity(along.key(), as_followed(along, value));
-    match stop {
-        Stop::RangeEnd { value, .. } => format!("reached the end of the interval, {}", at(*value)),
-        Stop::HopfPoint { parameter, frequency, .. } => format!(
-            "the cycles shrink to a Hopf point at {} with angular frequency {} rad/s",
-            at(*parameter),
-            readable(*frequency)
-        ),
-        Stop::PeriodUnbounded { period, parameter } => format!(
-            "the period grows without bound ({} s at {}): a homoclinic or heteroclinic orbit is near",
-            readable(*period),
-            at(*parameter)
-        ),
-        other => other.to_string(),
+    fn missing(&self, value: f64) -> String {
+        format!("{} = {}", self.along.key, readable(value))
+    }
+
+    fn points_of(&self, branch: &BranchResult) -> Vec<&CyclePointResult> {
+        self.points.iter().filter(|point| point.branch == branch.branch).collect()
     }
 }
 
 impl Report for CyclesResult {
     fn schema(&self) -> Schema {
-        Schema::first("kingpin.cycles")
+        Schema::first(Self::SCHEMA)
     }
 
     fn parameters(&self) -> NamedNumbers {
@@ -129,27 +191,26 @@ impl Report for CyclesResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let key = self.interval.key();
-        writeln!(out, "limit cycles at {}", description::of(&self.wheel, &[key]))?;
+        writeln!(out, "limit cycles at {}", description::of(&self.wheel, &[self.interval.key()]))?;
         for branch in &self.branches {
-            let count = self.points.iter().filter(|point| point.branch == branch.branch).count();
-            writeln!(out, "\nbranch {} from {}, {count} points", branch.branch, branch.from)?;
-            writeln!(out, "  first: {}\n  last:  {}\n", branch.ends[0], branch.ends[1])?;
+            let points = self.points_of(branch);
+            writeln!(out, "\nbranch {} from {}, {} points", branch.branch, branch.from, points.len())?;
+            let [first, last] = branch.ends();
+            writeln!(out, "  first: {}\n  last:  {}\n", first.text(), last.text())?;
             let mut table = Table::new([
-                "label".to_owned(),
-                format!("{key} ({})", key.unit()),
-                "period (s)".to_owned(),
-                "psi_max (rad)".to_owned(),
-                "psi_min (rad)".to_owned(),
-                "largest multiplier".to_owned(),
-                "error".to_owned(),
-                String::new(),
+                "label",
+                &self.along.heading(),
+                "period (s)",
+                "psi_max (rad)",
+                "psi_min (rad)",
+                "largest multiplier",
+                "error",
+                "",
+                "",
             ]);
-            let points: Vec<&CyclePointResult> =
-                self.points.iter().filter(|point| point.branch == branch.branch).collect();
             let last = points.len().saturating_sub(1);
             for (index, point) in points.iter().enumerate() {
-                if point.label.is_some() || index == 0 || index == last {
+                if point.cycle.label.is_some() || index == 0 || index == last {
                     table.row(cells(point));
                 }
             }
@@ -159,29 +220,39 @@ impl Report for CyclesResult {
     }
 
     fn columns(&self) -> Columns {
-        let points = || self.points.iter();
+        let cycles = || self.points.iter().map(|point| &point.cycle);
         let mut columns = Columns::new()
-            .counts("branch", points().map(|point| point.branch))
-            .texts("label", points().map(|point| point.label.clone()))
-            .numbers("value", points().map(|point| point.value.0))
-            .numbers("period", points().map(|point| point.period))
-            .numbers("psi_max", points().map(|point| point.psi_max))
-            .numbers("psi_min", points().map(|point| point.psi_min))
-            .booleans("stable", points().map(|point| point.stable))
-            .numbers("error_estimate", points().map(|point| point.error_estimate))
-            .numbers("trivial_multiplier_error", points().map(|point| point.trivial_multiplier_error));
-        for number in 0..STATE_NAMES.len() {
-            for (part, name) in ["real", "imaginary"].into_iter().enumerate() {
-                columns = columns.optional_numbers(
-                    format!("multiplier_{}_{name}", number + 1),
-                    points().map(|point| point.multipliers.get(number).map(|multiplier| multiplier[part])),
-                );
-            }
+            .counts("branch", self.points.iter().map(|point| point.branch))
+            .texts("label", cycles().map(|cycle| cycle.label.clone()))
+            .numbers("value", cycles().map(|cycle| cycle.value))
+            .numbers("period", cycles().map(|cycle| cycle.period))
+            .numbers("psi_max", self.points.iter().map(|point| point.psi_max))
+            .numbers("psi_min", self.points.iter().map(|point| point.psi_min))
+            .booleans("stable", cycles().map(|cycle| cycle.stable))
+            .numbers("error_estimate", cycles().map(|cycle| cycle.error_estimate))
+            .numbers("trivial_multiplier_error", cycles().map(|cycle| cycle.trivial_multiplier_error))
+            .complex_numbers("multiplier", STATE_NAMES.len(), cycles().map(|cycle| &cycle.multipliers))
+            .counts("intervals", cycles().map(|cycle| cycle.intervals as u64));
+        for name in STATE_NAMES {
+            columns = columns
+                .optional_numbers(format!("max_{name}"), cycles().map(move |cycle| cycle.max.named(name)))
+                .optional_numbers(format!("min_{name}"), cycles().map(move |cycle| cycle.min.named(name)));
         }
-        columns
+        columns.named_numbers("test", cycles().map(|cycle| &cycle.tests))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
         Ok(Some(picture::bifurcation_diagram(&self.wheel, &self.interval, &self.points)))
+    }
+
+    fn story(&self) -> Option<Story> {
+        let mut story = Story::new();
+        for branch in &self.branches {
+            let cycles: Vec<&CycleResult> =
+                self.points_of(branch).into_iter().map(|point| &point.cycle).collect();
+            story.tell("branch", format!("{} from {}", branch.branch, branch.from));
+            tell(&mut story, &self.along, &branch.ends(), &branch.unlocated, &cycles);
+        }
+        Some(story)
     }
 }

@@ -5,4 +5,4 @@ mod result;
 pub(crate) mod search;
 
 pub use request::{HopfAnalysis, HopfRequest};
-pub use result::{HopfPointResult, HopfResult};
+pub use result::{BracketedResult, HopfPointResult, HopfResult, MotionResult};

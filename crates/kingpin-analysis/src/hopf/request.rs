@@ -5,7 +5,8 @@ use super::search::search;
 use crate::along::along;
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
-use arclength_analysis::Interval;
+use arclength::equilibrium::equilibrium_settings;
+use arclength_analysis::{Control, Interval, Steps};
 use kingpin::Wheel;
 use kingpin::branches::Along;
 use serde::{Deserialize, Serialize};
@@ -18,6 +19,9 @@ pub struct HopfRequest {
     pub wheel: WheelRequest,
     /// Parameter and its interval; r may reach infinity.
     pub along: Interval,
+    /// How steps are taken.
+    #[serde(flatten)]
+    pub steps: Steps,
 }
 
 /// A request that makes sense, with its wheel.
@@ -25,12 +29,13 @@ pub struct HopfRequest {
 pub struct HopfAnalysis {
     wheel: Wheel,
     along: Along,
+    steps: Steps,
 }
 
 impl HopfRequest {
     /// A request for the paper's wheel.
     pub fn new(along: Interval) -> Self {
-        Self { wheel: WheelRequest::default(), along }
+        Self { wheel: WheelRequest::default(), along, steps: Steps::default() }
     }
 
     /// Reads the wheel and checks every field.
@@ -38,17 +43,18 @@ impl HopfRequest {
     /// # Errors
     /// What is wrong with the wheel or the interval.
     pub fn validate(&self) -> Result<HopfAnalysis, Error> {
-        Ok(HopfAnalysis { wheel: self.wheel.read()?, along: along(&self.along)? })
+        Ok(HopfAnalysis { wheel: self.wheel.read()?, along: along(&self.along)?, steps: self.steps })
     }
 }
 
 impl HopfAnalysis {
-    /// Follows the uniform motion and finds its Hopf points.
+    /// Follows the uniform motion and finds its Hopf points. Where the control stops it the result is what there is up to there.
     ///
     /// # Errors
-    /// [`Error::NothingFound`] where there is none, and those of the search.
-    pub fn run(&self) -> Result<HopfResult, Error> {
-        let search = search(&self.wheel, self.along)?;
-        Ok(HopfResult::new(self.wheel, self.along, &search))
+    /// [`Error::NothingFound`] where there is none, [`Error::Stopped`] where there is none yet, and those of the search.
+    pub fn run(&self, control: &Control<'_>) -> Result<HopfResult, Error> {
+        let settings = self.steps.settings(equilibrium_settings());
+        let branch = search(&self.wheel, self.along, settings, control)?;
+        Ok(HopfResult::new(self.wheel, self.along, &branch))
     }
 }

@@ -1,69 +1,245 @@
 //! Hopf points of the uniform motion as a result.
 
 use super::search::label;
-use crate::along::varying;
+use crate::along::{along, varying};
 use crate::description;
-use crate::parameters::parameters_of;
+use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
-use arclength_analysis::VaryingParameter;
-use arclength_analysis::normal_form::criticality;
-use kingpin::Wheel;
-use kingpin::branches::{Along, HopfPoint, HopfSearch};
+use arclength::branch::Criticality;
+use arclength::equilibrium::{EquilibriumPoint, SpecialPoint};
+use arclength_analysis::branch::{pairs, tests};
+use arclength_analysis::course::{self, Place};
+use arclength_analysis::normal_form::{criticality, of_equilibrium};
+use arclength_analysis::{End, Interval, VaryingParameter};
+use kingpin::branches::{Along, HopfPoint, MotionBranch};
 use kingpin::rolling::STATE_NAMES;
+use kingpin::{KingpinError, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Number, Report, Schema, Table};
-use serde::Serialize;
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
 /// A Hopf point in a result.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct HopfPointResult {
-    value: Number,
-    frequency: f64,
-    first_lyapunov: Option<f64>,
-    criticality: &'static str,
-    state: NamedNumbers,
-    label: String,
+    /// Value of the parameter.
+    #[serde(with = "kingpin_report::number")]
+    pub value: f64,
+    /// Angular frequency in rad/s.
+    pub frequency: f64,
+    /// First Lyapunov coefficient in Kuznetsov's scaling.
+    pub first_lyapunov: Option<f64>,
+    /// Sense of the bifurcation.
+    pub criticality: Criticality,
+    /// The uniform motion.
+    pub state: NamedNumbers,
+    /// HB1, HB2, .. by ascending value.
+    pub label: String,
+    /// The first Lyapunov coefficient times the frequency, MatCont's scaling.
+    #[serde(default)]
+    pub c1_real: Option<f64>,
+    /// Error estimate of the value.
+    #[serde(default)]
+    pub location_error: Option<f64>,
+    /// Eigenvalues by descending real part.
+    #[serde(default)]
+    pub eigenvalues: Vec<[Option<f64>; 2]>,
+    /// Test functions by the label of the point at which each changes its sign.
+    #[serde(default)]
+    pub tests: NamedNumbers,
+}
+
+/// A uniform motion that was computed on the way.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MotionResult {
+    /// Value of the parameter.
+    #[serde(with = "kingpin_report::number")]
+    pub value: f64,
+    /// The uniform motion.
+    pub state: NamedNumbers,
+    /// Eigenvalues by descending real part.
+    pub eigenvalues: Vec<[Option<f64>; 2]>,
+    /// Nothing where that is not decided.
+    pub stable: Option<bool>,
+    /// Of special points.
+    pub label: Option<String>,
+    /// Test functions by the label of the point at which each changes its sign.
+    pub tests: NamedNumbers,
+    /// What the normal form of a special point says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remark: Option<String>,
+}
+
+/// A Hopf point that was detected but only bracketed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BracketedResult {
+    /// Value of the parameter.
+    #[serde(with = "kingpin_report::number")]
+    pub value: f64,
+    /// Half of the length of the bracket.
+    #[serde(with = "kingpin_report::number")]
+    pub location_error: f64,
 }
 
 /// Hopf points along a parameter.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "StoredHopfPoints")]
 pub struct HopfResult {
+    /// The wheel; its value of the parameter that varies is anywhere.
     #[serde(skip)]
-    wheel: Wheel,
+    pub wheel: Wheel,
+    /// The parameter and its interval.
     #[serde(skip)]
-    interval: Along,
+    pub interval: Along,
+    /// The parameter that varies.
+    pub along: VaryingParameter,
+    /// Part of the interval in which the uniform motion was followed.
+    #[serde(with = "kingpin_report::number")]
+    pub searched: [f64; 2],
+    /// Whether the uniform motion is stable at the ends of that part.
+    pub stable_at_ends: [Option<bool>; 2],
+    /// Why it was followed no further, below and above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ends: Option<[End; 2]>,
+    /// What was detected but only bracketed.
+    pub unlocated: Vec<BracketedResult>,
+    /// The Hopf points by ascending value.
+    pub points: Vec<HopfPointResult>,
+    /// The uniform motions that were computed on the way.
+    pub motions: Vec<MotionResult>,
+}
+
+/// The result as it is read back.
+#[derive(Deserialize)]
+struct StoredHopfPoints {
+    parameters: NamedNumbers,
     along: VaryingParameter,
-    searched: [Number; 2],
+    #[serde(with = "kingpin_report::number")]
+    searched: [f64; 2],
     stable_at_ends: [Option<bool>; 2],
+    #[serde(default)]
+    ends: Option<[End; 2]>,
+    #[serde(default)]
+    unlocated: Vec<BracketedResult>,
     points: Vec<HopfPointResult>,
+    #[serde(default)]
+    motions: Vec<MotionResult>,
+}
+
+impl TryFrom<StoredHopfPoints> for HopfResult {
+    type Error = KingpinError;
+
+    fn try_from(stored: StoredHopfPoints) -> Result<Self, KingpinError> {
+        let VaryingParameter { key, start, end, .. } = &stored.along;
+        Ok(Self {
+            wheel: wheel_of(&stored.parameters.0)?,
+            interval: along(&Interval::new(key, *start, *end))?,
+            along: stored.along,
+            searched: stored.searched,
+            stable_at_ends: stored.stable_at_ends,
+            ends: stored.ends,
+            unlocated: stored.unlocated,
+            points: stored.points,
+            motions: stored.motions,
+        })
+    }
 }
 
 impl HopfResult {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "kingpin.hopf";
+
     /// The result of a search.
-    pub(super) fn new(wheel: Wheel, interval: Along, search: &HopfSearch) -> Self {
-        let point = |(index, point): (usize, &HopfPoint)| HopfPointResult {
-            value: Number(point.value),
-            frequency: point.frequency,
-            first_lyapunov: point.first_lyapunov,
-            criticality: criticality(point.criticality),
-            state: named_state(&point.state),
-            label: label(index),
+    pub(super) fn new(wheel: Wheel, interval: Along, branch: &MotionBranch) -> Self {
+        let along = varying(&interval);
+        let motions: Vec<MotionResult> = branch.motions.iter().map(MotionResult::new).collect();
+        let last = |motion: Option<&MotionResult>| {
+            let value = motion.map(|motion| (along.key.clone(), motion.value));
+            let state = motion.iter().flat_map(|motion| motion.state.0.iter().cloned());
+            NamedNumbers(value.into_iter().chain(state).collect())
+        };
+        let ends = [
+            End::of_either(branch.stops[0].as_ref(), std::slice::from_ref(&along), last(motions.first())),
+            End::of_either(branch.stops[1].as_ref(), std::slice::from_ref(&along), last(motions.last())),
+        ];
+        let end =
+            |motion: Option<&MotionResult>| motion.map_or((f64::NAN, None), |end| (end.value, end.stable));
+        let [low, high] = [end(motions.first()), end(motions.last())];
+        let bracketed = |motion: &EquilibriumPoint| match motion.special.as_deref() {
+            Some(SpecialPoint::Degenerate { location_error, .. }) => {
+                Some(BracketedResult { value: motion.value, location_error: *location_error })
+            }
+            _ => None,
         };
         Self {
             wheel,
             interval,
-            along: varying(&interval),
-            searched: [search.searched.0, search.searched.1].map(Number),
-            stable_at_ends: search.stable_at_ends.into(),
-            points: search.points.iter().enumerate().map(point).collect(),
+            searched: [low.0, high.0],
+            stable_at_ends: [low.1, high.1],
+            ends: Some(ends),
+            unlocated: branch.motions.iter().filter_map(bracketed).collect(),
+            points: (0..)
+                .zip(&branch.hopf_points)
+                .map(|(index, point)| hopf_point(index, point, branch))
+                .collect(),
+            motions,
+            along,
+        }
+    }
+
+    /// What was detected but not located.
+    pub fn warnings(&self) -> Vec<String> {
+        self.unlocated.iter().map(|point| self.bracketed(point)).collect()
+    }
+
+    fn bracketed(&self, point: &BracketedResult) -> String {
+        format!(
+            "a point at {} is only bracketed, to {}: its defining system is singular there",
+            self.along.at(point.value),
+            readable(point.location_error)
+        )
+    }
+}
+
+fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPointResult {
+    let motion = branch.motions.iter().find(|motion| {
+        motion.value == point.value && matches!(motion.special.as_deref(), Some(SpecialPoint::Hopf(_)))
+    });
+    HopfPointResult {
+        value: point.value,
+        frequency: point.frequency,
+        first_lyapunov: point.first_lyapunov,
+        criticality: point.criticality,
+        state: named_state(&point.state),
+        label: label(index),
+        c1_real: point.detail.c1_real,
+        location_error: Some(point.location_error).filter(|error| error.is_finite()),
+        eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
+        tests: motion.map(named_tests).unwrap_or_default(),
+    }
+}
+
+fn named_tests(motion: &EquilibriumPoint) -> NamedNumbers {
+    tests(motion.tests.iter().map(|(name, value)| (name.as_ref(), *value)))
+}
+
+impl MotionResult {
+    fn new(motion: &EquilibriumPoint) -> Self {
+        Self {
+            value: motion.value,
+            state: named_state(&motion.state),
+            eigenvalues: pairs(&motion.eigenvalues),
+            stable: motion.stability.is_stable(),
+            label: motion.label.map(|label| label.to_string()),
+            tests: named_tests(motion),
+            remark: motion.special.as_deref().map(of_equilibrium),
         }
     }
 }
 
 impl Report for HopfResult {
     fn schema(&self) -> Schema {
-        Schema::first("kingpin.hopf")
+        Schema::first(Self::SCHEMA)
     }
 
     fn parameters(&self) -> NamedNumbers {
@@ -72,12 +248,12 @@ impl Report for HopfResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let key = self.interval.key();
-        let [low, high] = self.searched.map(|Number(value)| readable(value));
+        let [low, high] = self.searched.map(readable);
         writeln!(out, "uniform motion at {}", description::of(&self.wheel, &[key]))?;
         writeln!(out, "Hopf points for {key} from {low} to {high} {}\n", key.unit())?;
         let mut table = Table::new([
             "label".to_owned(),
-            format!("{key} ({})", key.unit()),
+            self.along.heading(),
             "frequency (rad/s)".to_owned(),
             "first Lyapunov coefficient".to_owned(),
             String::new(),
@@ -85,10 +261,10 @@ impl Report for HopfResult {
         for point in &self.points {
             table.row([
                 point.label.as_str().into(),
-                point.value.0.into(),
+                point.value.into(),
                 point.frequency.into(),
                 point.first_lyapunov.into(),
-                point.criticality.into(),
+                criticality(point.criticality).into(),
             ]);
         }
         table.write(out)
@@ -98,12 +274,52 @@ impl Report for HopfResult {
         let points = || self.points.iter();
         let columns = Columns::new()
             .texts("label", points().map(|point| Some(point.label.clone())))
-            .numbers("value", points().map(|point| point.value.0))
+            .numbers("value", points().map(|point| point.value))
             .numbers("frequency", points().map(|point| point.frequency))
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov))
-            .texts("criticality", points().map(|point| Some(point.criticality.to_owned())));
-        STATE_NAMES.into_iter().enumerate().fold(columns, |columns, (index, name)| {
+            .texts("criticality", points().map(|point| Some(criticality(point.criticality).to_owned())));
+        let columns = STATE_NAMES.into_iter().enumerate().fold(columns, |columns, (index, name)| {
             columns.optional_numbers(name, points().map(move |point| point.state.get(index)))
-        })
+        });
+        columns
+            .optional_numbers("c1_real", points().map(|point| point.c1_real))
+            .optional_numbers("location_error", points().map(|point| point.location_error))
+            .complex_numbers("eigenvalue", STATE_NAMES.len(), points().map(|point| &point.eigenvalues))
+            .named_numbers("test", points().map(|point| &point.tests))
+    }
+
+    fn story(&self) -> Option<Story> {
+        let mut story = Story::new();
+        story.tell(
+            "start",
+            format!("the uniform motion at {}", description::of(&self.wheel, &[self.interval.key()])),
+        );
+        if let Some(ends) = &self.ends {
+            course::tell_ends(&mut story, ends);
+        }
+        let place = |motion: &MotionResult| {
+            let hopf = self.points.iter().find(|point| point.value == motion.value);
+            (motion.clone(), hopf.map(|point| point.label.clone()).or(motion.label.clone()))
+        };
+        let motions: Vec<(MotionResult, Option<String>)> = self.motions.iter().map(place).collect();
+        let places: Vec<Place<'_>> = motions
+            .iter()
+            .map(|(motion, label)| Place {
+                value: motion.value,
+                stable: motion.stable,
+                label: label.as_deref(),
+                remark: motion.remark.clone(),
+            })
+            .collect();
+        course::tell_way(&mut story, &self.along, &places);
+        self.warnings().into_iter().for_each(|text| story.tell("not located", text));
+        let largest = self.points.iter().filter_map(|point| point.location_error).fold(0.0, f64::max);
+        if largest > 0.0 {
+            story.tell(
+                "errors",
+                format!("Hopf points are located to {largest:.1e} or better in {}", self.along.key),
+            );
+        }
+        Some(story)
     }
 }

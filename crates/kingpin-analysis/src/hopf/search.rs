@@ -1,26 +1,49 @@
 //! The search for Hopf points, which must find one.
 
 use crate::description;
-use crate::error::Error;
-use kingpin::branches::{Along, HopfSearch};
+use crate::error::{Error, unless_stopped};
+use arclength::continuation::Settings;
+use arclength::equilibrium::EquilibriumPoint;
+use arclength_analysis::Control;
+use kingpin::branches::{Along, MotionBranch};
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
+
+/// Relative distance of parameter values within which two Hopf points are the same.
+const SAME_HOPF_POINT: f64 = 1e-6;
 
 /// The Hopf points of the interval, of which there must be one.
 ///
 /// # Errors
 /// [`Error::NothingFound`] with the stability at both ends, and those of the search.
-pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Error> {
-    let search = wheel.hopf_points(along)?;
-    if !search.points.is_empty() {
-        return Ok(search);
+pub fn search(
+    wheel: &Wheel,
+    along: Along,
+    settings: Settings,
+    control: &Control<'_>,
+) -> Result<MotionBranch, Error> {
+    let branch = wheel.motion_branch(along, settings, |value| {
+        control.at(&format!("uniform motions, {} = {}", along.key(), readable(value)));
+        control.flow()
+    })?;
+    if !branch.hopf_points.is_empty() {
+        return Ok(branch);
     }
+    unless_stopped(control)?;
+    Err(Error::NothingFound(nothing_found(wheel, along, &branch)))
+}
+
+/// That there is no Hopf point, with the stability at both ends and what to try.
+fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
+    let end = |motion: Option<&EquilibriumPoint>| {
+        motion.map_or((f64::NAN, None), |motion| (motion.value, motion.stability.is_stable()))
+    };
+    let [(low, low_stable), (high, high_stable)] = [end(branch.motions.first()), end(branch.motions.last())];
     let stability = |stable: Option<bool>| match stable {
         Some(true) => "stable",
         Some(false) => "unstable",
         None => "neither clearly stable nor clearly unstable",
     };
-    let (low, high) = search.searched;
     let (start, end) = along.ends();
     let mut message = format!(
         "no Hopf point for {} from {} to {} at {}: the uniform motion is {} at {} and {} at {}",
@@ -28,27 +51,33 @@ pub fn search(wheel: &Wheel, along: Along) -> Result<HopfSearch, Error> {
         readable(start),
         readable(end),
         description::of(wheel, &[along.key()]),
-        stability(search.stable_at_ends.0),
+        stability(low_stable),
         description::quantity(along.key(), low),
-        stability(search.stable_at_ends.1),
+        stability(high_stable),
         description::quantity(along.key(), high),
     );
-    for (reached, wanted, stop) in [(low, start, &search.stops.0), (high, end, &search.stops.1)] {
+    for (reached, wanted, stop) in [(low, start, &branch.stops[0]), (high, end, &branch.stops[1])] {
         if reached != wanted {
-            message += &format!("; beyond {} it could not be followed ({stop})", readable(reached));
+            let why = stop.as_ref().map_or_else(String::new, |stop| format!(" ({stop})"));
+            message += &format!("; beyond {} it could not be followed{why}", readable(reached));
         }
     }
     let straight = wheel.get(Key::TurningRadius).is_infinite() && along.key() != Key::TurningRadius;
     if straight && wheel.get(Key::CU) == 0.0 && !wheel.has_lateral_elasticity_only() {
         message += "; on a straight path without c_u the longitudinal motion is undamped, which hides Hopf points: \
                     set a small c_u, or follow cycles from a circle with `kingpin cycles --along r=A:inf`";
-        return Err(Error::NothingFound(message));
+        return message;
     }
     message += "; try a wider interval, or see with `kingpin chart` where the stability changes";
-    Err(Error::NothingFound(message))
+    message
 }
 
 /// Label of the Hopf point with an index.
 pub fn label(index: usize) -> String {
     format!("HB{}", index + 1)
+}
+
+/// Whether two values of the parameter are those of one Hopf point.
+pub fn same_value(first: f64, second: f64) -> bool {
+    first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
 }

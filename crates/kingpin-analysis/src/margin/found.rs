@@ -3,6 +3,7 @@
 use crate::classification::Classification;
 use crate::disturbance::{DisturbanceRequest, Edge};
 use crate::error::Error;
+use arclength_analysis::Control;
 use kingpin::simulation::SimulationError;
 use kingpin::{KingpinError, Wheel};
 use serde::{Deserialize, Serialize};
@@ -22,11 +23,12 @@ impl Found {
     /// Seeks the edges of a wheel.
     ///
     /// # Errors
-    /// A motion that cannot be followed.
+    /// A motion that cannot be followed; [`Error::Stopped`].
     pub(super) fn seek(
         wheel: &Wheel,
         disturbance: &DisturbanceRequest,
         classification: &Classification,
+        control: &Control<'_>,
     ) -> Result<Self, Error> {
         let without =
             |problem: &str| Ok(Self { positive: None, negative: None, problem: Some(problem.to_owned()) });
@@ -36,7 +38,7 @@ impl Found {
             }
             settings => settings?,
         };
-        match disturbance.edges(wheel, classification.model(), settings) {
+        match disturbance.edges(wheel, classification.model(), settings, control) {
             Ok([positive, negative]) => Ok(Self { positive, negative, problem: None }),
             Err(SimulationError::UniformMotionSlides { .. }) => without("the uniform motion slides"),
             Err(error) => Err(error.into()),

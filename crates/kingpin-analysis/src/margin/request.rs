@@ -134,7 +134,7 @@ impl MarginAnalysis {
         let done = AtomicUsize::new(finished.len());
         let seek = |index: usize| {
             let wheel = self.wheel.with(self.along.key(), self.values[index])?;
-            let found = Found::seek(&wheel, &self.disturbance, &self.classification)?;
+            let found = Found::seek(&wheel, &self.disturbance, &self.classification, &control.quiet())?;
             journal.keep(index, &found, control.stop());
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             control.done(done as f64 / self.values.len() as f64);
@@ -144,6 +144,7 @@ impl MarginAnalysis {
             .into_par_iter()
             .filter(|index| !finished.contains_key(index) && !control.is_stopped())
             .map(seek)
+            .filter(|found| !matches!(found, Err(Error::Stopped)))
             .collect::<Result<_, Error>>()?;
         let found = journal.checked(computed, self.values.len())?;
         let cycles = unstable_cycles(&self.wheel, self.along, &self.values, control)?;

@@ -43,7 +43,7 @@ pub fn unstable_cycles(
         let allowed = key.allowed();
         let ends = [start / reach, end * reach].map(|end| end.clamp(allowed.lowest, allowed.highest));
         let wider = Along::new(key, ends[0].min(start), ends[1].max(end))?;
-        match wheel.hopf_points(wider) {
+        match wheel.hopf_points(wider, &control.quiet()) {
             Ok(search) => (searched, hopf_points) = (wider, search.points),
             Err(error) => {
                 found.remarks.push(format!("no Hopf points were sought: {error}"));
@@ -68,7 +68,7 @@ pub fn unstable_cycles(
         // Only as far down as it is needed: slow cycles take long.
         let (lowest, highest) = searched.ends();
         let lowest = if hopf.value > start { lowest.max(BELOW * start) } else { lowest };
-        let branch = match hopf.cycles(Along::new(key, lowest, highest)?, &options, |_, _| control.flow()) {
+        let branch = match hopf.cycles(Along::new(key, lowest, highest)?, &options, |_| control.flow()) {
             Ok(branch) => branch,
             Err(error) => {
                 found.remarks.push(format!("{born}: {error}"));

@@ -6,6 +6,7 @@ use super::wheel::{RADII, paper_wheel};
 use crate::error::Error;
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::CyclePoint;
+use arclength_analysis::Control;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
 use kingpin::{Key, Wheel};
 use rayon::prelude::*;
@@ -126,7 +127,7 @@ pub(super) fn hopf_point(caster_length: f64, radius: f64) -> Result<HopfPoint, E
     let critical = radius * anywhere.critical_yaw_rate().ok_or_else(not_found)?;
     let along = Along::new(Key::V, SEARCH.0 * critical, SEARCH.1 * critical)?;
     let wheel = paper_wheel(SEARCH.0 * critical, caster_length, radius)?;
-    wheel.hopf_points(along)?.points.into_iter().next().ok_or_else(not_found)
+    wheel.hopf_points(along, &Control::none())?.points.into_iter().next().ok_or_else(not_found)
 }
 
 fn options() -> CycleOptions {
@@ -144,14 +145,14 @@ fn options() -> CycleOptions {
 fn from_hopf_point(caster_length: f64, radius: f64) -> Result<Branch, Error> {
     let hopf = hopf_point(caster_length, radius)?;
     let along = Along::new(Key::V, SLOWEST, SEARCH.1 * hopf.value)?;
-    let found = hopf.cycles(along, &options(), |_, _| ControlFlow::Continue(()))?;
+    let found = hopf.cycles(along, &options(), |_| ControlFlow::Continue(()))?;
     Ok(Branch { caster_length, radius, cycles: complete(found)?, hopf: Some(hopf) })
 }
 
 /// The cycles of a branch that was followed to the ends of its interval, by descending speed.
 fn complete(found: WheelCycles) -> Result<Vec<CyclePoint>, Error> {
     let WheelCycles { wheel, mut points, stops, .. } = found;
-    for stop in stops.0.into_iter().chain([stops.1]) {
+    for stop in stops.into_iter().flatten() {
         if !matches!(stop, Stop::RangeEnd { .. }) {
             let [length, radius] = [Key::L, Key::TurningRadius].map(|key| wheel.get(key));
             let place = format!("l = {length} m, r = {radius} m");
@@ -173,7 +174,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
     let along = Along::new(Key::TurningRadius, radius, f64::INFINITY)?;
     let goal = CycleOptions { at: vec![f64::INFINITY], ..CycleOptions::default() };
     let reached =
-        branch.wheel(speed)?.cycles_through(&cycle.orbit, along, &goal, |_, _| ControlFlow::Continue(()))?;
+        branch.wheel(speed)?.cycles_through(&cycle.orbit, along, &goal, |_| ControlFlow::Continue(()))?;
     let last = reached
         .points
         .iter()
@@ -181,7 +182,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
         .ok_or_else(|| not_found(f64::INFINITY))?;
     let along = Along::new(Key::V, SLOWEST, FASTEST)?;
     let wheel = paper_wheel(speed, branch.caster_length, f64::INFINITY)?;
-    let found = wheel.cycles_through(&last.orbit, along, &options(), |_, _| ControlFlow::Continue(()))?;
+    let found = wheel.cycles_through(&last.orbit, along, &options(), |_| ControlFlow::Continue(()))?;
     let cycles = complete(found)?;
     Ok(Branch { caster_length: branch.caster_length, radius: f64::INFINITY, hopf: None, cycles })
 }

@@ -5,6 +5,7 @@ use super::drawing::Drawing;
 use super::stability_chart::{Boundary, LENGTHS, SHADED_RADIUS, boundary, stable_side, upwards};
 use super::wheel::paper_wheel;
 use crate::error::Error;
+use arclength_analysis::Control;
 use kingpin::{Axis as Interval, Key, Plane};
 use kingpin_figure::{Axis, Figure, Legend, LegendEntry, Line, Panel, Region, palette};
 use rayon::prelude::*;
@@ -48,8 +49,11 @@ impl RollingLimits {
             Plane::new(Interval::new(Key::V, 0.0..=FASTEST)?, Interval::new(Key::L, SHORTEST..=LENGTHS[1])?)?;
         let limit = |load: f64| {
             let wheel = paper_wheel(FASTEST, LENGTHS[1], SHADED_RADIUS)?.with(Key::FAz, load)?;
-            let mut curves: Vec<Vec<[f64; 2]>> =
-                wheel.rolling_limit(&plane).into_iter().map(|curve| curve.points).collect();
+            let mut curves: Vec<Vec<[f64; 2]>> = wheel
+                .rolling_limit(&plane, &Control::none())?
+                .into_iter()
+                .map(|curve| curve.points)
+                .collect();
             curves.iter_mut().for_each(|points| upwards(points));
             Ok::<_, Error>(RollingLimit { load, curves })
         };

@@ -10,6 +10,7 @@ use super::numbers::number;
 use super::wheel::{RADII, paper_wheel, radius_color, radius_label};
 use crate::error::Error;
 use arclength::linear::eigenvalues::eigenvalues;
+use arclength_analysis::Control;
 use kingpin::{Axis as Interval, Key, Plane, Wheel};
 use kingpin_figure::{
     Anchor, Axis, Color, Figure, Line, Marker, MarkerShape, Markers, Note, Panel, Region, palette,
@@ -216,7 +217,7 @@ pub(super) fn boundary(radius: f64) -> Result<Boundary, Error> {
     let plane =
         Plane::new(Interval::new(Key::V, 0.0..=fastest)?, Interval::new(Key::L, LENGTHS[0]..=LENGTHS[1])?)?;
     let wheel = paper_wheel(fastest, LENGTHS[1], radius)?;
-    let curves = wheel.stability_boundary(&plane);
+    let curves = wheel.stability_boundary(&plane, &Control::none())?;
     let lowest = |points: &[[f64; 2]]| points.iter().map(|[_, l]| *l).fold(f64::INFINITY, f64::min);
     let mut points = curves
         .into_iter()

@@ -6,7 +6,8 @@ use super::diagrams_in_space::stability_word;
 use super::drawing::Drawing;
 use super::wheel::{radius_color, radius_label};
 use crate::error::Error;
-use arclength::cycle::{CyclePoint, Role, Special};
+use arclength::branch::{Labelled, SpecialKind};
+use arclength::cycle::CyclePoint;
 use kingpin_figure::{
     Axis, Branch as Curve, Color, Figure, Legend, LegendEntry, Line, Marker, MarkerShape, Markers, Panel,
     Stability, palette,
@@ -89,7 +90,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
 }
 
 fn is_torus(cycle: &CyclePoint) -> bool {
-    matches!(cycle.role, Role::Special(Special::Torus { .. }))
+    cycle.special_kind() == Some(SpecialKind::Torus)
 }
 
 fn torus_marker(color: Color) -> Marker {

@@ -5,10 +5,13 @@ use crate::classification::Classification;
 use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
+use arclength_analysis::Control;
 use kingpin::basin::{ClassificationSettings, ContactModel, DisturbedMotion};
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
 
+/// What the search is of the whole time, roughly.
+const PART_OF_SEARCH: f64 = 0.9;
 /// Samples of a history in one natural period of the springs.
 const SAMPLES_PER_PERIOD: f64 = 40.0;
 /// Most samples of a history.
@@ -74,12 +77,13 @@ impl SafeKickAnalysis {
     /// Finds the edges in both directions, and the motions on both sides of the nearer one.
     ///
     /// # Errors
-    /// [`Error::Simulation`].
-    pub fn run(&self) -> Result<SafeKickResult, Error> {
-        let edges = self.disturbance.edges(&self.wheel, self.model, self.settings)?;
+    /// [`Error::Simulation`], and [`Error::Stopped`] where the control stops it.
+    pub fn run(&self, control: &Control<'_>) -> Result<SafeKickResult, Error> {
+        let (search, control) = (control.part(0.0..PART_OF_SEARCH), &control.quiet());
+        let edges = self.disturbance.edges(&self.wheel, self.model, self.settings, &search)?;
         let smallest = edges.iter().copied().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let motions = match smallest {
-            Some(edge) => Some(self.motions(&self.wheel, &edge, self.settings.duration)?),
+            Some(edge) => Some(self.motions(&self.wheel, &edge, self.settings.duration, control)?),
             None => None,
         };
         Ok(SafeKickResult::new(
@@ -94,13 +98,19 @@ impl SafeKickAnalysis {
     }
 
     /// The motions on both sides of the edge, until they have parted.
-    fn motions(&self, wheel: &Wheel, edge: &Edge, duration: f64) -> Result<[DisturbedMotion; 2], Error> {
+    fn motions(
+        &self,
+        wheel: &Wheel,
+        edge: &Edge,
+        duration: f64,
+        control: &Control<'_>,
+    ) -> Result<[DisturbedMotion; 2], Error> {
         let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
         let period = std::f64::consts::TAU * (mass / wheel.get(Key::KQ)).sqrt();
         let history = |magnitude: f64, duration: f64| {
             let samples = (SAMPLES_PER_PERIOD * duration / period).clamp(2.0, MOST_SAMPLES) as usize;
             let model = self.model;
-            self.disturbance.disturbance().history(wheel, model, magnitude, duration, samples)
+            self.disturbance.disturbance().history(wheel, model, magnitude, duration, samples, control)
         };
         let motions = [history(edge.returns, duration)?, history(edge.fails, duration)?];
         let both = motions[0].states.iter().zip(&motions[1].states).zip(&motions[1].times);

@@ -6,6 +6,7 @@ use super::sliding_result::SlidingHistoryResult;
 use crate::classification::Contact;
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
+use arclength_analysis::Control;
 use kingpin::Wheel;
 use kingpin_report::NamedNumbers;
 use serde::{Deserialize, Serialize};
@@ -83,19 +84,20 @@ impl SimulateAnalysis {
     /// Computes the motion.
     ///
     /// # Errors
-    /// [`Error::Simulation`]: a duration that is none, an unknown state, no uniform motion, a motion that cannot be followed.
-    pub fn run(&self) -> Result<HistoryResult, Error> {
+    /// [`Error::Simulation`]: a duration that is none, an unknown state, no uniform motion, a motion that cannot be followed;
+    /// [`Error::Stopped`] where the control stops it.
+    pub fn run(&self, control: &Control<'_>) -> Result<HistoryResult, Error> {
         let perturbations: Vec<(&str, f64)> =
             self.perturb.0.iter().map(|(name, change)| (name.as_str(), *change)).collect();
         let wheel = self.wheel;
         match self.contact {
             Contact::Sliding => {
                 let start = wheel.perturbed_sliding_motion(&perturbations)?;
-                let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points)?;
+                let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points, control)?;
                 Ok(HistoryResult::Sliding(SlidingHistoryResult::new(wheel, history)))
             }
             Contact::Rolling => {
-                let history = wheel.simulate(self.duration, &perturbations, self.points)?;
+                let history = wheel.simulate(self.duration, &perturbations, self.points, control)?;
                 Ok(HistoryResult::Rolling(RollingHistory::new(wheel, &history)))
             }
         }

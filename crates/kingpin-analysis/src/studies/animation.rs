@@ -4,6 +4,7 @@
 //! it about the centre of the curve. Marks on the ground are spaced so that the picture repeats itself with the motion.
 
 use crate::error::Error;
+use arclength_analysis::Control;
 use kingpin::Key;
 use kingpin::shimmy::PeriodicSliding;
 use kingpin::sliding::Contact;
@@ -31,7 +32,7 @@ const WIDTH: f64 = 0.28;
 /// # Errors
 /// When the motion cannot be simulated again.
 pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Error> {
-    let history = motion.history(1.0, FRAMES + 1)?;
+    let history = motion.history(1.0, FRAMES + 1, &Control::none())?;
     let wheel = &motion.wheel;
     let (length, radius) = (wheel.get(Key::L), wheel.get(Key::WheelRadius));
     let duration = format!("{:.3}", SLOWER * motion.period);

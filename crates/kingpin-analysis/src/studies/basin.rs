@@ -36,7 +36,7 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
         let settings = ClassificationSettings { duration: DURATION };
         let destinations = Destinations::new(&wheel(&[(Key::V, speed)])?, ContactModel::Rolling, settings)?;
         let map = BasinMap::grid(&destinations, &axes, [POINTS, POINTS])?;
-        let tiles = map.run(control.stop(), |_| false, |_| {})?;
+        let tiles = map.run(&control.quiet(), |_| false, |_| {})?;
         unless_stopped(control)?;
         for fraction in Fraction::of(&tiles).into_iter().filter(|fraction| fraction.count > 0) {
             let what = format!("v = {speed} m/s: part of the map that ends in {}", fraction.fate.name());

@@ -7,7 +7,7 @@
 use super::study::{Drawing, Finding, Study};
 use super::wheel::wheel;
 use crate::axis_label;
-use crate::error::{Error, unless_stopped};
+use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::{Axis as Interval, Curve, Key, Plane};
 use kingpin_figure::{Axis, Color, Figure, Legend, Line, Panel, palette};
@@ -42,34 +42,34 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
         let all = DAMPERS.iter();
         all.flat_map(|damper| values(damper).map(|value| (damper.0, value, damper.2))).collect()
     };
-    let charts = pairs(|damper| damper.1).into_par_iter().map(|(damper, value, _)| {
-        unless_stopped(control)?;
-        chart(damper, value)
-    });
+    let charts = pairs(|damper| damper.1)
+        .into_par_iter()
+        .map(|(damper, value, _)| chart(damper, value, &control.quiet()));
     let charts = charts.collect::<Result<Vec<_>, Error>>()?;
     control.done(0.5);
-    let sections = pairs(|_| SECTIONS).into_par_iter().map(|(damper, length, most)| {
-        unless_stopped(control)?;
-        section(damper, length, most)
-    });
+    let sections = pairs(|_| SECTIONS)
+        .into_par_iter()
+        .map(|(damper, length, most)| section(damper, length, most, &control.quiet()));
     let sections = sections.collect::<Result<Vec<_>, Error>>()?;
     control.done(0.9);
     let findings = sections.iter().map(finding).collect();
     Ok(Study { findings, drawings: vec![drawing(&charts, &sections)], pictures: Vec::new() })
 }
 
-fn chart(damper: Key, damping: f64) -> Result<Boundary, Error> {
+fn chart(damper: Key, damping: f64, control: &Control<'_>) -> Result<Boundary, Error> {
     let plane = Plane::new(
         Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?,
         Interval::new(Key::L, LENGTHS.0..=LENGTHS.1)?,
     )?;
-    let curves = wheel(&[(Key::TurningRadius, RADIUS), (damper, damping)])?.stability_boundary(&plane);
+    let curves =
+        wheel(&[(Key::TurningRadius, RADIUS), (damper, damping)])?.stability_boundary(&plane, control)?;
     Ok(Boundary { damper, value: damping, curves })
 }
 
-fn section(damper: Key, length: f64, most: f64) -> Result<Boundary, Error> {
+fn section(damper: Key, length: f64, most: f64, control: &Control<'_>) -> Result<Boundary, Error> {
     let plane = Plane::new(Interval::new(Key::V, SPEEDS.0..=SPEEDS.1)?, Interval::new(damper, 0.0..=most)?)?;
-    let curves = wheel(&[(Key::TurningRadius, RADIUS), (Key::L, length)])?.stability_boundary(&plane);
+    let curves =
+        wheel(&[(Key::TurningRadius, RADIUS), (Key::L, length)])?.stability_boundary(&plane, control)?;
     Ok(Boundary { damper, value: length, curves })
 }
 

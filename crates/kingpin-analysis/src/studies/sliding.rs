@@ -69,18 +69,18 @@ impl Motions {
         let wheel = loaded(START, damping)?;
         let start = wheel.perturbed_uniform_motion(&[("psi", RELEASE_ANGLE)])?;
         let search = SlidingMotionSearch { settling_time: SETTLING_TIME, ..SlidingMotionSearch::default() };
-        let at_start = wheel.sliding_motion(&start, &search)?;
+        let at_start = wheel.sliding_motion(&start, &search, &control.quiet())?;
         let along = Along::new(Key::V, SPEEDS.0, SPEEDS.1)?;
         let mut options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
         options.settings.smallest_step = SMALLEST_STEP;
-        let shimmy = at_start.along(along, &options, |_, _| control.flow())?;
+        let shimmy = at_start.along(along, &options, &control.quiet(), |_, _| control.flow())?;
         let slower = loaded(SPEEDS.0, damping)?;
-        let hopf = slower.hopf_points(along)?.points.into_iter().next();
+        let hopf = slower.hopf_points(along, &control.quiet())?.points.into_iter().next();
         let settings =
             Settings { largest_parameter_change: 0.02, predictor_error: 0.005, ..Settings::default() };
         let options = CycleOptions { settings, ..CycleOptions::default() };
         let mut cycles = match &hopf {
-            Some(hopf) => hopf.cycles(along, &options, |_, _| control.flow())?.points,
+            Some(hopf) => hopf.cycles(along, &options, |_| control.flow())?.points,
             None => Vec::new(),
         };
         cycles.sort_by(|a, b| b.value.total_cmp(&a.value));
@@ -197,7 +197,7 @@ impl Motions {
 fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Error> {
     let wheel = loaded(cycle.value, damping)?;
     let initial: [f64; 5] = std::array::from_fn(|index| cycle.orbit.states[index]);
-    let history = wheel.simulate_from(&initial, cycle.period, FORCE_SAMPLES)?;
+    let history = wheel.simulate_from(&initial, cycle.period, FORCE_SAMPLES, &Control::none())?;
     let largest = history.friction_force().into_iter().fold(0.0, f64::max);
     Ok(largest / (wheel.get(Key::MuS) * wheel.normal_force()))
 }

@@ -104,7 +104,7 @@ fn outcome(wheel: &Wheel, model: ContactModel, settings: ClassificationSettings)
         Err(error) => return Err(error.into()),
     };
     let straight = wheel.with(Key::TurningRadius, f64::INFINITY)?.uniform_motion()?.state();
-    let fates = destinations.of(&[straight])?;
+    let fates = destinations.of(&[straight], &Control::none())?;
     Ok(fates.first().map_or(Outcome::NoUniformMotion, |&fate| Outcome::Ends(fate)))
 }
 

@@ -4,6 +4,8 @@ mod bad_input;
 mod basin;
 mod branches;
 mod formats;
+#[cfg(unix)]
+mod interruption;
 mod lateral;
 mod studies;
 mod tables;

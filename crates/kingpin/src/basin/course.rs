@@ -31,16 +31,16 @@ pub(super) enum Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    pub fn rolling(wheel: &Wheel, state: [f64; 5]) -> Result<Self, SimulationError> {
+    pub(super) fn rolling(wheel: &Wheel, state: [f64; 5]) -> Result<Self, SimulationError> {
         Ok(Self::Rolling { field: wheel.rolling(&[])?, state })
     }
 
-    pub fn sliding(wheel: &'a SlidingWheel, state: HybridState) -> Result<Self, SimulationError> {
+    pub(super) fn sliding(wheel: &'a SlidingWheel, state: HybridState) -> Result<Self, SimulationError> {
         Ok(Self::Sliding { wheel, equations: Equations::new(wheel.wheel())?, state })
     }
 
     /// The state `(u, q, psi, V, Omega)`.
-    pub fn state(&self) -> [f64; 5] {
+    pub(super) fn state(&self) -> [f64; 5] {
         match self {
             Self::Rolling { state, .. } => *state,
             Self::Sliding { state, .. } => reduced(&state.public()),
@@ -48,7 +48,7 @@ impl<'a> Course<'a> {
     }
 
     /// Goes on for `duration`, with nodes at multiples of `spacing` and wherever the equations change.
-    pub fn follow(
+    pub(super) fn follow(
         &mut self,
         duration: f64,
         spacing: f64,
@@ -92,7 +92,7 @@ impl<'a> Course<'a> {
     }
 
     /// The same with the deviation from the uniform motion multiplied by a factor.
-    pub fn pushed(&self, target: &Target, factor: f64) -> Self {
+    pub(super) fn pushed(&self, target: &Target, factor: f64) -> Self {
         let mut pushed = self.clone();
         let [u, q, psi, speed, yaw] = *target.state();
         let stretch = |value: &mut f64, centre: f64| *value = centre + factor * (*value - centre);

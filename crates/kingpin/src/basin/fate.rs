@@ -118,7 +118,7 @@ fn decisive_growth_rate(wheel: &Wheel) -> Result<f64, SimulationError> {
 }
 
 impl Target {
-    pub fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
+    pub(super) fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
         let body = wheel.body();
         let frequency = (wheel.get(Key::KQ) * body.inverse_rolling_mass).sqrt();
         let length = body.caster_length;
@@ -135,7 +135,7 @@ impl Target {
     }
 
     /// The uniform motion.
-    pub fn state(&self) -> &[f64; 5] {
+    pub(super) fn state(&self) -> &[f64; 5] {
         &self.state
     }
 
@@ -168,7 +168,7 @@ pub(super) struct Watch {
 
 impl Watch {
     /// Watches a motion from its initial state.
-    pub fn new(target: &Target, settings: &ClassificationSettings, initial: &[f64; 5]) -> Self {
+    pub(super) fn new(target: &Target, settings: &ClassificationSettings, initial: &[f64; 5]) -> Self {
         // Steps can be longer than the time near the uniform motion that is asked for: the start counts.
         let is_near = target.attracts && target.distance(initial) < NEAR;
         Self {
@@ -184,7 +184,7 @@ impl Watch {
 
     /// Takes a state `(u, q, psi, V, Omega)` into account; breaks once the fate is known.
     #[inline]
-    pub fn observe(&mut self, time: f64, state: &[f64; 5]) -> ControlFlow<()> {
+    pub(super) fn observe(&mut self, time: f64, state: &[f64; 5]) -> ControlFlow<()> {
         let distance = self.target.distance(state);
         if distance >= FAR || distance.is_nan() {
             return self.decide(Fate::Escape);
@@ -220,17 +220,17 @@ impl Watch {
     }
 
     /// The duration in s of the settings.
-    pub fn duration(&self) -> f64 {
+    pub(super) fn duration(&self) -> f64 {
         self.duration
     }
 
     /// The fate, where it is known.
-    pub fn fate(&self) -> Option<Fate> {
+    pub(super) fn fate(&self) -> Option<Fate> {
         self.decided
     }
 
     /// The fate of a motion that cannot be followed any further, since that takes too many steps: what it was doing.
-    pub fn fate_when_cut_short(&self) -> Fate {
+    pub(super) fn fate_when_cut_short(&self) -> Fate {
         match self.decided {
             Some(fate) => fate,
             None if self.turned || self.is_turning() => Fate::Tumbling,

@@ -62,17 +62,17 @@ pub(super) enum Seen {
 
 impl<'a> Lasting<'a> {
     /// From where it is at a time.
-    pub fn new(course: Course<'a>, time: f64) -> Self {
+    pub(super) fn new(course: Course<'a>, time: f64) -> Self {
         Self { course, time, maxima: Maxima::default(), push_after: 0.0 }
     }
 
     /// Time that was reached.
-    pub fn time(&self) -> f64 {
+    pub(super) fn time(&self) -> f64 {
         self.time
     }
 
     /// State `(u, q, psi, V, Omega)` there.
-    pub fn state(&self) -> [f64; 5] {
+    pub(super) fn state(&self) -> [f64; 5] {
         self.course.state()
     }
 
@@ -81,7 +81,7 @@ impl<'a> Lasting<'a> {
     /// # Errors
     /// A motion that cannot be followed for another reason than that it grows without bound or takes too many steps;
     /// [`SimulationError::Interrupted`].
-    pub fn follow(
+    pub(super) fn follow(
         &mut self,
         until: f64,
         target: &Target,
@@ -123,7 +123,7 @@ impl<'a> Lasting<'a> {
     ///
     /// # Errors
     /// As [`follow`](Self::follow).
-    pub fn until_the_end(
+    pub(super) fn until_the_end(
         mut self,
         target: &Target,
         mut watch: Watch,

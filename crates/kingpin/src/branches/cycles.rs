@@ -29,7 +29,7 @@ pub struct WheelCycles {
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
-    /// Why the branch ends, at its first and at its last point, in the unit of the key; the first is `None` at a Hopf point.
+    /// Why the branch ends, at its first and at its last point, in values of the key; the first is `None` at a Hopf point.
     pub stops: [Option<Stop<CycleEnd>>; 2],
     /// Changes of test functions behind which no special cycle could be located.
     pub unlocated: Vec<Unlocated>,
@@ -103,12 +103,12 @@ impl Wheel {
         let model = self.rolling_model(&[key])?;
         let at: Vec<f64> = options.at.iter().map(|value| along.convert(*value)).collect();
         let complete = |point: &mut CyclePoint| {
-            model.complete_extrema(point, &[point.value]);
+            model.complete_extrema(&point.orbit, &mut point.max, &mut point.min, &[point.value]);
             point.value = along.convert(point.value);
         };
         let mut branch = Cycles::of(&model, start)
             .parameters(&[along.convert(value)])
-            .along(&key.to_string(), along.range())
+            .along(key.name(), along.range())
             .at(&at)
             .resolution(options.resolution)
             .settings(options.settings)
@@ -126,7 +126,7 @@ impl Wheel {
             wheel: *self,
             along,
             points: branch.points,
-            stops: branch.stops.map(|stop| stop.map(|stop| along.tell(stop))),
+            stops: branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop))),
             unlocated: branch.unlocated,
         })
     }

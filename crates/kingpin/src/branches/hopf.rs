@@ -3,14 +3,20 @@
 use super::Along;
 use crate::{KingpinError, Wheel};
 use arclength::branch::Criticality;
+use arclength::continuation::{Settings, Stop};
 use arclength::control::Control;
-use arclength::equilibrium::Equilibria;
+use arclength::equilibrium::{
+    Equilibria, EquilibriumEnd, EquilibriumPoint, SpecialPoint, equilibrium_settings,
+};
+use std::ops::ControlFlow;
 
 /// A Hopf point of the uniform motion.
 #[derive(Clone, Debug)]
 pub struct HopfPoint {
     /// Value of the parameter along which it was found.
     pub value: f64,
+    /// Error estimate of that value.
+    pub location_error: f64,
     /// Angular frequency in rad/s.
     pub frequency: f64,
     /// First Lyapunov coefficient in Kuznetsov's scaling, states in SI units.
@@ -23,6 +29,19 @@ pub struct HopfPoint {
     pub wheel: Wheel,
     /// The point as the continuation engine knows it, to start cycles from.
     pub detail: arclength::equilibrium::HopfPoint,
+}
+
+/// The uniform motion followed along a parameter.
+#[derive(Debug)]
+pub struct MotionBranch {
+    /// The motions, from the lower end of the interval to the upper one where the branch does not turn; `value` is a value of
+    /// the key and `state` the states `u q psi V Omega`. What is known of special points is as the continuation found it, which
+    /// follows `1/r` in place of `r`.
+    pub motions: Vec<EquilibriumPoint>,
+    /// The Hopf points in ascending order of the parameter.
+    pub hopf_points: Vec<HopfPoint>,
+    /// Why the branch ends, at its first and at its last motion, in values of the key.
+    pub stops: [Option<Stop<EquilibriumEnd>>; 2],
 }
 
 /// What a search for Hopf points found.
@@ -38,12 +57,30 @@ pub struct HopfSearch {
     pub stops: (String, String),
 }
 
+impl From<MotionBranch> for HopfSearch {
+    fn from(branch: MotionBranch) -> Self {
+        let ends = [branch.motions.first(), branch.motions.last()];
+        let end = |index: usize| {
+            ends[index].map_or((f64::NAN, None), |motion| (motion.value, motion.stability.is_stable()))
+        };
+        let [first, last] = &branch.stops;
+        let text = |stop: &Option<Stop<EquilibriumEnd>>| {
+            stop.as_ref().map_or_else(String::new, |stop| stop.to_string())
+        };
+        Self {
+            points: branch.hopf_points,
+            stable_at_ends: (end(0).1, end(1).1),
+            searched: (end(0).0, end(1).0),
+            stops: (text(first), text(last)),
+        }
+    }
+}
+
 impl Wheel {
     /// The Hopf points of the uniform motion along a parameter.
     ///
     /// # Errors
-    /// [`KingpinError::NoUniformMotion`] when there is none anywhere in the interval (the reason is that at its
-    /// start), [`KingpinError::Continuation`] when the branch cannot be followed, [`KingpinError::Interrupted`].
+    /// Those of [`motion_branch`](Self::motion_branch), and [`KingpinError::Interrupted`].
     ///
     /// ```
     /// use arclength::control::Control;
@@ -53,10 +90,27 @@ impl Wheel {
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     pub fn hopf_points(&self, along: Along, control: &Control<'_>) -> Result<HopfSearch, KingpinError> {
+        let branch = self.motion_branch(along, equilibrium_settings(), |_| control.flow())?;
+        control.check()?;
+        Ok(branch.into())
+    }
+
+    /// The uniform motion followed along a parameter, with its special points.
+    ///
+    /// `observer` is told the parameter at every motion found and may end the run.
+    ///
+    /// # Errors
+    /// [`KingpinError::NoUniformMotion`] when there is none anywhere in the interval (the reason is that at its
+    /// start), [`KingpinError::Continuation`] when the branch cannot be followed.
+    pub fn motion_branch(
+        &self,
+        along: Along,
+        settings: Settings,
+        mut observer: impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<MotionBranch, KingpinError> {
         let mut first_error = None;
         let key = along.followed();
         for candidate in along.candidates(self) {
-            control.check()?;
             let wheel = self.with(key, candidate)?;
             let motion = match wheel.uniform_motion() {
                 Ok(motion) => motion,
@@ -70,14 +124,15 @@ impl Wheel {
                 .start(&model.free_state(&motion.state()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
-                .observer(|_| control.flow())
+                .settings(settings)
+                .observer(|point| observer(along.convert(point.value)))
                 .run()?;
-            control.check()?;
-            let mut points = branch
+            let mut hopf_points = branch
                 .hopf_points()
                 .map(|point| {
                     Ok(HopfPoint {
                         value: along.convert(point.value),
+                        location_error: along.convert_error(along.convert(point.value), point.location_error),
                         frequency: point.frequency,
                         first_lyapunov: point.first_lyapunov,
                         criticality: point.criticality,
@@ -87,26 +142,29 @@ impl Wheel {
                     })
                 })
                 .collect::<Result<Vec<_>, KingpinError>>()?;
-            points.sort_by(|a, b| a.value.total_cmp(&b.value));
-            let ends: Vec<_> = branch.points.first().into_iter().chain(branch.points.last()).collect();
-            let [first, last] = ends[..] else { continue };
-            let mut ends =
-                [first, last].map(|point| (along.convert(point.value), point.stability.is_stable()));
-            let mut stops = branch.stops.map(|stop| {
-                stop.map_or_else(String::new, |stop| {
-                    along.tell(stop).explain(&[&along.key().to_string()]).cause
-                })
-            });
-            if ends[0].0 > ends[1].0 {
-                ends.reverse();
+            hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
+            let mut motions = branch.points;
+            if motions.is_empty() {
+                continue;
+            }
+            for motion in &mut motions {
+                motion.state = model.full_state(&motion.state, &[motion.value]).to_vec();
+                motion.value = along.convert(motion.value);
+                if let Some(SpecialPoint::Degenerate { value, location_error, .. }) =
+                    motion.special.as_deref_mut()
+                {
+                    *value = motion.value;
+                    *location_error = along.convert_error(motion.value, *location_error);
+                }
+            }
+            let mut stops = branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop)));
+            if let [first, .., last] = &motions[..]
+                && first.value > last.value
+            {
+                motions.reverse();
                 stops.reverse();
             }
-            return Ok(HopfSearch {
-                points,
-                stable_at_ends: (ends[0].1, ends[1].1),
-                searched: (ends[0].0, ends[1].0),
-                stops: stops.into(),
-            });
+            return Ok(MotionBranch { motions, hopf_points, stops });
         }
         let (start, end) = along.ends();
         Err(first_error.unwrap_or(KingpinError::EmptyInterval { key: along.key(), start, end }))

@@ -3,14 +3,16 @@
 //!
 //! The turning radius may be followed to infinity: behind the scenes `r` is then replaced by `1/r`.
 
+mod curves;
 mod cycles;
 mod hopf;
 
+pub use curves::{CurveOptions, CycleCurve, HopfCurve};
 pub use cycles::{CycleOptions, WheelCycles};
-pub use hopf::{HopfPoint, HopfSearch};
+pub use hopf::{HopfPoint, HopfSearch, MotionBranch};
 
 use crate::{Key, KingpinError, Wheel};
-use arclength::branch::WithParameter;
+use arclength::branch::WithParameters;
 use arclength::continuation::Stop;
 
 /// A parameter and the interval in which it varies.
@@ -76,13 +78,20 @@ impl Along {
         if self.key == Key::TurningRadius { value.recip() } else { value }
     }
 
-    /// A reason to end, told in the unit of the key.
-    pub(crate) fn tell<R: WithParameter>(&self, stop: Stop<R>) -> Stop<R> {
-        match stop {
-            Stop::RangeEnd { bound, value } => Stop::RangeEnd { bound, value: self.convert(value) },
-            Stop::Problem(end) => Stop::Problem(end.with_parameter(|value| self.convert(value))),
-            other => other,
-        }
+    /// A value of the key that was asked for as it is found on a branch: a radius has gone through `1/r` and back.
+    pub fn as_found(&self, value: f64) -> f64 {
+        self.convert(self.convert(value))
+    }
+
+    /// Why a branch of the parameter that is followed ends, in values of the key.
+    pub(crate) fn convert_stop<R: WithParameters>(&self, stop: Stop<R>) -> Stop<R> {
+        stop.with_parameters(|_, value| self.convert(value))
+    }
+
+    /// An error of the parameter that is followed as one of the key, next to a value of the key.
+    pub(crate) fn convert_error(&self, value: f64, error: f64) -> f64 {
+        // |dr| = r^2 |d(1/r)|
+        if self.key == Key::TurningRadius { value * value * error } else { error }
     }
 
     /// The interval of the parameter that is followed.

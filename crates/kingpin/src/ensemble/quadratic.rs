@@ -55,7 +55,7 @@ pub(super) struct QuadraticWheel {
 }
 
 impl QuadraticWheel {
-    pub fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
+    pub(super) fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
         let (k_u, k_q) = (wheel.get(Key::KU), wheel.get(Key::KQ));
         if k_u != k_q {
             return Err(SimulationError::out_of_range("k_u", k_u, "equal to k_q for an ensemble"));
@@ -86,13 +86,13 @@ impl QuadraticWheel {
     }
 
     /// From the states `(u, q, psi, V, Omega)`.
-    pub fn state([u, q, psi, speed, yaw]: [f64; 5]) -> [f64; STATES] {
+    pub(super) fn state([u, q, psi, speed, yaw]: [f64; 5]) -> [f64; STATES] {
         let (sine, cosine) = psi.sin_cos();
         [u * cosine - q * sine, u * sine + q * cosine, cosine, sine, psi, speed, yaw]
     }
 
     /// Back to the states `(u, q, psi, V, Omega)`.
-    pub fn rolling_state([a, b, _, _, psi, speed, yaw]: [f64; STATES]) -> [f64; 5] {
+    pub(super) fn rolling_state([a, b, _, _, psi, speed, yaw]: [f64; STATES]) -> [f64; 5] {
         let (sine, cosine) = psi.sin_cos();
         [a * cosine + b * sine, b * cosine - a * sine, psi, speed, yaw]
     }

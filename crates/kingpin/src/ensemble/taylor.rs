@@ -42,13 +42,13 @@ pub(super) struct Series<S: Simd> {
 }
 
 impl<S: Simd> Series<S> {
-    pub fn new(simd: S) -> Self {
+    pub(super) fn new(simd: S) -> Self {
         Self { orders: [[simd.splat_f64s(0.0); STATES]; ORDER + 1] }
     }
 }
 
 impl<S: Simd> TaylorMethod<S> {
-    pub fn new(simd: S, wheel: &QuadraticWheel, tolerance: f64) -> Self {
+    pub(super) fn new(simd: S, wheel: &QuadraticWheel, tolerance: f64) -> Self {
         let splat = |value: f64| simd.splat_f64s(value);
         let mut reciprocals = [splat(0.0); ORDER + 1];
         for (order, reciprocal) in reciprocals.iter_mut().enumerate().skip(1) {
@@ -78,7 +78,7 @@ impl<S: Simd> TaylorMethod<S> {
 
     /// Fills the coefficients of the solution through the states of order 0.
     #[inline(always)]
-    pub fn expand(&self, series: &mut Series<S>) {
+    pub(super) fn expand(&self, series: &mut Series<S>) {
         let simd = self.simd;
         let zero = simd.splat_f64s(0.0);
         for n in 0..ORDER {
@@ -142,7 +142,7 @@ impl<S: Simd> TaylorMethod<S> {
     /// Logarithms of the step sizes at which the last two terms of the series meet the tolerance, relative to the
     /// size of the state; written into `steps` as step sizes.
     #[inline(always)]
-    pub fn propose_steps(&self, series: &Series<S>, steps: &mut S::f64s) {
+    pub(super) fn propose_steps(&self, series: &Series<S>, steps: &mut S::f64s) {
         let simd = self.simd;
         let start = self.size(series, 0);
         let last = simd.div_f64s(self.size(series, ORDER), start);
@@ -156,7 +156,7 @@ impl<S: Simd> TaylorMethod<S> {
 
     /// Sums the series at the step of every lane into the states of order 0.
     #[inline(always)]
-    pub fn advance(&self, series: &mut Series<S>, steps: S::f64s) {
+    pub(super) fn advance(&self, series: &mut Series<S>, steps: S::f64s) {
         let mut sums = series.orders[ORDER];
         for coefficients in series.orders[..ORDER].iter().rev() {
             for i in 0..STATES {
@@ -170,13 +170,13 @@ impl<S: Simd> TaylorMethod<S> {
 impl<S: Simd> Series<S> {
     /// The state of one lane.
     #[inline(always)]
-    pub fn state(&self, lane: usize) -> [f64; STATES] {
+    pub(super) fn state(&self, lane: usize) -> [f64; STATES] {
         std::array::from_fn(|i| lanes(&self.orders[0][i])[lane])
     }
 
     /// Sets the state of one lane.
     #[inline(always)]
-    pub fn set_state(&mut self, lane: usize, state: &[f64; STATES]) {
+    pub(super) fn set_state(&mut self, lane: usize, state: &[f64; STATES]) {
         for (component, &value) in self.orders[0].iter_mut().zip(state) {
             lanes_mut(component)[lane] = value;
         }

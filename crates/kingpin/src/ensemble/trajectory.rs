@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 /// How a trajectory ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Ending {
     /// It was followed for the whole duration.
     Completed,

@@ -69,6 +69,7 @@ pub struct SlidingBranchPoint {
 
 /// Why a branch ends.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum SlidingBranchEnd {
     /// The sequence of phases changes.
     Grazing {

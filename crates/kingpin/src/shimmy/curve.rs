@@ -102,7 +102,13 @@ pub(super) struct SlidingCurve<'a> {
 }
 
 impl<'a> SlidingCurve<'a> {
-    pub fn new(map: ReturnMap, key: Key, range: f64, settings: Settings, control: &'a Control<'a>) -> Self {
+    pub(super) fn new(
+        map: ReturnMap,
+        key: Key,
+        range: f64,
+        settings: Settings,
+        control: &'a Control<'a>,
+    ) -> Self {
         let map = ReturnMap { parameter: Some((key, 1.0)), ..map };
         Self {
             map,
@@ -120,7 +126,7 @@ impl<'a> SlidingCurve<'a> {
     }
 
     /// The unknowns of a start at a parameter value.
-    pub fn unknown(&self, start: &Start, value: f64) -> Vec<f64> {
+    pub(super) fn unknown(&self, start: &Start, value: f64) -> Vec<f64> {
         let states = self.map.free().iter().map(|&i| start.state.state[i] / self.map.scales[i]);
         states.chain([start.period / self.map.period_scale, value]).collect()
     }
@@ -155,7 +161,7 @@ impl<'a> SlidingCurve<'a> {
 
     /// Moves the start of a solution to the middle of its longest phase and scales everything anew; returns the unknowns and
     /// the tangent there.
-    pub fn renew(&mut self, solution: &Solution<CurvePoint>) -> Result<(Vec<f64>, Vec<f64>), Refusal> {
+    pub(super) fn renew(&mut self, solution: &Solution<CurvePoint>) -> Result<(Vec<f64>, Vec<f64>), Refusal> {
         let value = solution.unknown[solution.unknown.len() - 1];
         let free = self.map.free();
         let slope = &solution.tangent;
@@ -205,7 +211,7 @@ impl<'a> SlidingCurve<'a> {
 
     /// The motion beyond a grazing: at a parameter value near that of the last solution, with another sequence of phases and
     /// not `known` at this value. Returns the unknowns and a tangent.
-    pub fn cross(
+    pub(super) fn cross(
         &mut self,
         solution: &Solution<CurvePoint>,
         range: (f64, f64),

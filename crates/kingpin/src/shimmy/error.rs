@@ -7,6 +7,7 @@ use arclength::integration::IntegrationError;
 
 /// Why a periodic motion was not found or could not be followed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum ShimmyError {
     /// The motion dies out: the wheel rolls or slides steadily in the end.
     #[error(
@@ -86,6 +87,7 @@ impl From<Refusal> for ShimmyError {
 
 /// Why a return map is not defined at a state.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum Refusal {
     /// The phases are not those of the motion sought.
     #[error("{0}")]

@@ -21,7 +21,7 @@ pub(crate) enum Regime {
 impl Regime {
     /// Derivative of the seven states.
     #[inline]
-    pub fn field<T: Scalar>(self, equations: &Equations<T>, state: &[T], derivative: &mut [T]) {
+    pub(crate) fn field<T: Scalar>(self, equations: &Equations<T>, state: &[T], derivative: &mut [T]) {
         let friction = match self {
             Self::Rolling => equations.holding_force(state),
             Self::Onset => equations.incipient_force(state),
@@ -31,7 +31,7 @@ impl Regime {
     }
 
     /// What the wheel is said to do.
-    pub fn contact(self) -> Contact {
+    pub(crate) fn contact(self) -> Contact {
         if self == Self::Rolling { Contact::Rolling } else { Contact::Sliding }
     }
 }
@@ -52,13 +52,13 @@ pub(crate) struct Passage {
 }
 
 impl Passage {
-    pub fn duration(&self) -> f64 {
+    pub(crate) fn duration(&self) -> f64 {
         self.end - self.start
     }
 
     /// Times with states along which the motion is smooth: the start, the samples inside, and the end, or where the straight
     /// way of vanishing slip begins.
-    pub fn nodes(&self) -> impl Iterator<Item = (f64, &SlipState)> {
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = (f64, &SlipState)> {
         let (end, last) =
             self.vanishing.as_ref().map_or((self.end, &self.last), |(time, state)| (*time, state));
         let inside = self.samples.iter().filter(move |(time, _)| self.start < *time && *time < end);

@@ -74,7 +74,7 @@ impl ReturnMap {
     ///
     /// # Errors
     /// What [`Wheel::sliding`] refuses.
-    pub fn new(
+    pub(super) fn new(
         wheel: &Wheel,
         start: &Start,
         scales: [f64; STATES],
@@ -97,7 +97,7 @@ impl ReturnMap {
     }
 
     /// Lays the plane through another state.
-    pub fn set_reference(&mut self, reference: HybridState) -> Result<(), Refusal> {
+    pub(super) fn set_reference(&mut self, reference: HybridState) -> Result<(), Refusal> {
         let rate = self.sliding()?.rate(&reference);
         let scaled: SlipState = std::array::from_fn(|i| rate[i] / self.scales[i]);
         let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -106,12 +106,12 @@ impl ReturnMap {
         Ok(())
     }
 
-    pub fn sliding(&self) -> Result<SlidingWheel, Refusal> {
+    pub(super) fn sliding(&self) -> Result<SlidingWheel, Refusal> {
         Ok(self.wheel.sliding().map_err(Refusal::from)?.tolerance(self.tolerance))
     }
 
     /// The states that vary at the start.
-    pub fn free(&self) -> &'static [usize] {
+    pub(super) fn free(&self) -> &'static [usize] {
         match self.reference.contact {
             Contact::Rolling => &FREE_WHILE_ROLLING,
             Contact::Sliding => &FREE_WHILE_SLIDING,
@@ -122,7 +122,7 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn follow(
+    pub(super) fn follow(
         &self,
         start: &Start,
         times: &[f64],
@@ -138,7 +138,12 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn start_after(&self, start: &Start, time: f64, control: &Control<'_>) -> Result<Start, Refusal> {
+    pub(super) fn start_after(
+        &self,
+        start: &Start,
+        time: f64,
+        control: &Control<'_>,
+    ) -> Result<Start, Refusal> {
         if time <= 0.0 {
             return Ok(start.clone());
         }
@@ -150,7 +155,11 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Interrupted`].
-    pub fn repetitions(&self, start: &Start, control: &Control<'_>) -> Result<Option<i32>, Interrupted> {
+    pub(super) fn repetitions(
+        &self,
+        start: &Start,
+        control: &Control<'_>,
+    ) -> Result<Option<i32>, Interrupted> {
         for parts in (2..=MOST_REPETITIONS).rev().filter(|parts| self.turns % parts == 0) {
             let part = Start { period: start.period / f64::from(parts), ..start.clone() };
             let end = match self.follow(&part, &[], control) {
@@ -173,7 +182,7 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn evaluate(
+    pub(super) fn evaluate(
         &self,
         start: &Start,
         with_derivatives: bool,
@@ -236,13 +245,13 @@ impl ReturnMap {
     ///
     /// # Errors
     /// A motion that cannot be followed.
-    pub fn carry(&self, passages: &[Passage], columns: &mut Columns) -> Result<(), Refusal> {
+    pub(super) fn carry(&self, passages: &[Passage], columns: &mut Columns) -> Result<(), Refusal> {
         let equations = varied_equations(&self.wheel, self.parameter);
         carry(&equations, passages, columns, &self.scales, self.tolerance)
     }
 
     /// Moves a start by scaled changes of its states and its period.
-    pub fn moved(&self, start: &Start, change: &[f64], sign: f64) -> Start {
+    pub(super) fn moved(&self, start: &Start, change: &[f64], sign: f64) -> Start {
         let mut moved = start.clone();
         for (&i, change) in self.free().iter().zip(change) {
             moved.state.state[i] += sign * change * self.scales[i];
@@ -255,7 +264,7 @@ impl ReturnMap {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn solve(&mut self, start: &Start, control: &Control<'_>) -> Result<(Start, Return), Refusal> {
+    pub(super) fn solve(&mut self, start: &Start, control: &Control<'_>) -> Result<(Start, Return), Refusal> {
         let mut start = start.clone();
         let mut previous = f64::INFINITY;
         for _ in 0..MOST_UPDATES {

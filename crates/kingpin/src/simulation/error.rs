@@ -6,6 +6,7 @@ use arclength::integration::IntegrationError;
 
 /// Why a motion could not be simulated.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A state that the model does not have.
     #[error("unknown state `{given}`; the states are {allowed}")]

@@ -51,7 +51,7 @@ pub(crate) struct Equations<T> {
 impl Equations<f64> {
     /// # Errors
     /// What [`Wheel::sliding`] refuses.
-    pub fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
+    pub(crate) fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
         // The check for a finite longitudinal stiffness is that of the rolling wheel.
         wheel.rolling(&[])?;
         if wheel.normal_force() < 0.0 {
@@ -65,7 +65,7 @@ impl Equations<f64> {
 
 impl<T: Scalar> Equations<T> {
     /// The coefficients made of these values of the stored parameters and the curvature.
-    pub fn with(get: impl Fn(Key) -> T) -> Self {
+    pub(crate) fn with(get: impl Fn(Key) -> T) -> Self {
         let body: Body<T> = Body::new(&get);
         let mass = get(Key::MW) + get(Key::MC);
         let rim_mass = get(Key::JWxi) / get(Key::WheelRadius).powi(2);
@@ -86,7 +86,7 @@ impl<T: Scalar> Equations<T> {
 
     /// Derivative of the state under a friction force `[T1, T2]`.
     #[inline]
-    pub fn derivative(&self, state: &[T], friction: [T; 2], derivative: &mut [T]) {
+    pub(crate) fn derivative(&self, state: &[T], friction: [T; 2], derivative: &mut [T]) {
         let body = &self.body;
         let (u, q, psi, forward, lateral, yaw) = (state[0], state[1], state[2], state[3], state[4], state[5]);
         let (sine, cosine) = psi.sin_cos();
@@ -114,7 +114,7 @@ impl<T: Scalar> Equations<T> {
 
     /// Friction force `-mu_d N s/|s|` at a state with slip.
     #[inline]
-    pub fn sliding_force(&self, state: &[T]) -> [T; 2] {
+    pub(crate) fn sliding_force(&self, state: &[T]) -> [T; 2] {
         if self.sliding_friction.value() == 0.0 {
             return [T::zero(); 2];
         }
@@ -124,7 +124,7 @@ impl<T: Scalar> Equations<T> {
 
     /// The friction force that would keep the slip velocity as it is: the rolling force where there is no slip.
     #[inline]
-    pub fn holding_force(&self, state: &[T]) -> [T; 2] {
+    pub(crate) fn holding_force(&self, state: &[T]) -> [T; 2] {
         let mut rate = [T::zero(); 7];
         self.derivative(state, [T::zero(); 2], &mut rate);
         [-rate[S1] / self.mobility[0], -rate[S2] / self.mobility[1]]
@@ -132,32 +132,32 @@ impl<T: Scalar> Equations<T> {
 
     /// Friction force while slip grows from zero along its limit direction.
     #[inline]
-    pub fn incipient_force(&self, state: &[T]) -> [T; 2] {
+    pub(crate) fn incipient_force(&self, state: &[T]) -> [T; 2] {
         let limit = self.limit_direction(self.holding_force(state));
         limit.direction.map(|e| -self.sliding_friction * e)
     }
 
     /// Slip speed along the limit direction.
     #[inline]
-    pub fn slip_along_limit_direction(&self, state: &[T]) -> T {
+    pub(crate) fn slip_along_limit_direction(&self, state: &[T]) -> T {
         let [along, across] = self.limit_direction(self.holding_force(state)).direction;
         along * state[S1] + across * state[S2]
     }
 
     /// Square of the static limit less that of the holding force.
     #[inline]
-    pub fn static_reserve(&self, state: &[T]) -> T {
+    pub(crate) fn static_reserve(&self, state: &[T]) -> T {
         reserve(self.static_limit, self.holding_force(state))
     }
 
     /// Square of the sliding friction less that of the holding force: slip may grow from zero where it is negative.
     #[inline]
-    pub fn sliding_reserve(&self, state: &[T]) -> T {
+    pub(crate) fn sliding_reserve(&self, state: &[T]) -> T {
         reserve(self.sliding_friction, self.holding_force(state))
     }
 
     /// Solves the secular equation for the limit direction of largest growth.
-    pub fn limit_direction(&self, force: [T; 2]) -> LimitDirection<T> {
+    pub(crate) fn limit_direction(&self, force: [T; 2]) -> LimitDirection<T> {
         let [along, across] = self.mobility;
         let friction = self.sliding_friction;
         let (force_value, friction_value) = (force.map(|f| f.value()), friction.value());
@@ -203,7 +203,7 @@ fn reserve<T: Scalar>(limit: T, force: [T; 2]) -> T {
 
 impl Equations<f64> {
     /// Kinetic energy and energy of the springs in J.
-    pub fn energy(&self, state: &SlipState) -> f64 {
+    pub(crate) fn energy(&self, state: &SlipState) -> f64 {
         let [u, q, psi, forward, lateral, yaw, slip] = *state;
         let body = &self.body;
         let rim_speed = forward - slip;
@@ -217,7 +217,7 @@ impl Equations<f64> {
     }
 
     /// Power in W of the towing frame, and the power that the dampers and a friction force dissipate.
-    pub fn power(&self, state: &SlipState, friction: [f64; 2]) -> (f64, f64) {
+    pub(crate) fn power(&self, state: &SlipState, friction: [f64; 2]) -> (f64, f64) {
         let mut rate = [0.0; 7];
         self.derivative(state, friction, &mut rate);
         let body = &self.body;

@@ -5,7 +5,7 @@ use crate::continuation::corrector::norm;
 use crate::continuation::solution::{across, distance};
 use crate::continuation::{Curve, Settings, Solution};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Growth exponents of a solution: eigenvalues of an equilibrium, logarithms of the multipliers of a cycle.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,11 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
+    /// Whether an exponent is no member of a complex pair.
+    pub(super) fn is_real(&self, exponent: Complex64) -> bool {
+        exponent.im == 0.0 || self.is_periodic && exponent.im.abs() == PI
+    }
+
     /// Distance of two exponents.
     pub(super) fn separation(&self, one: Complex64, other: Complex64) -> f64 {
         let difference = one - other;

@@ -20,10 +20,10 @@ const LEAST_COSINE: f64 = 0.5;
 /// the branch that turns at a pitchfork the parameter turns, but that is no fold.
 const VANISHING: f64 = 1e-3;
 
-/// What lies between two solutions is no farther from either of them than this many times their distance, unless they are so
-/// close in the metric that rounding counts.
+/// What lies between two solutions is no farther from either of them than this many times their distance and this far in the
+/// metric, as solutions are known no better.
 const BETWEEN: f64 = 1.2;
-const SHORTEST_BRACKET: f64 = 1e-6;
+const LEAST_DISTANCE: f64 = 2e-6;
 
 /// The search in one step.
 pub(super) struct Scan<'s, C: Curve> {
@@ -95,28 +95,55 @@ impl<'s, C: Curve> Scan<'s, C> {
             Some(0.5)
         } else {
             let tests = self.curve.test_functions();
-            let most = changed.iter().filter_map(|&index| tests[index].changes.iter().max()).sum();
+            let largest = changed.iter().filter_map(|&index| tests[index].changes.iter().max());
+            let (pairs, single): (Vec<usize>, Vec<usize>) = largest.partition(|change| **change > 1);
+            let most = [single.iter().sum(), pairs.iter().sum()];
             suspicious(self.curve, [before, after], length, self.memory, (most, self.settings))
         };
         let smallest =
             if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
-        if let Some(fraction) = divide.filter(|_| share > smallest && self.trials > 0) {
-            self.trials -= 1;
-            // Where all trials fail (next to a branch point, where the equations are singular) the division ends: the point
-            // is located from the ends.
-            if let Some((fraction, mut middle)) = self.divided(before, after, fraction) {
-                self.part([before, &mut middle], share * fraction)?;
-                return self.part([&mut middle, after], share * (1.0 - fraction));
-            }
+        if let Some(fraction) = divide
+            && self.divide([before, after], share, (fraction, smallest))?
+        {
+            return Ok(());
         }
         if changed.is_empty() && !self.is_explained(&changed, before, after) {
             // Symmetry makes several exponents cross at once.
             return self.locate_by_count(before, after);
         }
+        let known = (self.found.len(), self.unlocated.len());
         for index in changed {
             self.locate(index, before, after)?;
         }
+        // What changes its sign may be something else, such as a pair of real exponents with the sum zero, and hide what crosses.
+        let (_, new) = self.found.split_at(known.0);
+        if !self.explain(new, before, after) {
+            let unlocated = self.unlocated.split_off(known.1);
+            // Points that are found again are told by their places.
+            if !self.divide([before, after], share, (0.5, self.settings.smallest_part))? {
+                self.unlocated.extend(unlocated);
+            }
+        }
         Ok(())
+    }
+
+    /// Searches both sides of a fraction of a part of the step, which is this `share` of the whole; whether it is large enough.
+    fn divide(
+        &mut self,
+        [before, after]: [&mut Node<C>; 2],
+        share: f64,
+        (fraction, smallest): (f64, f64),
+    ) -> Result<bool, Error> {
+        if share <= smallest || self.trials == 0 {
+            return Ok(false);
+        }
+        self.trials -= 1;
+        // Where all trials fail (next to a branch point, where the equations are singular) the division ends: the point is
+        // located from the ends.
+        let Some((fraction, mut middle)) = self.divided(before, after, fraction) else { return Ok(false) };
+        self.part([before, &mut middle], share * fraction)?;
+        self.part([&mut middle, after], share * (1.0 - fraction))?;
+        Ok(true)
     }
 
     /// A solution between two others, near a fraction of the way, that is no special point itself.
@@ -199,7 +226,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     ) -> bool {
         let length = distance(self.curve, &before.unknown, &after.unknown);
         let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
-        length < SHORTEST_BRACKET || ends[0].max(ends[1]) <= BETWEEN * length
+        ends[0].max(ends[1]) <= BETWEEN * length + LEAST_DISTANCE
     }
 
     /// A point between two solutions that has been found and at which the test function of `kind` may vanish too.

@@ -16,14 +16,14 @@ const DEAD: f64 = -20.0;
 /// A quantity that changes by less than this part of itself in a step does not pass zero unseen.
 const PLAUSIBLE: f64 = 1.0;
 
-/// The part of the step at which to look, if any. `most_crossings` is the largest number of exponents that the changes of sign
-/// let cross the axis.
+/// The part of the step at which to look, if any. `most_crossings` are the largest numbers of exponents, real ones and members of
+/// complex pairs, that the changes of sign let cross the axis.
 pub(super) fn suspicious<C: Curve>(
     curve: &mut C,
     [before, after]: [&mut Node<C>; 2],
     length: f64,
     memory: &Memory,
-    (most_crossings, settings): (usize, &Settings),
+    (most_crossings, settings): ([usize; 2], &Settings),
 ) -> Option<f64> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
@@ -64,7 +64,7 @@ fn exponents_hide<C: Curve>(
     before: &mut Node<C>,
     after: &mut Node<C>,
     length: f64,
-    (most_crossings, settings): (usize, &Settings),
+    (most_crossings, settings): ([usize; 2], &Settings),
 ) -> Option<f64> {
     let noise = before.spectrum.noise.max(after.spectrum.noise);
     let per_step =
@@ -73,7 +73,7 @@ fn exponents_hide<C: Curve>(
     let behind = per_step(&after.rates(curve, length, settings)?.exponents);
     let (one, other) = (&before.spectrum, &after.spectrum);
     let indices = partners(one, other, Some((&ahead, &behind)));
-    let mut crossings = 0;
+    let mut crossings = [0, 0];
     for (index, partner) in indices.into_iter().enumerate() {
         let (here, there) = (one.exponents[index], *other.exponents.get(partner)?);
         if here.re.max(there.re) < DEAD && one.is_periodic {
@@ -82,14 +82,18 @@ fn exponents_hide<C: Curve>(
         if here.re.abs() <= noise || there.re.abs() <= noise {
             continue;
         }
-        crossings += usize::from((here.re > 0.0) != (there.re > 0.0));
+        // Real ones that meet in between may be either.
+        let is_real = [here, there].map(|exponent| one.is_real(exponent));
+        if (here.re > 0.0) != (there.re > 0.0) && is_real[0] == is_real[1] {
+            crossings[usize::from(!is_real[0])] += 1;
+        }
         let path = Path::new([here.re, there.re], [ahead[index].re, behind[partner].re]);
         if let Some(place) = path.suspicious() {
             return Some(place);
         }
     }
     // Some cross in one direction and as many in the other.
-    (crossings > most_crossings).then_some(0.5)
+    (crossings[0] > most_crossings[0] || crossings[1] > most_crossings[1]).then_some(0.5)
 }
 
 fn tests_hide<C: Curve>(

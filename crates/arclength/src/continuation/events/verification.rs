@@ -4,8 +4,8 @@
 use super::node::Node;
 use super::scan::Scan;
 use super::search::Event;
-use crate::continuation::Curve;
 use crate::continuation::solution::{across, along};
+use crate::continuation::{Curve, Solution};
 use crate::error::Error;
 
 /// Times that the surroundings of a located point are searched again, and the part of them that is set aside around the
@@ -14,6 +14,8 @@ const MOST_SEARCHES: usize = 4;
 const SURROUNDINGS: f64 = 0.02;
 /// Distance, in the metric, from one located point to the next between which there is nothing to count.
 const COINCIDENT: f64 = 1e-8;
+/// Distance, in the metric, within which two points of one kind are one that was found twice.
+const SAME_PLACE: f64 = 1e-7;
 
 /// Whether a change of the number of unstable directions is a sum of changes, each with either sign, one of each list. An empty
 /// list explains nothing and forbids nothing.
@@ -52,12 +54,7 @@ impl<C: Curve> Scan<'_, C> {
             return self.checked(Vec::new(), before, after, before, 0);
         }
         let origin = before.solution.clone();
-        let mut placed: Vec<(f64, Event<C::Kind, C::Point>)> = found
-            .into_iter()
-            .map(|event| (along(self.curve, &origin, &event.solution.unknown), event))
-            .collect();
-        placed.sort_by(|one, other| one.0.total_cmp(&other.0));
-        placed.dedup_by(|next, previous| self.is_repeated(next, previous));
+        let placed = self.in_order(found, &origin);
         let mut checked = Vec::new();
         let mut group = Vec::new();
         let mut left = Node::new(self.curve, origin);
@@ -81,7 +78,22 @@ impl<C: Curve> Scan<'_, C> {
         }
         // What follows a last middle that could not be computed is taken as it is.
         checked.extend(group);
-        Ok(checked)
+        Ok(self.in_order(checked, &before.solution).into_iter().map(|(_, event)| event).collect())
+    }
+
+    /// Points in the order of the curve with their places along the tangent at `origin`, each once.
+    fn in_order(
+        &self,
+        found: Vec<Event<C::Kind, C::Point>>,
+        origin: &Solution<C::Point>,
+    ) -> Vec<(f64, Event<C::Kind, C::Point>)> {
+        let mut placed: Vec<(f64, Event<C::Kind, C::Point>)> = found
+            .into_iter()
+            .map(|event| (along(self.curve, origin, &event.solution.unknown), event))
+            .collect();
+        placed.sort_by(|one, other| one.0.total_cmp(&other.0));
+        placed.dedup_by(|next, previous| self.is_repeated(next, previous));
+        placed
     }
 
     /// Whether two neighbours are one point found twice.
@@ -91,9 +103,28 @@ impl<C: Curve> Scan<'_, C> {
         (place, event): &(f64, Event<C::Kind, C::Point>),
     ) -> bool {
         next.kind == event.kind
-            && next_place - place <= COINCIDENT
+            && next_place - place <= SAME_PLACE
             && next.is_located == event.is_located
             && !(next.is_located && self.curve.are_distinct(&event.solution.point, &next.solution.point))
+    }
+
+    /// By how much the number of unstable directions may change at each of some points; `None` where that is not known.
+    fn changes_at<'p>(&'p self, points: &'p [Event<C::Kind, C::Point>]) -> Option<Vec<&'p [usize]>> {
+        let tests = self.curve.test_functions();
+        let of_kind = |kind: C::Kind| Some(tests.iter().find(|test| test.kind == kind)?.changes);
+        let known = |event: &'p Event<C::Kind, C::Point>| {
+            let known = self.curve.changes_at(&event.solution.point).or_else(|| of_kind(event.kind));
+            known.filter(|_| event.is_located)
+        };
+        points.iter().map(known).collect()
+    }
+
+    /// Whether the points between two solutions may explain how the number of unstable directions changes.
+    pub fn explain(&self, points: &[Event<C::Kind, C::Point>], before: &Node<C>, after: &Node<C>) -> bool {
+        match (Self::change_of_count(before, after), self.changes_at(points)) {
+            (Some(change), Some(lists)) => reachable(change, lists.into_iter()),
+            _ => true,
+        }
     }
 
     /// Whether the change of the number of unstable directions is one that the points between explain; where it is not, whether
@@ -105,16 +136,7 @@ impl<C: Curve> Scan<'_, C> {
         after: &Node<C>,
     ) -> Option<bool> {
         let change = Self::change_of_count(before, after)?;
-        let tests = self.curve.test_functions();
-        let lists: Option<Vec<&[usize]>> = points
-            .iter()
-            .map(|event| {
-                let known = self.curve.changes_at(&event.solution.point);
-                let of_kind = || Some(tests.iter().find(|test| test.kind == event.kind)?.changes);
-                known.or_else(of_kind).filter(|_| event.is_located)
-            })
-            .collect();
-        let lists = lists?;
+        let lists = self.changes_at(points)?;
         let most: usize = lists.iter().filter_map(|list| list.iter().max()).sum();
         (!reachable(change, lists.into_iter())).then_some(change > most)
     }
@@ -148,12 +170,13 @@ impl<C: Curve> Scan<'_, C> {
             let mut left = Node::new(self.curve, left.solution.clone());
             let mut right = Node::new(self.curve, right.solution.clone());
             let mut found = self.search([&mut left, &mut low], searches - 1)?;
-            match self.surplus(&group, &low, &high) {
-                None => found.extend(group),
-                Some(_) => found.extend(self.search([&mut low, &mut high], searches - 1)?),
+            if self.surplus(&group, &low, &high).is_some() {
+                found.extend(self.search([&mut low, &mut high], searches - 1)?);
             }
             found.extend(self.search([&mut high, &mut right], searches - 1)?);
-            return Ok(found);
+            // What satisfies its defining system stays, whether it is found again or not.
+            found.extend(group.into_iter().filter(|event| event.is_located));
+            return Ok(self.in_order(found, &origin.solution).into_iter().map(|(_, event)| event).collect());
         }
         if larger {
             self.locate_by_count(left, right)?;

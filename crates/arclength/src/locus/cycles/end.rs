@@ -1,8 +1,8 @@
 //! Why a curve of special cycles ends, apart from the reasons that all curves share.
 
-use crate::continuation::{Explanation, Reason};
+use crate::branch::WithParameters;
+use crate::continuation::{Explanation, Reason, Wording};
 use crate::cycle::CycleEnd;
-use crate::numbers::readable;
 use serde::{Deserialize, Serialize};
 
 /// The reason of its own for which a curve of special cycles ends.
@@ -26,17 +26,27 @@ pub enum CycleLocusEnd {
     },
 }
 
-impl Reason for CycleLocusEnd {
-    fn explain(&self, keys: &[&str]) -> Explanation {
+impl WithParameters for CycleLocusEnd {
+    fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self {
         match self {
-            Self::Cycle(end) => end.explain(keys),
+            Self::Cycle(end) => Self::Cycle(end.with_parameters(convert)),
+            Self::GeneralizedHopfPoint { values: [one, two], frequency } => {
+                Self::GeneralizedHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            }
+            end @ Self::StrongResonance { .. } => end,
+        }
+    }
+}
+
+impl Reason for CycleLocusEnd {
+    fn explain(&self, wording: &Wording<'_>) -> Explanation {
+        match self {
+            Self::Cycle(end) => end.explain(wording),
             Self::GeneralizedHopfPoint { values: [first, second], frequency } => Explanation::of(format!(
-                "the cycles shrink to a generalised Hopf point at {} = {}, {} = {} with angular frequency {}",
-                keys.first().copied().unwrap_or("the first parameter"),
-                readable(*first),
-                keys.get(1).copied().unwrap_or("the second"),
-                readable(*second),
-                readable(*frequency)
+                "the cycles shrink to a generalised Hopf point at {}, {} with angular frequency {}",
+                wording.at(0, *first),
+                wording.at(1, *second),
+                wording.frequency(*frequency)
             )),
             Self::StrongResonance { order } => Explanation::of(format!(
                 "the curve of torus bifurcations ends at a 1:{order} resonance, where its multipliers meet"

@@ -8,7 +8,9 @@ use crate::paper::branches::{
 use crate::paper::numbers::{largest, number, per_cent};
 use crate::paper::wheel::paper_wheel;
 use arclength::branch::Criticality;
-use arclength::cycle::{CyclePoint, Role, Special};
+use arclength::branch::{Labelled, SpecialKind};
+use arclength::cycle::CyclePoint;
+use arclength_analysis::Control;
 use kingpin::branches::HopfPoint;
 use rayon::prelude::*;
 
@@ -137,7 +139,7 @@ fn boundary_of_the_basin(
     let more: Vec<String> = branches.of_figure_6().filter_map(more_unstable_directions).collect();
     let wheel = branch.wheel(SPEED)?;
     let samples = (SETTLING / cycle.period) as usize * SAMPLES;
-    let history = wheel.simulate(SETTLING, &[("psi", KICK)], samples + 1)?;
+    let history = wheel.simulate(SETTLING, &[("psi", KICK)], samples + 1, &Control::none())?;
     let angles: Vec<f64> = history.states.iter().map(|state| state[2]).collect();
     let left = swing(&angles[samples - SAMPLES..]) / (2.0 * KICK);
     let amplitude = 0.5 * (cycle.max[2] - cycle.min[2]);
@@ -176,10 +178,8 @@ fn more_unstable_directions(branch: &Branch) -> Option<String> {
         branch.cycles.iter().filter(|cycle| cycle.unstable_multipliers > 1).map(|cycle| cycle.value);
     let fastest = speeds.next()?;
     let slowest = speeds.next_back().unwrap_or(fastest);
-    let ends = branch.cycles.iter().filter_map(|cycle| match cycle.role {
-        Role::Special(Special::Torus { .. }) => Some(cycle.value),
-        _ => None,
-    });
+    let tori = branch.cycles.iter().filter(|cycle| cycle.special_kind() == Some(SpecialKind::Torus));
+    let ends = tori.map(|cycle| cycle.value);
     // The bifurcations themselves, where there are any, rather than the points next to them.
     let (slowest, fastest) =
         ends.fold((slowest, fastest), |(slow, fast), end| (slow.min(end), fast.max(end)));
@@ -191,12 +191,10 @@ fn more_unstable_directions(branch: &Branch) -> Option<String> {
 fn no_stable_cycles(branches: &Branches) -> Claim {
     let cycles = || branches.iter().flat_map(|branch| &branch.cycles);
     let stable = cycles().filter(|cycle| cycle.stable == Some(true)).count();
-    let count = |kind: fn(&Special) -> bool| {
-        cycles().filter(|cycle| matches!(&cycle.role, Role::Special(special) if kind(special))).count()
-    };
-    let folds = count(|special| matches!(special, Special::Fold));
-    let tori = count(|special| matches!(special, Special::Torus { .. }));
-    let others = count(|special| matches!(special, Special::Doubling | Special::BranchPoint));
+    let count = |kind: SpecialKind| cycles().filter(|cycle| cycle.special_kind() == Some(kind)).count();
+    let folds = count(SpecialKind::FoldOfCycles);
+    let tori = count(SpecialKind::Torus);
+    let others = count(SpecialKind::PeriodDoubling) + count(SpecialKind::BranchPointOfCycles);
     Claim {
         place: "section 5",
         statement: "Without damping or sliding there are, unlike in other models of towed wheels, no stable large vibrations \
@@ -308,7 +306,8 @@ fn swing_after(branch: &Branch, cycle: &CyclePoint, scale: f64) -> Result<f64, E
         *value += scale * (on_cycle - *value);
     }
     let samples = PERIODS * SAMPLES;
-    let history = wheel.simulate_from(&start, PERIODS as f64 * cycle.period, samples + 1)?;
+    let history =
+        wheel.simulate_from(&start, PERIODS as f64 * cycle.period, samples + 1, &Control::none())?;
     let angles: Vec<f64> = history.states.iter().map(|state| state[2]).collect();
     Ok(swing(&angles[samples - SAMPLES..]) / (cycle.max[2] - cycle.min[2]))
 }

@@ -7,8 +7,8 @@ use crate::paper::numbers::{largest, number, per_cent};
 use crate::paper::stability_chart::{StabilityChart, critical_caster_length, growth_rate};
 use crate::paper::uniform_motion::UniformMotions;
 use crate::paper::wheel::{RADII, paper_wheel};
+use arclength_analysis::Control;
 use kingpin::{Axis, Key, Plane};
-use std::ops::ControlFlow;
 
 /// Rounding: a relative difference below this counts as none.
 const ROUNDING: f64 = 1e-10;
@@ -179,7 +179,7 @@ fn critical_speed_in_cornering() -> Result<Claim, Error> {
             Axis::new(Key::L, LENGTHS.0..=LENGTHS.1)?,
         )?;
         let wheel = paper_wheel(limit, LENGTHS.1, radius)?;
-        let chart = wheel.growth_rate_chart(&plane, GRID, &|_| ControlFlow::Continue(()))?;
+        let chart = wheel.growth_rate_chart(&plane, GRID, &Control::none())?;
         points += chart.growth_rate.iter().flatten().count();
         stable += chart.stable.iter().filter(|stable| **stable).count();
     }
@@ -225,7 +225,7 @@ fn cornering_against_straight_running() -> Result<Claim, Error> {
     let plane = Plane::new(Axis::new(Key::V, 0.1..=20.0)?, Axis::new(Key::L, 0.02..=0.3)?)?;
     let chart = |radius: f64| -> Result<Vec<bool>, Error> {
         let wheel = paper_wheel(1.0, 0.1, radius)?;
-        Ok(wheel.growth_rate_chart(&plane, GRID, &|_| ControlFlow::Continue(()))?.stable)
+        Ok(wheel.growth_rate_chart(&plane, GRID, &Control::none())?.stable)
     };
     let straight = chart(f64::INFINITY)?;
     let (mut gained, mut lost) = (0, Vec::new());

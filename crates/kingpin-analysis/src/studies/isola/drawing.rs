@@ -2,7 +2,8 @@
 
 use super::{DETACHED, Isola, WITH_HOPF_POINTS};
 use crate::studies::study::Drawing;
-use arclength::cycle::{CycleBranch, Role, Special};
+use arclength::branch::{Labelled, SpecialKind};
+use arclength::cycle::CycleBranch;
 use kingpin_figure::{
     Axis, Branch, Color, Figure, Legend, LegendEntry, Line, Marker, MarkerShape, Markers, Panel, Region,
     Stability, palette,
@@ -49,7 +50,7 @@ impl Isola {
         }
         panel = panel.markers(
             Markers::new(
-                self.hopf_points.iter().map(|hopf| (hopf.parameter, 0.0)),
+                self.hopf_points.iter().map(|hopf| (hopf.value, 0.0)),
                 Marker::new(MarkerShape::Circle).color(palette::BLUE),
             )
             .legend("Hopf point"),
@@ -117,8 +118,8 @@ impl Isola {
             None => "undecided",
         };
         let kinds = branches()
-            .map(|(what, _, point)| match point.role {
-                Role::Special(Special::Fold) => "fold of the branch",
+            .map(|(what, _, point)| match point.special_kind() {
+                Some(SpecialKind::FoldOfCycles) => "fold of the branch",
                 _ => what,
             })
             .chain(folds().map(|_| "fold of cycles"));
@@ -146,8 +147,8 @@ impl Isola {
 
 fn diagram(branch: &CycleBranch, color: Color) -> Branch {
     let points = branch.points.iter().map(|point| {
-        let stability = match point.role {
-            Role::Special(_) => Stability::Changes,
+        let stability = match point.special_kind() {
+            Some(_) => Stability::Changes,
             _ => Stability::from(point.stable == Some(true)),
         };
         ((point.value, point.max[1]), stability)

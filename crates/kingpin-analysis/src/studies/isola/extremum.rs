@@ -26,13 +26,11 @@ pub(in crate::studies) struct Extremum {
 /// The largest damping on the curve: from the largest computed point, folds at exact speeds around it, and the
 /// maximum of the polynomial through them.
 pub(super) fn largest_damping(field: &LateralWheel, folds: &CycleLocusBranch) -> Result<Extremum, Error> {
+    let ends: Vec<String> = folds.stops.iter().flatten().map(ToString::to_string).collect();
     let missing = || {
         Error::not_found(
             "largest damping",
-            &format!(
-                "the curve of folds, which ends because: {}; {}",
-                folds.backward_stop, folds.forward_stop
-            ),
+            &format!("the curve of folds, which ends because: {}", ends.join("; ")),
         )
     };
     let highest = (1..folds.points.len().saturating_sub(1))

@@ -12,7 +12,7 @@ use super::wheel::wheel;
 use crate::error::{Error, unless_stopped};
 use arclength::branch::SpecialKind;
 use arclength::continuation::{Settings, Stop};
-use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Special};
+use arclength::cycle::{CycleBranch, CycleEnd, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::{Equilibria, HopfPoint};
 use arclength::locus::{CycleLocus, CycleLocusBranch};
 use arclength_analysis::Control;
@@ -136,17 +136,17 @@ impl Isola {
         let straight =
             Equilibria::of(&field).parameters(&[1.0, WITH_HOPF_POINTS]).along("v", 0.1..=20.0).run()?;
         let mut hopf_points: Vec<HopfPoint> = straight.hopf_points().cloned().collect();
-        hopf_points.sort_by(|a, b| a.parameter.total_cmp(&b.parameter));
+        hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
         let mut attached = Vec::new();
         for hopf in &hopf_points {
             let ends_here = |branch: &CycleBranch| {
-                matches!(branch.stops.1, Stop::HopfPoint { parameter, .. }
-                    if (parameter / hopf.parameter - 1.0).abs() < SAME)
+                matches!(branch.stops[1], Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. }))
+                    if (parameter / hopf.value - 1.0).abs() < SAME)
             };
             if attached.iter().any(ends_here) {
                 continue;
             }
-            attached.push(along_speed(&field, CycleStart::from(hopf), [hopf.parameter, WITH_HOPF_POINTS])?);
+            attached.push(along_speed(&field, CycleStart::from(hopf), [hopf.value, WITH_HOPF_POINTS])?);
         }
         control.done(0.2);
         unless_stopped(control)?;
@@ -158,7 +158,7 @@ impl Isola {
             .ok_or_else(|| Error::not_found("limit cycle", "v = 10 m/s, c_q = 0.05 N s/m"))?;
         let bridged = Cycles::of(&field, CycleStart::Orbit(bridge.orbit.clone()))
             .parameters(&[BRIDGE, WITH_HOPF_POINTS])
-            .along(DAMPING, BRIDGED.0..=BRIDGED.1)
+            .along("c_q", BRIDGED.0..=BRIDGED.1)
             .at(&[SHOWN[0], DETACHED, SHOWN[1]])
             .run()?;
         let reached = |damping: f64| -> Result<&Orbit, Error> {
@@ -179,18 +179,16 @@ impl Isola {
         control.done(0.5);
         unless_stopped(control)?;
         let closed = along_speed(&field, start(DETACHED)?, [BRIDGE, DETACHED])?;
-        if !matches!(closed.stops.1, Stop::Closed) {
+        if let Some(stop) = closed.stops[1].as_ref().filter(|stop| !matches!(stop, Stop::Closed)) {
             return Err(Error::NothingFound(format!(
-                "the branch of cycles at c_q = {DETACHED} N s/m does not close: {}",
-                closed.stops.1
+                "the branch of cycles at c_q = {DETACHED} N s/m does not close: {stop}"
             )));
         }
         control.done(0.6);
         unless_stopped(control)?;
-        let (_, fold) = closed
-            .special_points()
-            .filter(|(special, _)| *special == Special::Fold)
-            .max_by(|a, b| a.1.value.total_cmp(&b.1.value))
+        let fold = closed
+            .of_kind(SpecialKind::FoldOfCycles)
+            .max_by(|a, b| a.value.total_cmp(&b.value))
             .ok_or_else(|| Error::not_found("fold of cycles", "c_q = 0.1 N s/m"))?;
         let folds = CycleLocus::of(&field)
             .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, DETACHED])
@@ -215,8 +213,7 @@ impl Isola {
 
     /// Folds of the closed branch by speed.
     pub fn closed_folds(&self) -> Vec<&CyclePoint> {
-        let folds = self.closed.special_points().filter(|(special, _)| *special == Special::Fold);
-        let mut folds: Vec<&CyclePoint> = folds.map(|(_, point)| point).collect();
+        let mut folds: Vec<&CyclePoint> = self.closed.of_kind(SpecialKind::FoldOfCycles).collect();
         folds.sort_by(|a, b| a.value.total_cmp(&b.value));
         folds
     }
@@ -229,7 +226,7 @@ impl Isola {
             let criticality = format!("{:?}", hopf.criticality).to_lowercase();
             find(
                 format!("Hopf point at c_q = {WITH_HOPF_POINTS} N s/m, {criticality}: v"),
-                hopf.parameter,
+                hopf.value,
                 "m/s",
             );
         }
@@ -269,7 +266,7 @@ fn along_speed(
 ) -> Result<CycleBranch, arclength::Error> {
     Cycles::of(field, start)
         .parameters(&parameters)
-        .along(SPEED, SPEEDS)
+        .along("v", SPEEDS)
         .at(&[BRIDGE])
         .settings(settings())
         .run()

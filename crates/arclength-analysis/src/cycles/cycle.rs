@@ -1,0 +1,75 @@
+//! A limit cycle in a result, of any model.
+
+use crate::branch::{pairs, tests};
+use crate::normal_form;
+use arclength::cycle::{Branching, CyclePoint, Orbit};
+use kingpin_report::NamedNumbers;
+use serde::{Deserialize, Serialize};
+
+/// A cycle in a result.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct CycleResult {
+    /// Value of the parameter.
+    #[serde(with = "kingpin_report::number")]
+    pub value: f64,
+    /// Period.
+    pub period: f64,
+    /// Largest value of every state.
+    pub max: NamedNumbers,
+    /// Smallest value of every state.
+    pub min: NamedNumbers,
+    /// Floquet multipliers, the largest modulus first.
+    pub multipliers: Vec<[Option<f64>; 2]>,
+    /// How far the computed trivial multiplier is from 1.
+    pub trivial_multiplier_error: f64,
+    /// Nothing where that is not decided.
+    pub stable: Option<bool>,
+    /// Error estimate relative to the amplitudes.
+    pub error_estimate: f64,
+    /// Mesh intervals; none at a Hopf point.
+    #[serde(default)]
+    pub intervals: usize,
+    /// Of special points, of values asked for, of the ends.
+    pub label: Option<String>,
+    /// Test functions by the label of the cycle at which each changes its sign.
+    #[serde(default)]
+    pub tests: NamedNumbers,
+    /// The normal form of a special cycle, by name.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub normal_form: NamedNumbers,
+    /// The cycle itself, where a computation can start from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orbit: Option<Orbit>,
+    /// The start of the branch that leaves there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub branching: Option<Branching>,
+}
+
+impl CycleResult {
+    /// A cycle of a branch; `named` gives a state by name.
+    pub fn new(point: CyclePoint, label: Option<String>, named: impl Fn(&[f64]) -> NamedNumbers) -> Self {
+        let finite = point.normal_form.iter().filter(|(_, value)| value.is_finite());
+        let normal_form = NamedNumbers(finite.map(|(name, value)| ((*name).to_owned(), *value)).collect());
+        Self {
+            value: point.value,
+            period: point.period,
+            max: named(&point.max),
+            min: named(&point.min),
+            multipliers: pairs(&point.multipliers),
+            trivial_multiplier_error: point.trivial_multiplier_error,
+            stable: point.stable,
+            error_estimate: point.error_estimate,
+            intervals: point.orbit.mesh.len().saturating_sub(1),
+            tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            normal_form,
+            branching: point.branching,
+            orbit: label.as_ref().map(|_| point.orbit),
+            label,
+        }
+    }
+
+    /// What its normal form says.
+    pub fn remark(&self) -> String {
+        normal_form::of_cycle(self.label.as_deref(), &self.normal_form)
+    }
+}

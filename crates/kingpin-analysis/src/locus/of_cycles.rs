@@ -1,0 +1,93 @@
+//! A curve of special cycles of a wheel as a result.
+
+use crate::along::{Plane, axes};
+use crate::description;
+use crate::parameters::{parameters_of, wheel_of};
+use crate::states::named_state;
+use arclength_analysis::Origin;
+use arclength_analysis::locus::CycleCurve;
+use kingpin::{KingpinError, Wheel};
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// A curve of folds, period doublings or torus bifurcations of limit cycles.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "StoredCurve")]
+pub struct CycleLocusResult {
+    /// The wheel; its values of the parameters that vary are anywhere.
+    #[serde(skip)]
+    pub wheel: Wheel,
+    /// The parameters and their intervals.
+    #[serde(skip)]
+    pub plane: Plane,
+    /// The curve.
+    #[serde(flatten)]
+    pub curve: CycleCurve,
+}
+
+/// The result as it is read back.
+#[derive(Deserialize)]
+struct StoredCurve {
+    parameters: NamedNumbers,
+    #[serde(flatten)]
+    curve: CycleCurve,
+}
+
+impl TryFrom<StoredCurve> for CycleLocusResult {
+    type Error = KingpinError;
+
+    fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
+        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: Plane::of(&curve.plane)?, curve })
+    }
+}
+
+impl CycleLocusResult {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "kingpin.cycle_locus";
+
+    /// The result of a curve.
+    pub(super) fn new(
+        wheel: Wheel,
+        plane: Plane,
+        from: Origin,
+        curve: kingpin::branches::CycleCurve,
+    ) -> Self {
+        let kingpin::branches::CycleCurve { kind, points, stops, unlocated } = curve;
+        let curve = CycleCurve::new(kind, plane.varying(), from, points, &stops, &unlocated, named_state);
+        Self { wheel, plane, curve }
+    }
+}
+
+impl Report for CycleLocusResult {
+    fn schema(&self) -> Schema {
+        Schema::first(Self::SCHEMA)
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        parameters_of(&self.wheel, &self.plane.keys())
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let kind = self.curve.kind.name();
+        let heading = format!("curve: {kind}, at {}", description::of(&self.wheel, &self.plane.keys()));
+        self.curve.write_table(&heading, out)
+    }
+
+    fn columns(&self) -> Columns {
+        self.curve.columns()
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let (kind, [one, two]) = (self.curve.kind.name(), self.plane.keys());
+        let description =
+            format!("{kind} in {one} and {two} at {}", description::of(&self.wheel, &[one, two]));
+        let (labels, scales) = axes(&self.plane);
+        Ok(Some(self.curve.figure(&description, [&labels[0], &labels[1]], scales)))
+    }
+
+    fn story(&self) -> Option<Story> {
+        Some(self.curve.story())
+    }
+}

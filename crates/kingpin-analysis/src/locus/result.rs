@@ -1,0 +1,72 @@
+//! A curve of special points as a result, of Hopf points or of cycles.
+
+use super::of_cycles::CycleLocusResult;
+use super::of_hopf_points::HopfLocusResult;
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// A curve of special points in two parameters.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum LocusResult {
+    /// Of Hopf points.
+    HopfPoints(HopfLocusResult),
+    /// Of special cycles.
+    Cycles(CycleLocusResult),
+}
+
+impl LocusResult {
+    /// What was detected but not located.
+    pub fn warnings(&self) -> Vec<String> {
+        match self {
+            Self::HopfPoints(_) => Vec::new(),
+            Self::Cycles(result) => result.curve.warnings(),
+        }
+    }
+}
+
+impl Report for LocusResult {
+    fn schema(&self) -> Schema {
+        match self {
+            Self::HopfPoints(result) => result.schema(),
+            Self::Cycles(result) => result.schema(),
+        }
+    }
+
+    fn parameters(&self) -> NamedNumbers {
+        match self {
+            Self::HopfPoints(result) => result.parameters(),
+            Self::Cycles(result) => result.parameters(),
+        }
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        match self {
+            Self::HopfPoints(result) => result.write_table(out),
+            Self::Cycles(result) => result.write_table(out),
+        }
+    }
+
+    fn columns(&self) -> Columns {
+        match self {
+            Self::HopfPoints(result) => result.columns(),
+            Self::Cycles(result) => result.columns(),
+        }
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        match self {
+            Self::HopfPoints(result) => result.figure(),
+            Self::Cycles(result) => result.figure(),
+        }
+    }
+
+    fn story(&self) -> Option<Story> {
+        match self {
+            Self::HopfPoints(result) => result.story(),
+            Self::Cycles(result) => result.story(),
+        }
+    }
+}
