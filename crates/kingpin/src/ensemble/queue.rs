@@ -1,7 +1,8 @@
 //! A queue of initial states worked off by the lanes of one thread.
 
+use super::quadratic::QuadraticWheel;
 use super::taylor::{Series, TaylorMethod, lanes, lanes_mut};
-use super::{Ending, Ensemble, Monitor, Outcome, Progress, QuadraticWheel};
+use super::trajectory::{Ending, Monitor, Outcome, Progress};
 use arclength::control::{Control, Interrupted};
 use pulp::{Simd, WithSimd};
 use std::ops::ControlFlow;
@@ -11,7 +12,9 @@ const WIDEST: usize = 8;
 
 /// Trajectories to follow and where their ends go.
 pub(super) struct Queue<'a, F> {
-    pub ensemble: &'a Ensemble,
+    pub wheel: &'a QuadraticWheel,
+    pub tolerance: f64,
+    pub maximum_steps: u32,
     pub initial: &'a [[f64; 5]],
     /// Index of the first trajectory.
     pub first: usize,
@@ -34,8 +37,9 @@ impl<M: Monitor, F: Fn(usize) -> M> WithSimd for Queue<'_, F> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { ensemble, initial, first, duration, monitor, control, outcomes } = self;
-        let method = TaylorMethod::new(simd, &ensemble.wheel, ensemble.tolerance);
+        let Self { wheel, tolerance, maximum_steps, initial, first, duration, monitor, control, outcomes } =
+            self;
+        let method = TaylorMethod::new(simd, wheel, tolerance);
         let mut series = Series::new(simd);
         let mut waiting = 0..initial.len();
         let mut slots: [Option<Lane<M>>; WIDEST] = [const { None }; WIDEST];
@@ -71,7 +75,7 @@ impl<M: Monitor, F: Fn(usize) -> M> WithSimd for Queue<'_, F> {
                     Some(Ending::Stopped)
                 } else if is_last {
                     Some(Ending::Completed)
-                } else if lane.steps >= ensemble.maximum_steps {
+                } else if lane.steps >= maximum_steps {
                     Some(Ending::TooManySteps)
                 } else {
                     None

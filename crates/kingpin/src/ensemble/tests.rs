@@ -4,6 +4,7 @@ use super::*;
 use crate::Key;
 use arclength::control::Control;
 use arclength::integration::{Integrator, autonomous};
+use std::ops::ControlFlow;
 
 /// Initial states around the uniform motion, from a low-discrepancy sequence.
 fn initial_states(wheel: &Wheel, count: usize) -> Vec<[f64; 5]> {
