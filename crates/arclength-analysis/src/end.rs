@@ -26,8 +26,18 @@ impl End {
     /// The end of a branch along these parameters, with its last good point. Where the parameters have units, they are those of
     /// the SI.
     pub fn of<R: Reason>(stop: &Stop<R>, varying: &[VaryingParameter], last: NamedNumbers) -> Self {
+        Self::told(stop, varying, &[], last)
+    }
+
+    fn told<R: Reason>(
+        stop: &Stop<R>,
+        varying: &[VaryingParameter],
+        monitors: &[String],
+        last: NamedNumbers,
+    ) -> Self {
         let named = varying.iter().map(|parameter| (parameter.key.as_str(), parameter.unit.as_deref()));
-        let explanation = stop.explain(&Wording::of(named));
+        let wording = Wording::of(named).monitors(monitors.iter().map(String::as_str));
+        let explanation = stop.explain(&wording);
         Self { cause: explanation.cause, last, remedy: explanation.remedy.map(str::to_owned) }
     }
 
@@ -37,8 +47,18 @@ impl End {
         varying: &[VaryingParameter],
         last: NamedNumbers,
     ) -> Self {
+        Self::monitored(stop, varying, &[], last)
+    }
+
+    /// The same where monitors were asked for, with their names.
+    pub fn monitored<R: Reason>(
+        stop: Option<&Stop<R>>,
+        varying: &[VaryingParameter],
+        monitors: &[String],
+        last: NamedNumbers,
+    ) -> Self {
         match stop {
-            Some(stop) => Self::of(stop, varying, last),
+            Some(stop) => Self::told(stop, varying, monitors, last),
             None => Self::start(last),
         }
     }

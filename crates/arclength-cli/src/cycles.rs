@@ -1,6 +1,7 @@
 //! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result.
 
 use crate::model_options::ParameterOptions;
+use crate::monitor_options::MonitorOptions;
 use arclength_analysis::cycles::CyclesRequest;
 use arclength_analysis::{Interval, PointReference, Values};
 use clap::Args;
@@ -32,6 +33,9 @@ pub struct Cycles {
     #[arg(long)]
     stay: bool,
 
+    #[command(flatten)]
+    monitors: MonitorOptions,
+
     /// Tell the story of the run after the table
     #[arg(long)]
     explain: bool,
@@ -58,6 +62,7 @@ impl Cycles {
             set: self.parameters.values()?,
             along: self.along.clone(),
             at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            monitors: self.monitors.asked(),
             stay: self.stay,
             steps: self.steps.into(),
             mesh: self.mesh.into(),

@@ -1,6 +1,7 @@
 //! `arclength equilibria`: a branch of equilibria of a model, from its initial state or from a labelled point.
 
 use crate::model_options::ModelOptions;
+use crate::monitor_options::MonitorOptions;
 use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::{Interval, Values};
 use clap::Args;
@@ -25,6 +26,9 @@ pub struct Equilibria {
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
 
+    #[command(flatten)]
+    monitors: MonitorOptions,
+
     /// Tell the story of the run after the table
     #[arg(long)]
     explain: bool,
@@ -46,6 +50,7 @@ impl Equilibria {
             model: self.model.request()?,
             along: self.along.clone(),
             at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            monitors: self.monitors.asked(),
             steps: self.steps.into(),
         };
         let analysis = request.validate()?;

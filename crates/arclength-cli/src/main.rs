@@ -4,6 +4,7 @@ mod cycles;
 mod equilibria;
 mod locus;
 mod model_options;
+mod monitor_options;
 mod show;
 mod simulate;
 

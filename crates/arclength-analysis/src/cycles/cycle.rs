@@ -34,6 +34,9 @@ pub struct CycleResult {
     /// Test functions by the label of the cycle at which each changes its sign.
     #[serde(default)]
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
     /// The normal form of a special cycle, by name.
     #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
     pub normal_form: NamedNumbers,
@@ -61,6 +64,7 @@ impl CycleResult {
             error_estimate: point.error_estimate,
             intervals: point.orbit.mesh.len().saturating_sub(1),
             tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            monitors: NamedNumbers::default(),
             normal_form,
             branching: point.branching,
             orbit: label.as_ref().map(|_| point.orbit),

@@ -6,13 +6,14 @@ use crate::error::Error;
 use crate::interval::Interval;
 use crate::labels::kind;
 use crate::model::ChosenModel;
+use crate::monitor::{CycleMonitor, Monitored};
 use crate::point_reference::PointReference;
 use crate::start::{LabelledPoint, What};
 use crate::steps::{Mesh, Steps};
-use arclength::branch::SpecialKind;
+use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
 use arclength::control::Control;
-use arclength::cycle::{CycleStart, Cycles, Orbit};
+use arclength::cycle::{CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::SpecialPoint;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
@@ -35,6 +36,9 @@ pub struct CyclesRequest {
     /// Values of the parameter at which cycles are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
+    /// What is recorded along the branch.
+    #[serde(default)]
+    pub monitors: Vec<Monitored>,
     /// Whether the branch of the labelled cycle itself is followed, not the one that bifurcates there.
     #[serde(default)]
     pub stay: bool,
@@ -56,6 +60,7 @@ pub struct CyclesAnalysis {
     active: usize,
     along: Interval,
     at: Vec<f64>,
+    monitors: Vec<(Monitored, CycleMonitor)>,
     steps: Steps,
     mesh: Mesh,
 }
@@ -68,6 +73,7 @@ impl CyclesRequest {
             set: NamedNumbers::default(),
             along,
             at: Vec::new(),
+            monitors: Vec::new(),
             stay: false,
             steps: Steps::default(),
             mesh: Mesh::default(),
@@ -95,7 +101,9 @@ impl CyclesRequest {
                 point.label
             )
         });
+        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_cycles(&chosen)?)));
         Ok(CyclesAnalysis {
+            monitors: monitors.collect::<Result<_, Error>>()?,
             start,
             origin: Origin::labelled(&point.label, how),
             warnings: warnings.into_iter().collect(),
@@ -163,7 +171,16 @@ impl CyclesAnalysis {
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let name = &self.chosen.model.parameters()[self.active];
-        let branch = Cycles::of(&self.chosen.model, self.start.clone())
+        let monitors = self.monitors.iter().map(|(asked, monitor)| {
+            let value = |point: &CyclePoint| {
+                let mut parameters = self.chosen.parameters.clone();
+                parameters[self.active] = point.value;
+                Some(monitor.value(&point.orbit, &parameters))
+            };
+            Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
+        });
+        let branch = monitors
+            .fold(Cycles::of(&self.chosen.model, self.start.clone()), Cycles::monitor)
             .parameters(&self.chosen.parameters)
             .along(name, self.along.start..=self.along.end)
             .at(&self.at)
@@ -175,6 +192,7 @@ impl CyclesAnalysis {
                 control.flow()
             })
             .run()?;
-        Ok(CyclesResult::new(&self.chosen, self.active, &self.along, self.origin.clone(), branch))
+        let names: Vec<String> = self.monitors.iter().map(|(asked, _)| asked.expression.clone()).collect();
+        Ok(CyclesResult::new(&self.chosen, (self.active, &self.along), self.origin.clone(), &names, branch))
     }
 }

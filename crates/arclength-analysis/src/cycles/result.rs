@@ -7,6 +7,7 @@ use crate::end::End;
 use crate::interval::Interval;
 use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
+use crate::monitor::{monitored, named};
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
 use crate::unlocated::{UnlocatedResult, warnings};
@@ -44,12 +45,12 @@ impl CyclesResult {
     /// Schema of the result file.
     pub const SCHEMA: &'static str = "arclength.cycles";
 
-    /// The result of a branch.
+    /// The result of a branch along a parameter of this index, with the names of its monitors.
     pub fn new(
         chosen: &ChosenModel,
-        active: usize,
-        along: &Interval,
+        (active, along): (usize, &Interval),
         from: Origin,
+        monitors: &[String],
         branch: CycleBranch,
     ) -> Self {
         let count = branch.points.len();
@@ -58,7 +59,8 @@ impl CyclesResult {
             .map(|(index, point)| {
                 let own = point.label.map(|label| label.to_string());
                 let label = own.or_else(|| labels::of_end(index, count));
-                CycleResult::new(point, label, |state| chosen.named_state(state))
+                let monitors = named(monitors, &point.monitors);
+                CycleResult { monitors, ..CycleResult::new(point, label, |state| chosen.named_state(state)) }
             })
             .collect();
         let last = |point: Option<&CycleResult>| {
@@ -69,8 +71,8 @@ impl CyclesResult {
         let [first, second] = &branch.stops;
         let varying = [VaryingParameter::from(along)];
         let ends = [
-            End::of_either(first.as_ref(), &varying, last(points.first())),
-            End::of_either(second.as_ref(), &varying, last(points.last())),
+            End::monitored(first.as_ref(), &varying, monitors, last(points.first())),
+            End::monitored(second.as_ref(), &varying, monitors, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&[active]),
@@ -124,19 +126,22 @@ impl Report for CyclesResult {
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let state = self.states().first().copied().unwrap_or_default();
         let [largest, smallest] = ["max", "min"].map(|end| format!("{end} {state}"));
-        let mut table =
-            Table::new(["label", &self.along.key, "period", &largest, &smallest, "error", "", ""]);
+        let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
+        let headings = ["label", &self.along.key, "period", &largest, &smallest, "error"];
+        let mut table = Table::new(headings.into_iter().chain(monitors.iter().copied()).chain(["", ""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
-            table.row([
+            let mut cells: Vec<Cell> = vec![
                 point.label.clone().into(),
                 Cell::Digits(point.value, DIGITS),
                 Cell::Digits(point.period, DIGITS),
                 point.max.get(0).into(),
                 point.min.get(0).into(),
                 Cell::Digits(point.error_estimate, 2),
-                stability(point.stable, is_bifurcation(point.label.as_deref())).into(),
-                point.remark().into(),
-            ]);
+            ];
+            cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
+            cells.push(stability(point.stable, is_bifurcation(point.label.as_deref())).into());
+            cells.push(point.remark().into());
+            table.row(cells);
         }
         table.write(out)
     }
@@ -160,6 +165,7 @@ impl Report for CyclesResult {
         columns
             .complex_numbers("multiplier", states.len(), points().map(|point| &point.multipliers))
             .named_numbers("test", points().map(|point| &point.tests))
+            .named_numbers("monitor", points().map(|point| &point.monitors))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -6,10 +6,13 @@ use crate::error::Error;
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
+use crate::monitor::Monitored;
 use crate::start::{LabelledPoint, What};
 use crate::steps::Steps;
+use arclength::branch::Monitor;
 use arclength::control::Control;
-use arclength::equilibrium::{BranchPoint, Equilibria, SpecialPoint, equilibrium_settings};
+use arclength::equilibrium::{BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings};
+use arclength_ode::Quantity;
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +29,9 @@ pub struct EquilibriaRequest {
     /// Values of the parameter at which equilibria are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
+    /// What is recorded along the branch.
+    #[serde(default)]
+    pub monitors: Vec<Monitored>,
     /// How steps are taken.
     #[serde(flatten)]
     pub steps: Steps,
@@ -43,13 +49,15 @@ pub struct EquilibriaAnalysis {
     name: String,
     along: Interval,
     at: Vec<f64>,
+    monitors: Vec<(Monitored, Quantity)>,
+    active: usize,
     steps: Steps,
 }
 
 impl EquilibriaRequest {
     /// A request with the default of everything else.
     pub fn new(model: ModelRequest, along: Interval) -> Self {
-        Self { model, along, at: Vec::new(), steps: Steps::default() }
+        Self { model, along, at: Vec::new(), monitors: Vec::new(), steps: Steps::default() }
     }
 
     /// Reads the model and checks every field.
@@ -64,7 +72,10 @@ impl EquilibriaRequest {
         if let Some(point) = &point {
             chosen.starts_within(&["along"], &self.along, &point.label)?;
         }
+        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_equilibria(&chosen)?)));
         Ok(EquilibriaAnalysis {
+            monitors: monitors.collect::<Result<_, Error>>()?,
+            active,
             name: chosen.model.parameters()[active].clone(),
             chosen,
             point,
@@ -103,7 +114,16 @@ impl EquilibriaAnalysis {
             None => equilibria,
         };
         let name = &self.name;
-        let branch = equilibria
+        let monitors = self.monitors.iter().map(|(asked, quantity)| {
+            let value = |point: &EquilibriumPoint| {
+                let mut parameters = chosen.parameters.clone();
+                parameters[self.active] = point.value;
+                Some(quantity.value(&point.state, &parameters, &[]))
+            };
+            Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
+        });
+        let branch = monitors
+            .fold(equilibria, Equilibria::monitor)
             .along(name, self.along.start..=self.along.end)
             .at(&self.at)
             .settings(self.steps.settings(equilibrium_settings()))
@@ -118,7 +138,11 @@ impl EquilibriaAnalysis {
         {
             origin = Origin::labelled(&point.label, "the other branch through it");
         }
-        Ok(EquilibriaResult::new(chosen, &self.along, origin, &branch))
+        Ok(EquilibriaResult::new(chosen, &self.along, origin, &self.names(), &branch))
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.monitors.iter().map(|(asked, _)| asked.expression.clone()).collect()
     }
 
     /// The branch point whose other branch is followed.

@@ -6,6 +6,7 @@ use crate::end::End;
 use crate::interval::Interval;
 use crate::labels::{self, is_bifurcation};
 use crate::model::ChosenModel;
+use crate::monitor::{monitored, named};
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::stored_model::StoredModel;
@@ -37,6 +38,9 @@ pub struct EquilibriumResult {
     pub label: Option<String>,
     /// Test functions by the label of the point at which each changes its sign.
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
     /// The normal form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub special: Option<SpecialPoint>,
@@ -67,8 +71,14 @@ impl EquilibriaResult {
     /// Schema of the result file.
     pub const SCHEMA: &'static str = "arclength.equilibria";
 
-    /// The result of a branch.
-    pub fn new(chosen: &ChosenModel, along: &Interval, from: Origin, branch: &EquilibriumBranch) -> Self {
+    /// The result of a branch, with the names of its monitors.
+    pub fn new(
+        chosen: &ChosenModel,
+        along: &Interval,
+        from: Origin,
+        monitors: &[String],
+        branch: &EquilibriumBranch,
+    ) -> Self {
         let count = branch.points.len();
         let point = |(index, point): (usize, &EquilibriumPoint)| EquilibriumResult {
             value: point.value,
@@ -77,6 +87,7 @@ impl EquilibriaResult {
             stable: point.stability.is_stable(),
             label: point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count)),
             tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            monitors: named(monitors, &point.monitors),
             special: point.special.as_deref().cloned(),
         };
         let points: Vec<EquilibriumResult> = branch.points.iter().enumerate().map(point).collect();
@@ -87,8 +98,8 @@ impl EquilibriaResult {
         };
         let varying = [VaryingParameter::from(along)];
         let ends = [
-            End::of_either(branch.stops[0].as_ref(), &varying, last(points.first())),
-            End::of_either(branch.stops[1].as_ref(), &varying, last(points.last())),
+            End::monitored(branch.stops[0].as_ref(), &varying, monitors, last(points.first())),
+            End::monitored(branch.stops[1].as_ref(), &varying, monitors, last(points.last())),
         ];
         Self {
             parameters: chosen.named_parameters(&branch.active),
@@ -140,10 +151,12 @@ impl Report for EquilibriaResult {
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let states = self.states().into_iter().take(SHOWN_STATES);
         let headings = ["label", self.along.key.as_str()].into_iter().chain(states);
-        let mut table = Table::new(headings.chain(["", ""]));
+        let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
+        let mut table = Table::new(headings.chain(monitors.iter().copied()).chain(["", ""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into(), Cell::Digits(point.value, DIGITS)];
             cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
+            cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
             cells.push(stability(point.stable, is_bifurcation(point.label.as_deref())).into());
             cells.push(point.special.as_ref().map(normal_form::of_equilibrium).unwrap_or_default().into());
             table.row(cells);
@@ -164,6 +177,7 @@ impl Report for EquilibriaResult {
         columns
             .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))
             .named_numbers("test", points().map(|point| &point.tests))
+            .named_numbers("monitor", points().map(|point| &point.monitors))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -67,10 +67,12 @@ pub trait Reason: Clone + fmt::Debug {
     fn explain(&self, wording: &Wording<'_>) -> Explanation;
 }
 
-/// How numbers are told: names and units of the parameters that vary, in the order of the bounds, and of times.
+/// How numbers are told: names and units of the parameters that vary, in the order of the bounds, and of times; names of the
+/// monitors.
 #[derive(Clone, Debug, Default)]
 pub struct Wording<'a> {
     parameters: Vec<(&'a str, Option<&'a str>)>,
+    monitors: Vec<&'a str>,
 }
 
 /// Digits of a number that is known roughly.
@@ -79,12 +81,17 @@ const ROUGH: usize = 3;
 impl<'a> Wording<'a> {
     /// Parameters with their names and, where they have units, those of the SI (`1` for numbers); times are then in seconds.
     pub fn of(parameters: impl IntoIterator<Item = (&'a str, Option<&'a str>)>) -> Self {
-        Self { parameters: parameters.into_iter().collect() }
+        Self { parameters: parameters.into_iter().collect(), monitors: Vec::new() }
     }
 
     /// Parameters without units.
     pub fn of_names(names: &[&'a str]) -> Self {
         Self::of(names.iter().map(|name| (*name, None)))
+    }
+
+    /// The same with the names of the monitors, in the order in which they were asked for.
+    pub fn monitors(self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        Self { monitors: names.into_iter().collect(), ..self }
     }
 
     fn parameter(&self, index: usize) -> (&'a str, Option<&'a str>) {
@@ -147,8 +154,9 @@ impl<R: Reason> Stop<R> {
             Self::RangeEnd { bound, value } => {
                 Explanation::of(format!("reached the end of the interval, {}", wording.at(*bound, *value)))
             }
-            Self::Monitor { value, .. } => {
-                Explanation::of(format!("a monitor reached the value {} at which to stop", readable(*value)))
+            Self::Monitor { index, value } => {
+                let name = wording.monitors.get(*index).copied().unwrap_or("a monitor");
+                Explanation::of(format!("{name} reached the value {} at which to stop", readable(*value)))
             }
             Self::Closed => Explanation::of("the branch is closed: it came back to where it started"),
             Self::StepTooSmall { cause } => Explanation::of(format!("the step became too small: {cause}"))

@@ -1,5 +1,6 @@
 //! Limit cycles: collocation, meshes, Floquet multipliers, special points.
 
+mod along_orbit;
 mod branch;
 mod contract;
 pub(crate) mod curve;

@@ -257,7 +257,7 @@ impl Orbit {
         self.state_with(&Gauss::new(self.degree), &mut vec![0.0; self.degree + 1], phase)
     }
 
-    fn state_with(&self, gauss: &Gauss, basis: &mut [f64], phase: f64) -> Vec<f64> {
+    pub(super) fn state_with(&self, gauss: &Gauss, basis: &mut [f64], phase: f64) -> Vec<f64> {
         let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= phase);
         let (left, right) = (self.mesh[interval], self.mesh[interval + 1]);
         gauss.basis((phase - left) / (right - left), basis);

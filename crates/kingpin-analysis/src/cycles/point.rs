@@ -79,6 +79,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
             intervals: 0,
             label: Some(label),
             tests: NamedNumbers::default(),
+            monitors: NamedNumbers::default(),
             normal_form: NamedNumbers(coefficients.collect()),
             orbit: None,
             branching: None,
