@@ -5,7 +5,7 @@ use super::result::CyclesResult;
 use crate::along::along;
 use crate::error::Error;
 use crate::hopf::search::{same_value, search};
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use crate::wheel_request::WheelRequest;
 use arclength::continuation::Settings;
 use arclength::cycle::{Branching, CycleStart, Orbit};
@@ -104,16 +104,16 @@ impl CyclesRequest {
             let given = file.display().to_string();
             return Err(Error::invalid(&["wheel"], given, "the labelled point has a wheel", "wheel or from"));
         }
-        let LabelledPoint { wheel, what } = LabelledPoint::read(reference)?;
+        let LabelledPoint { wheel, solution } = LabelledPoint::read(reference)?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
         if !along.contains(value) {
             let (start, end) = along.ends();
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
         }
-        let start = match what {
-            What::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
-            What::Cycle { orbit, branching } => {
+        let start = match solution {
+            LabelledSolution::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
+            LabelledSolution::Cycle { orbit, branching } => {
                 LabelledPoint::check_orbit(reference, &wheel, &orbit)?;
                 self.cycle(&reference.label, along, *orbit, branching)
             }
