@@ -60,6 +60,7 @@ impl Cycles {
             mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
+        output.warn_of(&analysis.warnings());
         let progress = ProgressDisplay::spinner("cycles", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
