@@ -9,7 +9,7 @@ use kingpin_report::numbers::readable;
 
 /// A point as the story knows it.
 #[derive(Clone, Debug)]
-pub struct Place<'a> {
+pub struct ToldPoint<'a> {
     /// Value of the parameter.
     pub value: f64,
     /// Nothing where that is not decided.
@@ -33,7 +33,7 @@ pub fn tell_ends(story: &mut Story, ends: &[End; 2]) {
 }
 
 /// Tells the way along the branch: stretches of equal stability between the special points, and the steps.
-pub fn tell_way(story: &mut Story, along: &VaryingParameter, places: &[Place<'_>]) {
+pub fn tell_way(story: &mut Story, along: &VaryingParameter, places: &[ToldPoint<'_>]) {
     // A stretch of equal stability reaches from one special point to the next.
     let mut stretch: Option<(f64, f64, Option<bool>)> = None;
     let told = |(start, end, stable): (f64, f64, Option<bool>)| {

@@ -40,7 +40,7 @@ pub use model_request::{ModelRequest, ModelSource, OpenedModel};
 pub use monitor::{MonitorError, Monitored};
 pub use point_reference::PointReference;
 pub use result_file::ResultFile;
-pub use start::{LabelledPoint, What};
+pub use start::{LabelledPoint, LabelledSolution};
 pub use steps::{Mesh, Steps};
 pub use stored_model::StoredModel;
 pub use unlocated::UnlocatedResult;

@@ -18,12 +18,12 @@ pub struct LabelledPoint {
     /// The model with the parameters and a state there.
     pub chosen: ChosenModel,
     /// What it is.
-    pub what: What,
+    pub solution: LabelledSolution,
 }
 
 /// What a labelled point is.
 #[derive(Clone, Debug)]
-pub enum What {
+pub enum LabelledSolution {
     /// An equilibrium, special or not.
     Equilibrium(Option<SpecialPoint>),
     /// A cycle.
@@ -58,7 +58,7 @@ impl LabelledPoint {
                 if let Some(special) = &point.special {
                     check(special, &chosen).map_err(|problem| reference.failure(problem))?;
                 }
-                Ok(Self::new(reference, chosen, What::Equilibrium(point.special.clone())))
+                Ok(Self::new(reference, chosen, LabelledSolution::Equilibrium(point.special.clone())))
             }
             ResultFile::Locus(result) => {
                 let point =
@@ -66,7 +66,7 @@ impl LabelledPoint {
                 let [one, two] = result.curve.keys();
                 let parameters = at(&result.parameters, &[(one, point.values[0]), (two, point.values[1])]);
                 let chosen = choose(reference, result.model.clone(), &parameters, Some(&point.state))?;
-                Ok(Self::new(reference, chosen, What::Equilibrium(None)))
+                Ok(Self::new(reference, chosen, LabelledSolution::Equilibrium(None)))
             }
             ResultFile::Cycles(result) => {
                 let point = result.points.iter().find(|point| is_wanted(&point.label)).ok_or_else(missing)?;
@@ -93,13 +93,13 @@ impl LabelledPoint {
                 }
                 let (duration, state) = result.end();
                 let chosen = choose(reference, result.model, &result.parameters.0, Some(&state))?;
-                Ok(Self::new(reference, chosen, What::Motion { duration }))
+                Ok(Self::new(reference, chosen, LabelledSolution::Motion { duration }))
             }
         }
     }
 
-    fn new(reference: &PointReference, chosen: ChosenModel, what: What) -> Self {
-        Self { label: reference.label.clone(), chosen, what }
+    fn new(reference: &PointReference, chosen: ChosenModel, solution: LabelledSolution) -> Self {
+        Self { label: reference.label.clone(), chosen, solution }
     }
 
     fn cycle(
@@ -113,7 +113,7 @@ impl LabelledPoint {
             .ok_or_else(|| reference.failure(format!("{} is stored without its orbit", reference.label)))?;
         reference.check(&orbit, chosen.model.states().len())?;
         chosen.start = orbit.state_at(0.0);
-        Ok(Self::new(reference, chosen, What::Cycle { orbit, branching }))
+        Ok(Self::new(reference, chosen, LabelledSolution::Cycle { orbit, branching }))
     }
 }
 

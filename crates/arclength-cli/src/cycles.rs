@@ -5,7 +5,7 @@ use crate::monitor_options::MonitorOptions;
 use arclength_analysis::cycles::CyclesRequest;
 use arclength_analysis::{Interval, PointReference, Values};
 use clap::Args;
-use kingpin_terminal::{Failure, MeshOptions, OutputOptions, Progress, StepOptions, requested_values};
+use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 
 /// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
 ///
@@ -69,7 +69,7 @@ impl Cycles {
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
-        let progress = Progress::spinner("cycles", output.is_quiet());
+        let progress = ProgressDisplay::spinner("cycles", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

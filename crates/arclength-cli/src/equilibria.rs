@@ -5,7 +5,7 @@ use crate::monitor_options::MonitorOptions;
 use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::{Interval, Values};
 use clap::Args;
-use kingpin_terminal::{Failure, OutputOptions, Progress, StepOptions, requested_values};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 
 /// Equilibria along a parameter, with folds, branch points and Hopf points
 ///
@@ -55,7 +55,7 @@ impl Equilibria {
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
-        let progress = Progress::spinner("equilibria", output.is_quiet());
+        let progress = ProgressDisplay::spinner("equilibria", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

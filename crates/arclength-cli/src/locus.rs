@@ -4,7 +4,7 @@ use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::{PointReference, Values};
 use clap::Args;
 use kingpin_terminal::{
-    Failure, MeshOptions, OutputOptions, PlaneOptions, Progress, StepOptions, requested_values,
+    Failure, MeshOptions, OutputOptions, PlaneOptions, ProgressDisplay, StepOptions, requested_values,
 };
 
 /// The curve of special points in two parameters, with its points of codimension two
@@ -55,7 +55,7 @@ impl Locus {
             mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
-        let progress = Progress::spinner("curve", output.is_quiet());
+        let progress = ProgressDisplay::spinner("curve", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

@@ -31,9 +31,9 @@ pub fn drawn_as(along: &Along) -> (Key, fn(f64) -> f64) {
 
 /// Two parameters of the wheel and their intervals.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane(pub [Along; 2]);
+pub struct ParameterPlane(pub [Along; 2]);
 
-impl Plane {
+impl ParameterPlane {
     /// The plane of two parameters in a result.
     ///
     /// # Errors

@@ -45,13 +45,19 @@ impl StabilityRequest {
 /// Linear stability of the uniform motion.
 #[derive(Debug, Serialize)]
 pub struct StabilityResult {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
-    eigenvalues: Vec<[f64; 2]>,
-    growth_rate: f64,
-    stable: bool,
-    critical_speed: Option<f64>,
-    critical_yaw_rate: Option<f64>,
+    pub wheel: Wheel,
+    /// Real and imaginary parts in 1/s and rad/s, by descending real part.
+    pub eigenvalues: Vec<[f64; 2]>,
+    /// Largest real part in 1/s of those that count.
+    pub growth_rate: f64,
+    /// Whether it is negative.
+    pub stable: bool,
+    /// Speed in m/s at which the stability changes.
+    pub critical_speed: Option<f64>,
+    /// Yaw rate in rad/s there.
+    pub critical_yaw_rate: Option<f64>,
 }
 
 impl Report for StabilityResult {

@@ -13,12 +13,12 @@ pub struct LabelledPoint {
     /// The wheel there.
     pub wheel: Wheel,
     /// What it is.
-    pub what: What,
+    pub solution: LabelledSolution,
 }
 
 /// What a labelled point is.
 #[derive(Clone, Debug)]
-pub enum What {
+pub enum LabelledSolution {
     /// A Hopf point, with a parameter along which it was found.
     Hopf(Along),
     /// A cycle.
@@ -50,14 +50,14 @@ impl LabelledPoint {
                 let point = result.points.iter().find(|point| point.label == reference.label);
                 let point = point.ok_or_else(missing)?;
                 let wheel = at(result.wheel, &[(result.interval.key(), point.value)])?;
-                Ok(Self { wheel, what: What::Hopf(result.interval) })
+                Ok(Self { wheel, solution: LabelledSolution::Hopf(result.interval) })
             }
             ResultFile::Cycles(result) => {
                 let place = result.points.iter().position(|point| is_wanted(&point.cycle.label));
                 let cycle = &result.points[place.ok_or_else(missing)?].cycle;
                 let wheel = at(result.wheel, &[(result.interval.key(), cycle.value)])?;
                 let Some(orbit) = cycle.orbit.clone() else {
-                    return Ok(Self { wheel, what: What::Hopf(result.interval) });
+                    return Ok(Self { wheel, solution: LabelledSolution::Hopf(result.interval) });
                 };
                 let branching = cycle.branching.clone().map(|branching| (branching, result.interval.key()));
                 Self::cycle(reference, wheel, orbit, branching)
@@ -67,7 +67,7 @@ impl LabelledPoint {
                 let [one, two] = point.ok_or_else(missing)?.values;
                 let [first, second] = result.plane.keys();
                 let wheel = at(result.wheel, &[(first, one), (second, two)])?;
-                Ok(Self { wheel, what: What::Hopf(result.plane.0[0]) })
+                Ok(Self { wheel, solution: LabelledSolution::Hopf(result.plane.0[0]) })
             }
             ResultFile::CycleLocus(result) => {
                 let point = result.curve.points.iter().find(|point| is_wanted(&point.label));
@@ -93,7 +93,7 @@ impl LabelledPoint {
             branching.check(orbit.dimension).map_err(|error| reference.failure(error.to_string()))?;
         }
         let branching = branching.map(|(branching, key)| (Box::new(branching), key));
-        Ok(Self { wheel, what: What::Cycle { orbit: orbit.into(), branching } })
+        Ok(Self { wheel, solution: LabelledSolution::Cycle { orbit: orbit.into(), branching } })
     }
 
     /// That the orbit is one of a wheel.

@@ -31,19 +31,29 @@ impl SteadyRequest {
 /// The uniform motion.
 #[derive(Debug, Serialize)]
 pub struct SteadyResult {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
-    u: f64,
-    q: f64,
-    psi: f64,
+    pub wheel: Wheel,
+    /// Longitudinal displacement of the king pin in m.
+    pub u: f64,
+    /// Lateral displacement of the king pin in m.
+    pub q: f64,
+    /// Caster angle in rad.
+    pub psi: f64,
+    /// Forward speed of the wheel in m/s.
     #[serde(rename = "V")]
-    forward_speed: f64,
+    pub forward_speed: f64,
+    /// Yaw rate in rad/s.
     #[serde(rename = "Omega")]
-    yaw_rate: f64,
-    residual: f64,
-    friction_force: f64,
-    normal_force: f64,
-    rolls: bool,
+    pub yaw_rate: f64,
+    /// What is left of the equations of motion.
+    pub residual: f64,
+    /// Force of friction between wheel and ground in N.
+    pub friction_force: f64,
+    /// Force of the ground on the wheel in N.
+    pub normal_force: f64,
+    /// Whether the ground can supply the friction.
+    pub rolls: bool,
 }
 
 impl SteadyResult {

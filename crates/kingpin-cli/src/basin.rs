@@ -5,7 +5,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin_analysis::basin::BasinRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin basin --x psi=-1:1:161 --y Omega=-60:60:121 -s v=6 -o basin.png
          kingpin basin --contact sliding -s r=inf -s c_u=0.1 --samples 1000 --seed 7";
@@ -73,7 +73,7 @@ impl Basin {
             let (done, parts) = (journal.finished().len(), analysis.parts()?);
             output.note(&format!("{done} of {parts} parts were finished"));
         }
-        let progress = Progress::bar("basin", output.is_quiet());
+        let progress = ProgressDisplay::bar("basin", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control, &journal))?;
         output.deliver(&result?)?;
         Ok(journal.finish()?)

@@ -4,7 +4,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin_analysis::chart::ChartRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin chart --x v=0.1:12:600 --y l=0.02:0.3:400 -o chart.svg";
 
@@ -36,7 +36,7 @@ impl Chart {
         let analysis = request.validate()?;
         let output = self.output.prepare()?;
         output.warn_of(analysis.warnings());
-        let progress = Progress::bar("chart", output.is_quiet());
+        let progress = ProgressDisplay::bar("chart", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control))?;
         output.deliver(&result?)
     }

@@ -4,7 +4,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::{Interval, PointReference, Values};
 use clap::Args;
 use kingpin_analysis::cycles::CyclesRequest;
-use kingpin_terminal::{Failure, MeshOptions, OutputOptions, Progress, StepOptions, requested_values};
+use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 
 const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
          kingpin cycles --from cycles.json:AT3 --along r=1:inf";
@@ -60,7 +60,8 @@ impl Cycles {
             mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
-        let progress = Progress::spinner("cycles", output.is_quiet());
+        output.warn_of(&analysis.warnings());
+        let progress = ProgressDisplay::spinner("cycles", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

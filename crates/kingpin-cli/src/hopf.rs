@@ -4,7 +4,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::Interval;
 use clap::Args;
 use kingpin_analysis::hopf::HopfRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress, StepOptions};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions};
 
 const EXAMPLE: &str = "kingpin hopf --along v=0.5:12 -s l=0.1";
 
@@ -38,7 +38,7 @@ impl Hopf {
         let request =
             HopfRequest { wheel: self.wheel.request(), along: self.along.clone(), steps: self.steps.into() };
         let analysis = request.validate()?;
-        let progress = Progress::spinner("uniform motions", output.is_quiet());
+        let progress = ProgressDisplay::spinner("uniform motions", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

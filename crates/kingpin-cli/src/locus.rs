@@ -5,7 +5,7 @@ use arclength_analysis::{PointReference, Values};
 use clap::Args;
 use kingpin_analysis::locus::LocusRequest;
 use kingpin_terminal::{
-    Failure, MeshOptions, OutputOptions, PlaneOptions, Progress, StepOptions, requested_values,
+    Failure, MeshOptions, OutputOptions, PlaneOptions, ProgressDisplay, StepOptions, requested_values,
 };
 
 const EXAMPLE: &str =
@@ -56,7 +56,7 @@ impl Locus {
             mesh: self.mesh.into(),
         };
         let analysis = request.validate()?;
-        let progress = Progress::spinner("curve", output.is_quiet());
+        let progress = ProgressDisplay::spinner("curve", output.is_quiet());
         let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

@@ -6,7 +6,7 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin_analysis::margin::MarginRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin margin --along v=1:8:15 --kind release-angle -o margin.svg";
 
@@ -57,7 +57,7 @@ impl Margin {
             let (done, parts) = (journal.finished().len(), analysis.parts());
             output.note(&format!("{done} of {parts} parts were finished"));
         }
-        let progress = Progress::bar("margin", output.is_quiet());
+        let progress = ProgressDisplay::bar("margin", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control, &journal))?;
         output.deliver(&result?)?;
         Ok(journal.finish()?)

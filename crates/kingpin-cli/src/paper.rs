@@ -2,7 +2,7 @@
 
 use clap::Args;
 use kingpin_analysis::paper::PaperRequest;
-use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, Progress, start_threads};
+use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
 use std::path::PathBuf;
 
 /// Figures 2 to 6 of the paper with their data, and a report on what the paper says
@@ -39,7 +39,7 @@ impl Paper {
         start_threads(self.threads)?;
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = PaperRequest { figure: self.figure, out: self.out.clone() };
-        let progress = Progress::bar("paper", self.quiet);
+        let progress = ProgressDisplay::bar("paper", self.quiet);
         let (result, _) = output.watch(progress, |control| request.run(control))?;
         output.deliver(&result?)
     }

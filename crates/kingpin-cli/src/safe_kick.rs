@@ -5,7 +5,7 @@ use crate::disturbance_options::DisturbanceOptions;
 use crate::wheel_options::{WheelOptions, parameter_help};
 use clap::Args;
 use kingpin_analysis::safe_kick::SafeKickRequest;
-use kingpin_terminal::{Failure, OutputOptions, Progress};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin safe-kick -s v=6 -o edge.svg
          kingpin safe-kick --kind step-steer --contact sliding -s v=2 -s r=inf -s c_u=0.1";
@@ -43,7 +43,7 @@ impl SafeKick {
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
-        let progress = Progress::bar("smallest disturbance that does not return", output.is_quiet());
+        let progress = ProgressDisplay::bar("smallest disturbance that does not return", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control))?;
         output.deliver(&result?)
     }

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use kingpin_analysis::studies::{StudyName, StudyRequest};
-use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, Progress, start_threads};
+use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
 use std::path::PathBuf;
 
 /// Studies beyond the paper: damping, isola, sliding, basin, step-steer
@@ -69,7 +69,7 @@ impl StudyCommand {
         start_threads(self.threads)?;
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };
-        let progress = Progress::bar("study", self.quiet);
+        let progress = ProgressDisplay::bar("study", self.quiet);
         let (result, _) = output.watch(progress, |control| request.run(control))?;
         output.deliver(&result?)
     }

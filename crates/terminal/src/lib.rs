@@ -18,5 +18,5 @@ pub use options::{
     MOST_THREADS, MeshOptions, OutputOptions, PlaneOptions, StepOptions, requested_values, start_threads,
 };
 pub use output::{Format, Output};
-pub use progress::Progress;
+pub use progress::ProgressDisplay;
 pub use streams::{print, say};

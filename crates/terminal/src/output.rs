@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::interruption::Interruption;
-use crate::progress::Progress;
+use crate::progress::ProgressDisplay;
 use crate::streams::{print, say};
 use arclength_analysis::Control;
 use clap::ValueEnum;
@@ -91,11 +91,11 @@ impl Output {
     /// [`Failure::Signals`].
     pub fn watch<T>(
         &self,
-        progress: Progress,
+        progress: ProgressDisplay,
         analysis: impl FnOnce(&Control<'_>) -> T,
     ) -> Result<(T, Interruption), Failure> {
         let interruption = Interruption::watch()?;
-        let outcome = analysis(&Control::new(interruption.flag(), &|step| progress.show(step)));
+        let outcome = analysis(&Control::new(interruption.flag(), &|reached| progress.show(reached)));
         drop(progress);
         Ok((outcome, interruption))
     }

@@ -1,6 +1,6 @@
 //! Progress bars on standard error, where that is a terminal.
 
-use arclength_analysis::Progress as Step;
+use arclength_analysis::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::time::Duration;
 
@@ -11,11 +11,11 @@ const SPIN: Duration = Duration::from_millis(100);
 
 /// A bar for a part of the work that is done, or a spinner where that is not known.
 #[derive(Debug)]
-pub struct Progress {
+pub struct ProgressDisplay {
     bar: ProgressBar,
 }
 
-impl Progress {
+impl ProgressDisplay {
     /// A bar from nothing to all.
     pub fn bar(what: &'static str, quiet: bool) -> Self {
         Self::new(ProgressBar::new(PARTS), "{msg} [{bar:40}] {percent} % {elapsed}", what, quiet)
@@ -39,15 +39,15 @@ impl Progress {
     }
 
     /// Shows how far an analysis has come.
-    pub fn show(&self, step: Step<'_>) {
-        match step {
-            Step::Done(part) => self.bar.set_position((part.clamp(0.0, 1.0) * PARTS as f64) as u64),
-            Step::At(place) => self.bar.set_message(place.to_owned()),
+    pub fn show(&self, progress: Progress<'_>) {
+        match progress {
+            Progress::Done(part) => self.bar.set_position((part.clamp(0.0, 1.0) * PARTS as f64) as u64),
+            Progress::At(place) => self.bar.set_message(place.to_owned()),
         }
     }
 }
 
-impl Drop for Progress {
+impl Drop for ProgressDisplay {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }

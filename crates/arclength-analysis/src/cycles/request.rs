@@ -8,7 +8,7 @@ use crate::labels::kind;
 use crate::model::ChosenModel;
 use crate::monitor::{CycleMonitor, Monitored};
 use crate::point_reference::PointReference;
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
 use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
@@ -94,7 +94,8 @@ impl CyclesRequest {
         chosen.starts_within(&["along"], &self.along, &point.label)?;
         self.along.check_values(&self.at)?;
         let (start, how) = self.start(&point, &chosen.parameters)?;
-        let itself = matches!(start, CycleStart::Orbit(_)) && matches!(point.what, What::Cycle { .. });
+        let itself =
+            matches!(start, CycleStart::Orbit(_)) && matches!(point.solution, LabelledSolution::Cycle { .. });
         let warnings = (itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC")).then(|| {
             format!(
                 "the branch of the cycle {} itself is followed, not the one that bifurcates there",
@@ -118,8 +119,8 @@ impl CyclesRequest {
 
     /// What the branch starts from, in words too.
     fn start(&self, point: &LabelledPoint, parameters: &[f64]) -> Result<(CycleStart, &'static str), Error> {
-        match &point.what {
-            What::Cycle { orbit, branching } => Ok(match branching {
+        match &point.solution {
+            LabelledSolution::Cycle { orbit, branching } => Ok(match branching {
                 // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
                 Some((branching, key)) if !self.stay && (branching.doubled || *key == self.along.key) => {
                     let how =
@@ -135,15 +136,15 @@ impl CyclesRequest {
                 }
                 _ => (CycleStart::Orbit(orbit.clone()), "the branch through it"),
             }),
-            What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
+            LabelledSolution::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
                 Ok((CycleStart::from(hopf), "the cycles that are born there"))
             }
-            What::Motion { duration } => {
+            LabelledSolution::Motion { duration } => {
                 let model = &point.chosen.model;
                 let orbit = Orbit::from_time_history(model, parameters, &point.chosen.start, *duration)?;
                 Ok((CycleStart::Orbit(orbit), "the cycle on which the time history has settled"))
             }
-            What::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
+            LabelledSolution::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
                 Err(self.from.failure(format!(
                     "no cycles can be started at {}: it is degenerate and only bracketed, either because several pairs of \
                      eigenvalues cross there together or because a pair does not cross with a speed other than zero; start \
@@ -151,7 +152,7 @@ impl CyclesRequest {
                     point.label
                 )))
             }
-            What::Equilibrium(_) => Err(self.from.failure(format!(
+            LabelledSolution::Equilibrium(_) => Err(self.from.failure(format!(
                 "no cycles start at {}; allowed: Hopf points (HB), cycles, and the end (END) of a time history on a cycle",
                 point.label
             ))),

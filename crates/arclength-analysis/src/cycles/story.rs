@@ -1,7 +1,7 @@
 //! The story of a branch of cycles.
 
 use super::cycle::CycleResult;
-use crate::course::{self, Place};
+use crate::course::{self, ToldPoint};
 use crate::end::End;
 use crate::labels::is_bifurcation;
 use crate::unlocated::UnlocatedResult;
@@ -16,9 +16,9 @@ pub fn tell(
     unlocated: &[UnlocatedResult],
     cycles: &[&CycleResult],
 ) {
-    let places: Vec<Place<'_>> = cycles
+    let places: Vec<ToldPoint<'_>> = cycles
         .iter()
-        .map(|cycle| Place {
+        .map(|cycle| ToldPoint {
             value: cycle.value,
             stable: cycle.stable,
             label: cycle.label.as_deref(),

@@ -7,7 +7,7 @@ use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
 use crate::monitor::Monitored;
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::Steps;
 use arclength::branch::Monitor;
 use arclength::control::Control;
@@ -107,7 +107,8 @@ impl EquilibriaAnalysis {
         };
         let chosen = &self.chosen;
         let equilibria = Equilibria::of(&chosen.model).start(&chosen.start).parameters(&chosen.parameters);
-        let exact = matches!(&self.point, Some(point) if matches!(point.what, What::Equilibrium(_)));
+        let exact =
+            matches!(&self.point, Some(point) if matches!(point.solution, LabelledSolution::Equilibrium(_)));
         let equilibria = match branch_point {
             Some(point) => equilibria.from_branch_point(point),
             None if exact && self.unchanged => equilibria.through(&chosen.start),
@@ -147,8 +148,10 @@ impl EquilibriaAnalysis {
 
     /// The branch point whose other branch is followed.
     fn branch_point<'a>(&self, point: &'a LabelledPoint) -> Option<&'a BranchPoint> {
-        match &point.what {
-            What::Equilibrium(Some(SpecialPoint::BranchPoint(known))) if self.unchanged => Some(known),
+        match &point.solution {
+            LabelledSolution::Equilibrium(Some(SpecialPoint::BranchPoint(known))) if self.unchanged => {
+                Some(known)
+            }
             _ => None,
         }
     }

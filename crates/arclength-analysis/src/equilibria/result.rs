@@ -1,7 +1,7 @@
 //! A branch of equilibria as a result.
 
 use crate::branch::{Origin, pairs, parameters, stability, tests};
-use crate::course::{self, Place};
+use crate::course::{self, ToldPoint};
 use crate::end::End;
 use crate::interval::Interval;
 use crate::labels::{self, is_bifurcation};
@@ -187,10 +187,10 @@ impl Report for EquilibriaResult {
     }
 
     fn story(&self) -> Option<Story> {
-        let places: Vec<Place<'_>> = self
+        let places: Vec<ToldPoint<'_>> = self
             .points
             .iter()
-            .map(|point| Place {
+            .map(|point| ToldPoint {
                 value: point.value,
                 stable: point.stable,
                 label: point.label.as_deref(),

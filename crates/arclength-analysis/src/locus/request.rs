@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::interval::Interval;
 use crate::labels::kind;
 use crate::point_reference::PointReference;
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
@@ -115,13 +115,13 @@ impl LocusRequest {
 impl Start {
     /// The special point at which a curve can start.
     fn at(point: &LabelledPoint) -> Option<Self> {
-        match &point.what {
-            What::Equilibrium(Some(SpecialPoint::Fold(fold))) => Some(Self::Fold(fold.clone())),
-            What::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => Some(Self::Hopf(hopf.clone())),
-            What::Equilibrium(Some(SpecialPoint::BranchPoint(point))) => {
+        match &point.solution {
+            LabelledSolution::Equilibrium(Some(SpecialPoint::Fold(fold))) => Some(Self::Fold(fold.clone())),
+            LabelledSolution::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => Some(Self::Hopf(hopf.clone())),
+            LabelledSolution::Equilibrium(Some(SpecialPoint::BranchPoint(point))) => {
                 Some(Self::BranchPoint(point.clone()))
             }
-            What::Cycle { orbit, .. } => {
+            LabelledSolution::Cycle { orbit, .. } => {
                 let kind = match kind(&point.label) {
                     "LPC" => SpecialKind::FoldOfCycles,
                     "PD" => SpecialKind::PeriodDoubling,

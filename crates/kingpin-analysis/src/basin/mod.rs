@@ -4,4 +4,4 @@ mod request;
 mod result;
 
 pub use request::{BasinAnalysis, BasinRequest};
-pub use result::BasinResult;
+pub use result::{BasinResult, FractionResult, StateValues};

@@ -33,10 +33,13 @@ fn unit_and_label(name: &str) -> (&'static str, &'static str) {
 
 /// The values of one state, of the columns or rows of a grid or of every member of a sample.
 #[derive(Debug, Serialize)]
-struct StateValues {
-    state: &'static str,
-    unit: &'static str,
-    values: Vec<f64>,
+pub struct StateValues {
+    /// Name of the state.
+    pub state: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The values.
+    pub values: Vec<f64>,
 }
 
 impl StateValues {
@@ -75,28 +78,40 @@ impl Starts {
 
 /// How many had a fate.
 #[derive(Debug, Serialize)]
-struct FractionResult {
-    fate: NamedFate,
-    count: usize,
-    share: f64,
+pub struct FractionResult {
+    /// The fate.
+    pub fate: NamedFate,
+    /// How many had it.
+    pub count: usize,
+    /// Their part of all.
+    pub share: f64,
     /// Of confidence 95 %, where the initial conditions are a random sample.
-    interval: Option<[f64; 2]>,
+    pub interval: Option<[f64; 2]>,
 }
 
 /// Fates on a grid, row by row, or of a sample.
 #[derive(Debug, Serialize)]
 pub struct BasinResult {
+    /// The wheel and how its motions are followed.
     #[serde(skip)]
-    destinations: Destinations,
+    pub destinations: Destinations,
+    /// The ends of both axes.
     #[serde(skip)]
-    ends: [[f64; 2]; 2],
-    contact: &'static str,
-    duration: f64,
-    seed: Option<u64>,
-    x: StateValues,
-    y: StateValues,
-    fates: Vec<NamedFate>,
-    fractions: Vec<FractionResult>,
+    pub ends: [[f64; 2]; 2],
+    /// `rolling` or `sliding`.
+    pub contact: &'static str,
+    /// Time in s for which motions are followed.
+    pub duration: f64,
+    /// Seed of a random sample.
+    pub seed: Option<u64>,
+    /// The state across.
+    pub x: StateValues,
+    /// The state upwards.
+    pub y: StateValues,
+    /// Where every motion ends.
+    pub fates: Vec<NamedFate>,
+    /// How many had each fate.
+    pub fractions: Vec<FractionResult>,
 }
 
 impl BasinResult {

@@ -4,4 +4,4 @@ mod request;
 mod result;
 
 pub use request::{ChartAnalysis, ChartRequest};
-pub use result::ChartResult;
+pub use result::{ChartResult, SampledAxis};

@@ -23,10 +23,13 @@ fn points_of(curves: Vec<Curve>) -> Vec<Vec<[f64; 2]>> {
 
 /// An axis of the grid.
 #[derive(Debug, Serialize)]
-struct SampledAxis {
-    key: &'static str,
-    unit: &'static str,
-    values: Vec<f64>,
+pub struct SampledAxis {
+    /// Key of the parameter.
+    pub key: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The values.
+    pub values: Vec<f64>,
 }
 
 impl SampledAxis {
@@ -38,17 +41,26 @@ impl SampledAxis {
 /// A chart, and the boundaries in it as curves of points `[x, y]`.
 #[derive(Debug, Serialize)]
 pub struct ChartResult {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
+    pub wheel: Wheel,
+    /// The plane of the chart.
     #[serde(skip)]
-    plane: Plane,
-    x: SampledAxis,
-    y: SampledAxis,
-    growth_rate: Vec<Option<f64>>,
-    stable: Vec<bool>,
-    rolls: Vec<bool>,
-    stability_boundary: Vec<Vec<[f64; 2]>>,
-    rolling_limit: Vec<Vec<[f64; 2]>>,
+    pub plane: Plane,
+    /// The parameter across.
+    pub x: SampledAxis,
+    /// The parameter upwards.
+    pub y: SampledAxis,
+    /// Growth rate in 1/s row by row, nothing where there is no uniform motion.
+    pub growth_rate: Vec<Option<f64>>,
+    /// Whether it is stable.
+    pub stable: Vec<bool>,
+    /// Whether it rolls.
+    pub rolls: Vec<bool>,
+    /// The limit of stability, as curves of points.
+    pub stability_boundary: Vec<Vec<[f64; 2]>>,
+    /// The limit of rolling, as curves of points.
+    pub rolling_limit: Vec<Vec<[f64; 2]>>,
 }
 
 impl ChartResult {

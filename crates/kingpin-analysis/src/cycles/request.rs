@@ -5,11 +5,12 @@ use super::result::CyclesResult;
 use crate::along::along;
 use crate::error::Error;
 use crate::hopf::search::{same_value, search};
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use crate::wheel_request::WheelRequest;
 use arclength::continuation::Settings;
 use arclength::cycle::{Branching, CyclePoint, CycleStart, Orbit};
 use arclength::equilibrium::equilibrium_settings;
+use arclength_analysis::labels::kind;
 use arclength_analysis::{Control, Interval, Mesh, PointReference, Steps};
 use kingpin::branches::{Along, CycleOptions};
 use kingpin::{Key, KingpinError, Wheel};
@@ -48,6 +49,7 @@ pub struct CyclesAnalysis {
     wheel: Wheel,
     along: Along,
     start: Start,
+    stay: bool,
     steps: Steps,
     options: CycleOptions,
 }
@@ -95,7 +97,7 @@ impl CyclesRequest {
             resolution: self.mesh.resolution(),
             settings: self.steps.settings(Settings::default()),
         };
-        Ok(CyclesAnalysis { wheel, along, start, steps: self.steps, options })
+        Ok(CyclesAnalysis { wheel, along, start, stay: self.stay, steps: self.steps, options })
     }
 
     /// What starts at a labelled point.
@@ -104,16 +106,16 @@ impl CyclesRequest {
             let given = file.display().to_string();
             return Err(Error::invalid(&["wheel"], given, "the labelled point has a wheel", "wheel or from"));
         }
-        let LabelledPoint { wheel, what } = LabelledPoint::read(reference)?;
+        let LabelledPoint { wheel, solution } = LabelledPoint::read(reference)?;
         let wheel = self.wheel.change(wheel)?;
         let value = wheel.get(along.key());
         if !along.contains(value) {
             let (start, end) = along.ends();
             return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
         }
-        let start = match what {
-            What::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
-            What::Cycle { orbit, branching } => {
+        let start = match solution {
+            LabelledSolution::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
+            LabelledSolution::Cycle { orbit, branching } => {
                 LabelledPoint::check_orbit(reference, &wheel, &orbit)?;
                 self.cycle(&reference.label, along, *orbit, branching)
             }
@@ -146,6 +148,20 @@ impl CyclesRequest {
 }
 
 impl CyclesAnalysis {
+    /// What is worth knowing before it runs.
+    pub fn warnings(&self) -> Vec<String> {
+        match &self.start {
+            Start::Cycle { origin, start: CycleStart::Orbit(_) }
+                if !self.stay && matches!(kind(origin), "PD" | "BPC") =>
+            {
+                vec![format!(
+                    "the branch of the cycle {origin} itself is followed, not the one that bifurcates there"
+                )]
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// Finds the Hopf points where it starts from them, and follows the branches. Where the control stops it the result is what
     /// there is up to there.
     ///

@@ -9,7 +9,7 @@ use crate::states::{STATE_UNITS, named_state};
 use arclength::branch::Criticality;
 use arclength::equilibrium::SpecialPoint;
 use arclength_analysis::branch::pairs;
-use arclength_analysis::course::{self, Place};
+use arclength_analysis::course::{self, ToldPoint};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::{Along, HopfPoint, MotionBranch};
@@ -244,9 +244,9 @@ impl Report for HopfResult {
             (motion.clone(), hopf.map(|point| point.label.clone()).or(motion.label.clone()))
         };
         let motions: Vec<(MotionResult, Option<String>)> = self.motions.iter().map(place).collect();
-        let places: Vec<Place<'_>> = motions
+        let places: Vec<ToldPoint<'_>> = motions
             .iter()
-            .map(|(motion, label)| Place {
+            .map(|(motion, label)| ToldPoint {
                 value: motion.value,
                 stable: motion.stable,
                 label: label.as_deref(),

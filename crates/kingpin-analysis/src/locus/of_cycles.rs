@@ -1,6 +1,6 @@
 //! A curve of special cycles of a wheel as a result.
 
-use crate::along::Plane;
+use crate::along::ParameterPlane;
 use crate::description;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
@@ -21,7 +21,7 @@ pub struct CycleLocusResult {
     pub wheel: Wheel,
     /// The parameters and their intervals.
     #[serde(skip)]
-    pub plane: Plane,
+    pub plane: ParameterPlane,
     /// The curve.
     #[serde(flatten)]
     pub curve: CycleCurve,
@@ -39,7 +39,7 @@ impl TryFrom<StoredCurve> for CycleLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: Plane::of(&curve.plane)?, curve })
+        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: ParameterPlane::of(&curve.plane)?, curve })
     }
 }
 
@@ -50,7 +50,7 @@ impl CycleLocusResult {
     /// The result of a curve.
     pub(super) fn new(
         wheel: Wheel,
-        plane: Plane,
+        plane: ParameterPlane,
         from: Origin,
         curve: kingpin::branches::CycleCurve,
     ) -> Self {

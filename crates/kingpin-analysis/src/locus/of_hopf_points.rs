@@ -1,6 +1,6 @@
 //! A curve of Hopf points of a wheel as a result.
 
-use crate::along::Plane;
+use crate::along::ParameterPlane;
 use crate::description;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
@@ -23,7 +23,7 @@ pub struct HopfLocusResult {
     pub wheel: Wheel,
     /// The parameters and their intervals.
     #[serde(skip)]
-    pub plane: Plane,
+    pub plane: ParameterPlane,
     /// The curve.
     #[serde(flatten)]
     pub curve: EquilibriumCurve,
@@ -41,7 +41,7 @@ impl TryFrom<StoredCurve> for HopfLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: Plane::of(&curve.plane)?, curve })
+        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: ParameterPlane::of(&curve.plane)?, curve })
     }
 }
 
@@ -50,7 +50,7 @@ impl HopfLocusResult {
     pub const SCHEMA: &'static str = "kingpin.locus";
 
     /// The result of a curve.
-    pub(super) fn new(wheel: Wheel, plane: Plane, from: Origin, curve: &HopfCurve) -> Self {
+    pub(super) fn new(wheel: Wheel, plane: ParameterPlane, from: Origin, curve: &HopfCurve) -> Self {
         let kind = SpecialKind::Hopf;
         let HopfCurve { points, stops, unlocated } = curve;
         let curve = EquilibriumCurve::new(kind, plane.varying(), from, points, stops, unlocated, named_state);

@@ -3,10 +3,10 @@
 use super::of_cycles::CycleLocusResult;
 use super::of_hopf_points::HopfLocusResult;
 use super::result::LocusResult;
-use crate::along::{Plane, along};
+use crate::along::{ParameterPlane, along};
 use crate::error::Error;
 use crate::hopf::search::{same_value, search};
-use crate::start::{LabelledPoint, What};
+use crate::start::{LabelledPoint, LabelledSolution};
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
 use arclength::cycle::Orbit;
@@ -44,7 +44,7 @@ pub struct LocusRequest {
 pub struct LocusAnalysis {
     label: String,
     wheel: Wheel,
-    plane: Plane,
+    plane: ParameterPlane,
     start: Start,
     at: Vec<f64>,
     steps: Steps,
@@ -75,7 +75,7 @@ impl LocusRequest {
         let [first, second] = &self.plane;
         let plane = [along(first)?, along(second)?];
         first.check_values(&self.at)?;
-        let LabelledPoint { wheel, what } = LabelledPoint::read(&self.from)?;
+        let LabelledPoint { wheel, solution } = LabelledPoint::read(&self.from)?;
         for axis in plane {
             let (key, value, (start, end)) = (axis.key(), wheel.get(axis.key()), axis.ends());
             if !axis.contains(value) {
@@ -83,9 +83,9 @@ impl LocusRequest {
             }
         }
         let label = self.from.label.clone();
-        let start = match (what, kind(&label)) {
-            (What::Hopf(found), _) => Some(Start::Hopf(found)),
-            (What::Cycle { orbit, .. }, kind) => {
+        let start = match (solution, kind(&label)) {
+            (LabelledSolution::Hopf(found), _) => Some(Start::Hopf(found)),
+            (LabelledSolution::Cycle { orbit, .. }, kind) => {
                 LabelledPoint::check_orbit(&self.from, &wheel, &orbit)?;
                 let kind = match kind {
                     "LPC" => Some(SpecialKind::FoldOfCycles),
@@ -105,7 +105,7 @@ impl LocusRequest {
         Ok(LocusAnalysis {
             label,
             wheel,
-            plane: Plane(plane),
+            plane: ParameterPlane(plane),
             start,
             at: self.at.clone(),
             steps: self.steps,

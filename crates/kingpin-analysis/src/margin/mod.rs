@@ -7,4 +7,4 @@ mod unstable_cycles;
 
 pub use found::Found;
 pub use request::{MarginAnalysis, MarginRequest};
-pub use result::MarginResult;
+pub use result::{Indicator, MarginPoint, MarginResult};

@@ -18,16 +18,18 @@ use std::io::{self, Write};
 
 /// One value of the parameter.
 #[derive(Debug, Serialize)]
-struct MarginPoint {
-    value: f64,
+pub struct MarginPoint {
+    /// Value of the parameter.
+    pub value: f64,
+    /// What was found there.
     #[serde(flatten)]
-    found: Found,
+    pub found: Found,
     /// The largest disturbance that returned in the direction in which fewer do; nothing where it is undecided what lies beyond.
-    safe: Option<f64>,
+    pub safe: Option<f64>,
     /// Half the range of the caster angle of the unstable limit cycle, in rad.
-    unstable_amplitude: Option<f64>,
+    pub unstable_amplitude: Option<f64>,
     /// The safe disturbance in units of it.
-    ratio: Option<f64>,
+    pub ratio: Option<f64>,
 }
 
 impl MarginPoint {
@@ -65,13 +67,15 @@ impl MarginPoint {
 
 /// How the ratio of the safe disturbance to the amplitude of the unstable cycle varies.
 #[derive(Debug, Serialize)]
-struct Indicator {
+pub struct Indicator {
     /// Number of values with both.
-    values: usize,
-    smallest_ratio: f64,
-    largest_ratio: f64,
+    pub values: usize,
+    /// The smallest ratio.
+    pub smallest_ratio: f64,
+    /// The largest ratio.
+    pub largest_ratio: f64,
     /// Correlation coefficient of the two (Pearson).
-    correlation: Option<f64>,
+    pub correlation: Option<f64>,
 }
 
 impl Indicator {
@@ -116,18 +120,26 @@ fn correlation(pairs: &[(f64, f64)]) -> Option<f64> {
 /// Safe disturbances along a parameter.
 #[derive(Debug, Serialize)]
 pub struct MarginResult {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
+    pub wheel: Wheel,
+    /// The parameter and its interval.
     #[serde(skip)]
-    interval: Along,
-    along: VaryingParameter,
-    kind: &'static str,
-    unit: &'static str,
-    contact: &'static str,
-    points: Vec<MarginPoint>,
-    indicator: Option<Indicator>,
+    pub interval: Along,
+    /// The parameter that varies.
+    pub along: VaryingParameter,
+    /// The kind of disturbance.
+    pub kind: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// `rolling` or `sliding`.
+    pub contact: &'static str,
+    /// What was found at its values.
+    pub points: Vec<MarginPoint>,
+    /// How good an indicator the amplitude is; nothing without two values that have both.
+    pub indicator: Option<Indicator>,
     /// Why there is no unstable limit cycle at some values.
-    remarks: Vec<String>,
+    pub remarks: Vec<String>,
 }
 
 impl MarginResult {

@@ -4,4 +4,4 @@ mod request;
 mod result;
 
 pub use request::{SafeKickAnalysis, SafeKickRequest};
-pub use result::SafeKickResult;
+pub use result::{DisturbedMotionResult, SafeKickResult};

@@ -15,26 +15,34 @@ use std::io::{self, Write};
 
 /// A motion after a disturbance.
 #[derive(Debug, Serialize)]
-struct Motion {
-    magnitude: f64,
-    t: Vec<f64>,
-    u: Vec<f64>,
-    q: Vec<f64>,
-    psi: Vec<f64>,
+pub struct DisturbedMotionResult {
+    /// Magnitude of the disturbance.
+    pub magnitude: f64,
+    /// Times in s.
+    pub t: Vec<f64>,
+    /// Longitudinal displacement of the king pin in m, at every time.
+    pub u: Vec<f64>,
+    /// Lateral displacement of the king pin in m.
+    pub q: Vec<f64>,
+    /// Caster angle in rad.
+    pub psi: Vec<f64>,
+    /// Forward speed of the wheel in m/s.
     #[serde(rename = "V")]
-    forward_speed: Vec<f64>,
+    pub forward_speed: Vec<f64>,
+    /// Yaw rate in rad/s.
     #[serde(rename = "Omega")]
-    yaw_rate: Vec<f64>,
+    pub yaw_rate: Vec<f64>,
     /// Lateral speed of the wheel centre and speed of the rim, where the wheel may slide.
     #[serde(rename = "V2", skip_serializing_if = "Option::is_none")]
-    lateral_speed: Option<Vec<f64>>,
+    pub lateral_speed: Option<Vec<f64>>,
+    /// Speed of the rim in m/s.
     #[serde(rename = "W", skip_serializing_if = "Option::is_none")]
-    rim_speed: Option<Vec<f64>>,
+    pub rim_speed: Option<Vec<f64>>,
     /// Speed of the contact point over the ground.
-    slip: Vec<f64>,
+    pub slip: Vec<f64>,
 }
 
-impl Motion {
+impl DisturbedMotionResult {
     fn new(magnitude: f64, motion: DisturbedMotion, model: ContactModel) -> Self {
         let state = |index: usize| motion.states.iter().map(|state| state[index]).collect();
         let slides = model == ContactModel::Sliding;
@@ -56,20 +64,30 @@ impl Motion {
 /// The edges in both directions.
 #[derive(Debug, Serialize)]
 pub struct SafeKickResult {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
-    kind: &'static str,
-    unit: &'static str,
-    contact: &'static str,
-    duration: f64,
-    largest: f64,
-    positive: Option<Edge>,
-    negative: Option<Edge>,
+    pub wheel: Wheel,
+    /// The kind of disturbance.
+    pub kind: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// `rolling` or `sliding`.
+    pub contact: &'static str,
+    /// Time in s for which motions are followed at most.
+    pub duration: f64,
+    /// Largest magnitude that was tried.
+    pub largest: f64,
+    /// The edge in the positive direction.
+    pub positive: Option<Edge>,
+    /// The edge in the negative direction.
+    pub negative: Option<Edge>,
     /// The largest disturbance that returned, in the direction in which fewer do; nothing where it is undecided what lies
     /// beyond.
-    safe: Option<f64>,
-    returns: Option<Motion>,
-    fails: Option<Motion>,
+    pub safe: Option<f64>,
+    /// The motion after the largest disturbance that returned.
+    pub returns: Option<DisturbedMotionResult>,
+    /// The motion after the smallest that did not.
+    pub fails: Option<DisturbedMotionResult>,
 }
 
 impl SafeKickResult {
@@ -86,9 +104,10 @@ impl SafeKickResult {
         let edges = [positive, negative];
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let (returns, fails) = match (smallest, motions) {
-            (Some(edge), Some([returns, fails])) => {
-                (Some(Motion::new(edge.returns, returns, model)), Some(Motion::new(edge.fails, fails, model)))
-            }
+            (Some(edge), Some([returns, fails])) => (
+                Some(DisturbedMotionResult::new(edge.returns, returns, model)),
+                Some(DisturbedMotionResult::new(edge.fails, fails, model)),
+            ),
             _ => (None, None),
         };
         Self {
@@ -179,21 +198,23 @@ impl Report for SafeKickResult {
     }
 
     fn columns(&self) -> Columns {
-        let motions: Vec<(&str, &Motion)> = [("returns", &self.returns), ("fails", &self.fails)]
-            .into_iter()
-            .filter_map(|(side, motion)| motion.as_ref().map(|motion| (side, motion)))
-            .collect();
-        let numbers = |values: fn(&Motion) -> &Vec<f64>| -> Vec<f64> {
+        let motions: Vec<(&str, &DisturbedMotionResult)> =
+            [("returns", &self.returns), ("fails", &self.fails)]
+                .into_iter()
+                .filter_map(|(side, motion)| motion.as_ref().map(|motion| (side, motion)))
+                .collect();
+        let numbers = |values: fn(&DisturbedMotionResult) -> &Vec<f64>| -> Vec<f64> {
             motions.iter().flat_map(|(_, motion)| values(motion).iter().copied()).collect()
         };
         let sides =
             motions.iter().flat_map(|(side, motion)| motion.t.iter().map(|_| Some((*side).to_owned())));
         let magnitudes = motions.iter().flat_map(|(_, motion)| motion.t.iter().map(|_| motion.magnitude));
-        let optional = |columns: Columns, name: &str, values: fn(&Motion) -> &Option<Vec<f64>>| {
-            let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
-            let values: Vec<f64> = present.flatten().copied().collect();
-            if values.is_empty() { columns } else { columns.numbers(name, values).unit("m/s") }
-        };
+        let optional =
+            |columns: Columns, name: &str, values: fn(&DisturbedMotionResult) -> &Option<Vec<f64>>| {
+                let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
+                let values: Vec<f64> = present.flatten().copied().collect();
+                if values.is_empty() { columns } else { columns.numbers(name, values).unit("m/s") }
+            };
         let columns = Columns::new()
             .texts("side", sides)
             .numbers("magnitude", magnitudes)
@@ -225,8 +246,9 @@ impl Report for SafeKickResult {
             Axis::new("$\\psi$ (rad)").limits(-reach, reach),
         )
         .legend(Legend::Below);
-        let text =
-            |motion: &Motion, how: &str| format!("{} {}: {how}", readable(motion.magnitude), self.unit);
+        let text = |motion: &DisturbedMotionResult, how: &str| {
+            format!("{} {}: {how}", readable(motion.magnitude), self.unit)
+        };
         for (motion, how, color) in
             [(fails, "does not return", palette::VERMILION), (returns, "returns", palette::BLUE)]
         {

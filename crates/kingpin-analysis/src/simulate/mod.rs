@@ -8,4 +8,4 @@ mod sliding_result;
 pub use request::{SimulateAnalysis, SimulateRequest};
 pub use result::HistoryResult;
 pub use rolling_result::RollingHistory;
-pub use sliding_result::SlidingHistoryResult;
+pub use sliding_result::{Phase, SlidingHistory};

@@ -2,7 +2,7 @@
 
 use super::result::HistoryResult;
 use super::rolling_result::RollingHistory;
-use super::sliding_result::SlidingHistoryResult;
+use super::sliding_result::SlidingHistory;
 use crate::classification::Contact;
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
@@ -94,7 +94,7 @@ impl SimulateAnalysis {
             Contact::Sliding => {
                 let start = wheel.perturbed_sliding_motion(&perturbations)?;
                 let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points, control)?;
-                Ok(HistoryResult::Sliding(SlidingHistoryResult::new(wheel, history)))
+                Ok(HistoryResult::Sliding(SlidingHistory::new(wheel, history)))
             }
             Contact::Rolling => {
                 let history = wheel.simulate(self.duration, &perturbations, self.points, control)?;

@@ -1,7 +1,7 @@
 //! A time history as a result, of a wheel that rolls or of one that may slide.
 
 use super::rolling_result::RollingHistory;
-use super::sliding_result::SlidingHistoryResult;
+use super::sliding_result::SlidingHistory;
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::{Columns, NamedNumbers, Report, Schema};
 use serde::Serialize;
@@ -14,7 +14,7 @@ pub enum HistoryResult {
     /// Of a wheel that rolls.
     Rolling(RollingHistory),
     /// Of a wheel that rolls or slides.
-    Sliding(SlidingHistoryResult),
+    Sliding(SlidingHistory),
 }
 
 impl HistoryResult {

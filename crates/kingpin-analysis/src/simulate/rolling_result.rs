@@ -15,19 +15,29 @@ use std::io::{self, Write};
 /// A time history: a list of the times, one per state, and two of forces.
 #[derive(Debug, Serialize)]
 pub struct RollingHistory {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
-    rolling_lost_at: Option<f64>,
-    t: Vec<f64>,
-    u: Vec<f64>,
-    q: Vec<f64>,
-    psi: Vec<f64>,
+    pub wheel: Wheel,
+    /// Time in s from which on rolling takes more than the static friction.
+    pub rolling_lost_at: Option<f64>,
+    /// Times in s.
+    pub t: Vec<f64>,
+    /// Longitudinal displacement of the king pin in m, at every time.
+    pub u: Vec<f64>,
+    /// Lateral displacement of the king pin in m.
+    pub q: Vec<f64>,
+    /// Caster angle in rad.
+    pub psi: Vec<f64>,
+    /// Forward speed of the wheel in m/s.
     #[serde(rename = "V")]
-    forward_speed: Vec<f64>,
+    pub forward_speed: Vec<f64>,
+    /// Yaw rate in rad/s.
     #[serde(rename = "Omega")]
-    yaw_rate: Vec<f64>,
-    friction_force: Vec<f64>,
-    normal_force: Vec<f64>,
+    pub yaw_rate: Vec<f64>,
+    /// Force of friction in N, at every time.
+    pub friction_force: Vec<f64>,
+    /// Force of the ground on the wheel in N.
+    pub normal_force: Vec<f64>,
 }
 
 impl RollingHistory {

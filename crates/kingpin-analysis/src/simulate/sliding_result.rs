@@ -2,7 +2,7 @@
 
 use crate::description;
 use crate::parameters::parameters_of;
-use kingpin::sliding::{Contact, SLIDING_STATE_NAMES, SlidingHistory};
+use kingpin::sliding::{Contact, SLIDING_STATE_NAMES};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, summary};
@@ -16,37 +16,53 @@ const UNITS: [&str; 7] = ["m", "m", "rad", "m/s", "m/s", "rad/s", "m/s"];
 
 /// A stretch of time in which the wheel only rolls or only slides.
 #[derive(Debug, Serialize)]
-struct Phase {
-    contact: &'static str,
-    start: f64,
-    end: f64,
+pub struct Phase {
+    /// `rolling` or `sliding`.
+    pub contact: &'static str,
+    /// Its start in s.
+    pub start: f64,
+    /// Its end in s.
+    pub end: f64,
 }
 
 /// A list of the times, one per state, of the slip speed, of the forces, and of what the wheel does.
 #[derive(Debug, Serialize)]
-pub struct SlidingHistoryResult {
+pub struct SlidingHistory {
+    /// The wheel.
     #[serde(skip)]
-    wheel: Wheel,
-    t: Vec<f64>,
-    u: Vec<f64>,
-    q: Vec<f64>,
-    psi: Vec<f64>,
+    pub wheel: Wheel,
+    /// Times in s.
+    pub t: Vec<f64>,
+    /// Longitudinal displacement of the king pin in m, at every time.
+    pub u: Vec<f64>,
+    /// Lateral displacement of the king pin in m.
+    pub q: Vec<f64>,
+    /// Caster angle in rad.
+    pub psi: Vec<f64>,
+    /// Forward speed of the wheel in m/s.
     #[serde(rename = "V1")]
-    forward_speed: Vec<f64>,
+    pub forward_speed: Vec<f64>,
+    /// Lateral speed of the wheel centre in m/s.
     #[serde(rename = "V2")]
-    lateral_speed: Vec<f64>,
+    pub lateral_speed: Vec<f64>,
+    /// Yaw rate in rad/s.
     #[serde(rename = "Omega")]
-    yaw_rate: Vec<f64>,
+    pub yaw_rate: Vec<f64>,
+    /// Speed of the rim in m/s.
     #[serde(rename = "W")]
-    rim_speed: Vec<f64>,
+    pub rim_speed: Vec<f64>,
     /// Speed of the contact point over the ground.
-    slip: Vec<f64>,
-    friction_force: Vec<f64>,
-    normal_force: Vec<f64>,
-    phase: Vec<&'static str>,
-    phases: Vec<Phase>,
+    pub slip: Vec<f64>,
+    /// Force of friction in N, at every time.
+    pub friction_force: Vec<f64>,
+    /// Force of the ground on the wheel in N.
+    pub normal_force: Vec<f64>,
+    /// What the wheel does at every time, `rolling` or `sliding`.
+    pub phase: Vec<&'static str>,
+    /// The stretches of time in which it only rolls or only slides.
+    pub phases: Vec<Phase>,
     /// Part of the time in which it slides.
-    sliding_fraction: f64,
+    pub sliding_fraction: f64,
 }
 
 fn word(contact: Contact) -> &'static str {
@@ -56,9 +72,9 @@ fn word(contact: Contact) -> &'static str {
     }
 }
 
-impl SlidingHistoryResult {
+impl SlidingHistory {
     /// The result of a motion.
-    pub(super) fn new(wheel: Wheel, history: SlidingHistory) -> Self {
+    pub(super) fn new(wheel: Wheel, history: kingpin::sliding::SlidingHistory) -> Self {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let friction_force: Vec<f64> =
             history.friction.iter().map(|[along, across]| along.hypot(*across)).collect();
@@ -100,7 +116,7 @@ impl SlidingHistoryResult {
     }
 }
 
-impl Report for SlidingHistoryResult {
+impl Report for SlidingHistory {
     fn schema(&self) -> Schema {
         Schema::first("kingpin.simulate")
     }

@@ -120,6 +120,9 @@ fn cycles_start_at_folds_and_leave_at_branch_points() {
     let points = through["points"].as_array().unwrap();
     assert!(points.len() > 5 && points.iter().all(|point| skew(point).abs() < 1e-6));
 
+    let run = folder.run("cycles --from cycles.json:BPC1 --along c_psi=150:250 --steps 2");
+    assert!(run.messages.contains("the branch of the cycle BPC1 itself is followed"), "{}", run.messages);
+
     let other = folder.json("cycles --from cycles.json:BPC1 --along v=5:8");
     let skews: Vec<f64> = other["points"].as_array().unwrap().iter().map(skew).collect();
     assert!(skews.iter().any(|skew| *skew > 0.1) && skews.iter().any(|skew| *skew < -0.1), "{skews:?}");
