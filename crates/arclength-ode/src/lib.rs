@@ -48,3 +48,8 @@ mod tape;
 pub use error::{OdeError, Place, Warning};
 pub use model::{Model, NamedSet};
 pub use options::{OptionEntry, Options};
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
