@@ -50,3 +50,8 @@ pub use error::{OdeError, Place, Warning};
 pub use model::{Model, NamedSet};
 pub use options::{OptionEntry, Options};
 pub use quantity::Quantity;
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

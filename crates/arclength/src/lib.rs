@@ -23,3 +23,8 @@ pub mod numbers;
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;
 pub use field::VectorField;
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

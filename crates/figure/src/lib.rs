@@ -76,3 +76,8 @@ pub use save::Format;
 pub use scene::Dash;
 pub use series::{Branch, Curve, Line, Marker, MarkerShape, Markers, Note, PointLabel, Region, Stability};
 pub use text::Anchor;
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

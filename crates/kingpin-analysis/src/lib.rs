@@ -35,3 +35,8 @@ pub use disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 pub use error::Error;
 pub use journal::Journal;
 pub use wheel_request::WheelRequest;
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

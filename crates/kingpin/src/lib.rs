@@ -55,3 +55,13 @@ pub use rolling::RollingWheel;
 pub use rolling_model::RollingModel;
 pub use uniform_motion::UniformMotion;
 pub use wheel::Wheel;
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+/// The code of the README of the repository.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct ReadmeOfTheRepository;

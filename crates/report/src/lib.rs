@@ -25,3 +25,8 @@ pub use report::Report;
 pub use schema::Schema;
 pub use story::Story;
 pub use table::{Cell, Table};
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
