@@ -6,7 +6,7 @@ use arclength_analysis::Assignment;
 use clap::Args;
 use kingpin_analysis::simulate::SimulateRequest;
 use kingpin_report::NamedNumbers;
-use kingpin_terminal::{Failure, OutputOptions, Progress};
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin simulate --duration 5 --perturb psi=0.1 -s v=8 -o history.svg";
 
@@ -52,7 +52,7 @@ impl Simulate {
             contact: self.contact.into(),
         };
         let analysis = request.validate()?;
-        let progress = Progress::bar("motion", output.is_quiet());
+        let progress = ProgressDisplay::bar("motion", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control))?;
         let result = result?;
         output.warn_of(&result.warnings());

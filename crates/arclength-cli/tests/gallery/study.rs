@@ -59,7 +59,7 @@ impl Study {
     }
 
     fn keep(&mut self, along: &Interval, branch: &EquilibriumBranch) {
-        let report = EquilibriaResult::new(&self.chosen, along, Origin::initial_state(), branch);
+        let report = EquilibriaResult::new(&self.chosen, along, Origin::initial_state(), &[], branch);
         self.branches.push(ResultFile::Equilibria(report));
     }
 
@@ -117,7 +117,8 @@ impl Study {
             .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
             .run()
             .unwrap();
-        let report = CyclesResult::new(&self.chosen, active, &range, Origin::initial_state(), branch.clone());
+        let report =
+            CyclesResult::new(&self.chosen, (active, &range), Origin::initial_state(), &[], branch.clone());
         self.branches.push(ResultFile::Cycles(report));
         branch
     }
