@@ -29,8 +29,7 @@ pub struct Continuation<'a, S: Problem> {
     pub(crate) at: Vec<f64>,
     pub(crate) monitors: Vec<Monitor<'a, S::Point>>,
     pub(crate) settings: Settings,
-    #[allow(clippy::type_complexity)]
-    pub(crate) observer: Option<Box<dyn FnMut(&S::Point) -> ControlFlow<()> + 'a>>,
+    pub(crate) observer: Option<Box<PointObserver<'a, S::Point>>>,
 }
 
 impl<'a, S: Problem> Continuation<'a, S> {
@@ -129,6 +128,9 @@ impl<'a, S: Problem> Continuation<'a, S> {
     }
 }
 
+/// Somebody who is told of points as they are found, and who may end the run.
+pub(crate) type PointObserver<'o, P> = dyn FnMut(&P) -> ControlFlow<()> + 'o;
+
 /// Turns a solution into a point of the branch.
 pub(crate) type PointOf<'p, Q, P> = dyn Fn(&Solution<Q>, Option<super::Label>) -> P + 'p;
 
@@ -157,7 +159,7 @@ pub(crate) fn request<'r, Q, P>(
 
 /// The observer of solutions that tells an observer of points.
 pub(crate) fn observer<'o, Q, P>(
-    told: Option<&'o mut (dyn FnMut(&P) -> ControlFlow<()> + 'o)>,
+    told: Option<&'o mut PointObserver<'o, P>>,
     point: &'o PointOf<'o, Q, P>,
 ) -> Box<Observer<'o, Q, SpecialKind>> {
     let mut labels = LabelCounter::default();

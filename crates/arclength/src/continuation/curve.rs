@@ -107,7 +107,7 @@ pub trait Curve {
         _near: Solution<Self::Point>,
         _change: usize,
         _half: f64,
-    ) -> Result<Vec<Event<Self::Kind, Self::Point>>, Error> {
+    ) -> Result<Vec<EventOf<Self>>, Error> {
         Ok(Vec::new())
     }
 
@@ -139,6 +139,9 @@ pub trait Curve {
         None
     }
 }
+
+/// A special point of a curve.
+pub type EventOf<C> = Event<<C as Curve>::Kind, <C as Curve>::Point>;
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]

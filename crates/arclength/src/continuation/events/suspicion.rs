@@ -27,7 +27,7 @@ pub(super) fn suspicious<C: Curve>(
 ) -> Option<f64> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
-        let own = before.readings.len() > 0
+        let own = !before.readings.is_empty()
             && curve.test_functions().iter().any(|test| !test.of_spectrum && !test.is_turn);
         if !rates_cost_nothing && !plausible(before, after, memory) {
             return None;

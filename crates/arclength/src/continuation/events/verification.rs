@@ -2,12 +2,11 @@
 //! are searched again.
 
 use super::count::reachable;
-use super::event::Event;
 use super::node::Node;
 use super::scan::Scan;
 use crate::continuation::corrector::across;
 use crate::continuation::metric::along;
-use crate::continuation::{Curve, Solution};
+use crate::continuation::{Curve, EventOf, Solution};
 use crate::error::Error;
 
 /// Times that the surroundings of a located point are searched again, and the part of them that is set aside around the
@@ -24,7 +23,7 @@ impl<C: Curve> Scan<'_, C> {
     ///
     /// # Errors
     /// As [`part`](Self::part).
-    pub fn verified(&mut self, ends: [&mut Node<C>; 2]) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+    pub fn verified(&mut self, ends: [&mut Node<C>; 2]) -> Result<Vec<EventOf<C>>, Error> {
         self.search(ends, MOST_SEARCHES)
     }
 
@@ -32,7 +31,7 @@ impl<C: Curve> Scan<'_, C> {
         &mut self,
         [before, after]: [&mut Node<C>; 2],
         searches: usize,
-    ) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+    ) -> Result<Vec<EventOf<C>>, Error> {
         self.trials = self.settings.most_trials;
         self.part([before, after], 1.0)?;
         let found = std::mem::take(&mut self.found);
@@ -68,12 +67,8 @@ impl<C: Curve> Scan<'_, C> {
     }
 
     /// Points in the order of the curve with their places along the tangent at `origin`, each once.
-    fn in_order(
-        &self,
-        found: Vec<Event<C::Kind, C::Point>>,
-        origin: &Solution<C::Point>,
-    ) -> Vec<(f64, Event<C::Kind, C::Point>)> {
-        let mut placed: Vec<(f64, Event<C::Kind, C::Point>)> = found
+    fn in_order(&self, found: Vec<EventOf<C>>, origin: &Solution<C::Point>) -> Vec<(f64, EventOf<C>)> {
+        let mut placed: Vec<(f64, EventOf<C>)> = found
             .into_iter()
             .map(|event| (along(self.curve, origin, &event.solution.unknown), event))
             .collect();
@@ -85,8 +80,8 @@ impl<C: Curve> Scan<'_, C> {
     /// Whether two neighbours are one point found twice.
     fn is_repeated(
         &self,
-        (next_place, next): &(f64, Event<C::Kind, C::Point>),
-        (place, event): &(f64, Event<C::Kind, C::Point>),
+        (next_place, next): &(f64, EventOf<C>),
+        (place, event): &(f64, EventOf<C>),
     ) -> bool {
         next.kind == event.kind
             && next_place - place <= SAME_PLACE
@@ -95,10 +90,10 @@ impl<C: Curve> Scan<'_, C> {
     }
 
     /// By how much the number of unstable directions may change at each of some points; `None` where that is not known.
-    fn changes_at<'p>(&'p self, points: &'p [Event<C::Kind, C::Point>]) -> Option<Vec<&'p [usize]>> {
+    fn changes_at<'p>(&'p self, points: &'p [EventOf<C>]) -> Option<Vec<&'p [usize]>> {
         let tests = self.curve.test_functions();
         let of_kind = |kind: C::Kind| Some(tests.iter().find(|test| test.kind == kind)?.changes);
-        let known = |event: &'p Event<C::Kind, C::Point>| {
+        let known = |event: &'p EventOf<C>| {
             let known = self.curve.changes_at(&event.solution.point).or_else(|| of_kind(event.kind));
             known.filter(|_| event.is_located)
         };
@@ -106,7 +101,7 @@ impl<C: Curve> Scan<'_, C> {
     }
 
     /// Whether the points between two solutions may explain how the number of unstable directions changes.
-    pub fn explain(&self, points: &[Event<C::Kind, C::Point>], before: &Node<C>, after: &Node<C>) -> bool {
+    pub fn explain(&self, points: &[EventOf<C>], before: &Node<C>, after: &Node<C>) -> bool {
         match (Self::change_of_count(before, after), self.changes_at(points)) {
             (Some(change), Some(lists)) => reachable(change, lists.into_iter()),
             _ => true,
@@ -115,12 +110,7 @@ impl<C: Curve> Scan<'_, C> {
 
     /// Whether the change of the number of unstable directions is one that the points between explain; where it is not, whether
     /// it is larger.
-    fn surplus(
-        &self,
-        points: &[Event<C::Kind, C::Point>],
-        before: &Node<C>,
-        after: &Node<C>,
-    ) -> Option<bool> {
+    fn surplus(&self, points: &[EventOf<C>], before: &Node<C>, after: &Node<C>) -> Option<bool> {
         let change = Self::change_of_count(before, after)?;
         let lists = self.changes_at(points)?;
         let most: usize = lists.iter().filter_map(|list| list.iter().max()).sum();
@@ -131,12 +121,12 @@ impl<C: Curve> Scan<'_, C> {
     /// unstable directions.
     fn checked(
         &mut self,
-        mut group: Vec<Event<C::Kind, C::Point>>,
+        mut group: Vec<EventOf<C>>,
         left: &Node<C>,
         right: &Node<C>,
         origin: &Node<C>,
         searches: usize,
-    ) -> Result<Vec<Event<C::Kind, C::Point>>, Error> {
+    ) -> Result<Vec<EventOf<C>>, Error> {
         if let [event] = &group[..]
             && !event.is_located
             && Self::change_of_count(left, right) == Some(0)
@@ -175,7 +165,7 @@ impl<C: Curve> Scan<'_, C> {
     /// Solutions close to the first and the last point of a group, on both sides of it.
     fn surroundings(
         &mut self,
-        group: &[Event<C::Kind, C::Point>],
+        group: &[EventOf<C>],
         left: &Node<C>,
         right: &Node<C>,
         origin: &Node<C>,
@@ -183,7 +173,7 @@ impl<C: Curve> Scan<'_, C> {
         let origin = &origin.solution;
         let places = [left, right].map(|node| along(self.curve, origin, &node.solution.unknown));
         let aside = SURROUNDINGS * (places[1] - places[0]);
-        let shifted = |event: &Event<C::Kind, C::Point>, shift: f64| -> Vec<f64> {
+        let shifted = |event: &EventOf<C>, shift: f64| -> Vec<f64> {
             let entries = event.solution.unknown.iter().zip(&origin.tangent);
             entries.map(|(value, slope)| value + shift * slope).collect()
         };
