@@ -150,8 +150,13 @@ pub(crate) fn monitored<'a>(points: impl Iterator<Item = &'a NamedNumbers>) -> V
     names
 }
 
+/// What is wrong with an expression, without the place in the line that declares it, which nobody wrote.
 fn reason(error: &OdeError) -> String {
-    error.to_string()
+    let text = error.to_string();
+    match (error.place(), text.split_once(": ")) {
+        (Some(_), Some((_, message))) => message.to_owned(),
+        _ => text,
+    }
 }
 
 /// What is taken of an expression along a cycle.
