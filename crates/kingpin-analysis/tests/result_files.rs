@@ -76,7 +76,7 @@ fn what_was_not_located_is_warned_of_once() {
     let change = serde_json::json!({"test": "period doubling", "between": [2.5, 2.6]});
     file["branches"][0]["unlocated"] = serde_json::json!([change, change]);
     let result: CyclesResult = serde_json::from_value(file).unwrap();
-    let expected = "the test for a period doubling changes between v = 2.5 m/s and 2.6 m/s, but no such cycle was located \
+    let expected = "the test for a period doubling changes between v = 2.5 m/s and 2.6 m/s, but no such point was located \
                     there; try: shorter steps (--finer 10)";
     assert_eq!(result.warnings(), [expected]);
     let mut story = Vec::new();

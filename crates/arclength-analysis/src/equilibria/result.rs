@@ -61,7 +61,7 @@ pub struct EquilibriaResult {
     /// Why it ends, at its first and at its last point.
     pub ends: [End; 2],
     /// What was detected but not located.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlocated: Vec<UnlocatedResult>,
     /// The equilibria in the order of the branch.
     pub points: Vec<EquilibriumResult>,

@@ -5,7 +5,7 @@ use super::closure::Closure;
 use super::corrector::between;
 use super::curve::{Curve, Ending};
 use super::events::{EventSearch, Events, Unlocated};
-use super::metric::along;
+use super::metric::{along, distance};
 use super::requested::{Between, Origin, Target, first_exit, fix, insert_targets, insert_values};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
@@ -220,8 +220,9 @@ impl<C: Curve> Run<'_, '_, C> {
         let failed = |error| Step::End(Stop::Failed(error));
         let Events { found, unlocated } =
             self.search.between(self.curve, current, advanced, settings).map_err(|error| match error {
+                // Beside the start of the step, and not ahead of it, the way along the tangent is no measure of the step.
                 Error::OtherBranch => {
-                    Step::Again(STEP_REDUCTION * along(self.curve, current, &advanced.unknown))
+                    Step::Again(STEP_REDUCTION * distance(self.curve, &current.unknown, &advanced.unknown))
                 }
                 error => failed(error),
             })?;

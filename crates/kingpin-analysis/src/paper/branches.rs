@@ -130,9 +130,10 @@ pub(super) fn hopf_point(caster_length: f64, radius: f64) -> Result<HopfPoint, E
     wheel.hopf_points(along, &Control::none())?.points.into_iter().next().ok_or_else(not_found)
 }
 
-fn options() -> CycleOptions {
+/// How cycles are followed along an interval of the speed.
+fn options(along: Along) -> CycleOptions {
     CycleOptions {
-        at: COMPARED_SPEEDS.to_vec(),
+        at: COMPARED_SPEEDS.into_iter().filter(|speed| along.contains(*speed)).collect(),
         settings: Settings {
             largest_parameter_change: LARGEST_CHANGE,
             predictor_error: PREDICTOR_ERROR,
@@ -145,7 +146,7 @@ fn options() -> CycleOptions {
 fn from_hopf_point(caster_length: f64, radius: f64) -> Result<Branch, Error> {
     let hopf = hopf_point(caster_length, radius)?;
     let along = Along::new(Key::V, SLOWEST, SEARCH.1 * hopf.value)?;
-    let found = hopf.cycles(along, &options(), |_| ControlFlow::Continue(()))?;
+    let found = hopf.cycles(along, &options(along), |_| ControlFlow::Continue(()))?;
     Ok(Branch { caster_length, radius, cycles: complete(found)?, hopf: Some(hopf) })
 }
 
@@ -182,7 +183,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
         .ok_or_else(|| not_found(f64::INFINITY))?;
     let along = Along::new(Key::V, SLOWEST, FASTEST)?;
     let wheel = paper_wheel(speed, branch.caster_length, f64::INFINITY)?;
-    let found = wheel.cycles_through(&last.orbit, along, &options(), |_| ControlFlow::Continue(()))?;
+    let found = wheel.cycles_through(&last.orbit, along, &options(along), |_| ControlFlow::Continue(()))?;
     let cycles = complete(found)?;
     Ok(Branch { caster_length: branch.caster_length, radius: f64::INFINITY, hopf: None, cycles })
 }
