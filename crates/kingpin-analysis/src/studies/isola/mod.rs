@@ -35,7 +35,7 @@ const BRIDGE: f64 = 10.0;
 const SPEEDS: RangeInclusive<f64> = 0.015..=60.0;
 /// Speeds in m/s and dampings in N s/m in which folds are followed.
 const FOLD_SPEEDS: RangeInclusive<f64> = 0.015..=60.0;
-const FOLD_DAMPINGS: RangeInclusive<f64> = 0.05..=1.0;
+const FOLD_DAMPINGS: RangeInclusive<f64> = 0.02..=1.0;
 /// Part of its range by which the speed changes in one step at most, and the error of the predictor that the step control
 /// aims at: small enough to draw smooth curves through the points.
 const LARGEST_CHANGE: f64 = 0.02;
