@@ -68,7 +68,7 @@ pub struct CycleCurve {
     /// Why it ends, at its first and at its last point.
     pub ends: [End; 2],
     /// What was detected but not located.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub unlocated: Vec<UnlocatedChangeResult>,
     /// The points in the order of the curve.
     pub points: Vec<CycleCurvePoint>,
