@@ -1,12 +1,12 @@
 //! A vector field behind a pointer, so that everything else is compiled once and not for every field.
 //!
 //! [`VectorField::evaluate`] is generic over the scalar. Equilibria, cycles and the curves in two parameters use a short list
-//! of scalars, so a field can be erased to a table with one entry for each of them. That divides the time
-//! to compile a program with many fields by more than ten; the cost is one indirect call for an evaluation.
+//! of scalars, the [`FieldScalar`]s, so a field can be erased to a table with one entry for each of them. That divides the
+//! time to compile a program with many fields by more than ten; the cost is one indirect call for an evaluation. A scalar that
+//! is not on the list does not compile.
 
 use crate::differentiation::{Dual, Scalar};
 use crate::field::VectorField;
-use std::any::TypeId;
 
 /// Chunks of directions of a Jacobian, and the same with one and two more infinitesimals.
 type Narrow = Dual<f64, 4>;
@@ -15,8 +15,8 @@ type NarrowAlong = Dual<Narrow, 1>;
 type WideAlong = Dual<Wide, 1>;
 type NarrowAlongPair = Dual<Narrow, 2>;
 type WideAlongPair = Dual<Wide, 2>;
-type Pair = Dual<f64, 2>;
 type NarrowAlongTwice = Dual<NarrowAlong, 1>;
+type Pair = Dual<f64, 2>;
 /// One infinitesimal for each direction of a multilinear form.
 type First = Dual<f64, 1>;
 type Second = Dual<First, 1>;
@@ -24,14 +24,61 @@ type Third = Dual<Second, 1>;
 type Fourth = Dual<Third, 1>;
 type Fifth = Dual<Fourth, 1>;
 
+/// A scalar for which every field has an entry in its table: `f64` and a short list of dual numbers. The list is closed.
+pub trait FieldScalar: Scalar {
+    /// Writes `f(state, parameters)` into `derivative`, by the entry for this scalar.
+    #[doc(hidden)]
+    fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]);
+}
+
+/// A scalar that Jacobians are computed with: `f64` for the value, dual numbers with four or eight directions for the columns.
+///
+/// Defining systems of special points differentiate once more, in one or two directions: a field has entries for that, too.
+pub trait JacobianScalar:
+    FieldScalar
+    + Lift<1, Lifted = Dual<Self, 1>, Lifted: FieldScalar>
+    + Lift<2, Lifted = Dual<Self, 2>, Lifted: FieldScalar>
+{
+}
+
+impl JacobianScalar for f64 {}
+impl JacobianScalar for Narrow {}
+impl JacobianScalar for Wide {}
+
+/// A scalar of Jacobians that are computed four columns at a time. Defining systems may differentiate twice more in one
+/// direction; in eight columns that would be a fifth of what is compiled for a field.
+pub trait NarrowScalar:
+    JacobianScalar + Lift<1, Lifted: Lift<1, Lifted = Dual<Dual<Self, 1>, 1>, Lifted: FieldScalar>>
+{
+}
+
+impl NarrowScalar for f64 {}
+impl NarrowScalar for Narrow {}
+
+/// A scalar with `N` more infinitesimals, under a name of its own so that a trait can say what it is.
+pub trait Lift<const N: usize> {
+    /// `Dual<Self, N>`.
+    type Lifted;
+}
+
+impl<T: Scalar, const N: usize> Lift<N> for T {
+    type Lifted = Dual<T, N>;
+}
+
 macro_rules! scalars {
     ($($method:ident: $scalar:ty;)*) => {
         /// A field, for the scalars in use.
-        trait Table: Sync {
+        pub trait Table: Sync {
+            /// As [`VectorField::state_names`].
             fn state_names(&self) -> Vec<String>;
+            /// As [`VectorField::parameter_names`].
             fn parameter_names(&self) -> Vec<String>;
+            /// As [`VectorField::dimension`].
             fn dimension(&self) -> usize;
-            $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);)*
+            $(
+                /// As [`VectorField::evaluate`].
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);
+            )*
         }
 
         impl<F: VectorField> Table for F {
@@ -49,45 +96,13 @@ macro_rules! scalars {
             })*
         }
 
-        impl VectorField for ErasedField<'_> {
-            fn state_names(&self) -> Vec<String> {
-                self.0.state_names()
+        $(impl FieldScalar for $scalar {
+            #[inline(always)]
+            fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]) {
+                field.$method(state, parameters, derivative);
             }
-            fn parameter_names(&self) -> Vec<String> {
-                self.0.parameter_names()
-            }
-            fn dimension(&self) -> usize {
-                self.0.dimension()
-            }
-            fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-                $(if let (Some(state), Some(parameters)) =
-                    (same::<T, $scalar>(state), same::<T, $scalar>(parameters))
-                    && let Some(derivative) = same_mut::<T, $scalar>(derivative)
-                {
-                    return self.0.$method(state, parameters, derivative);
-                })*
-                // No computation here uses another scalar; a result that is not finite is noticed everywhere.
-                debug_assert!(false, "no entry for {}", std::any::type_name::<T>());
-                derivative.fill(T::from(f64::NAN));
-            }
-        }
+        })*
     };
-}
-
-/// A field of unknown type.
-#[derive(Clone, Copy)]
-pub(crate) struct ErasedField<'a>(&'a dyn Table);
-
-impl<'a> ErasedField<'a> {
-    pub fn of<F: VectorField>(field: &'a F) -> Self {
-        Self(field)
-    }
-}
-
-impl std::fmt::Debug for ErasedField<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(formatter, "a vector field of {}", self.0.state_names().join(", "))
-    }
 }
 
 scalars! {
@@ -95,10 +110,10 @@ scalars! {
     evaluate_narrow: Narrow;
     evaluate_wide: Wide;
     evaluate_narrow_along: NarrowAlong;
-    evaluate_narrow_along_twice: NarrowAlongTwice;
     evaluate_wide_along: WideAlong;
     evaluate_narrow_along_pair: NarrowAlongPair;
     evaluate_wide_along_pair: WideAlongPair;
+    evaluate_narrow_along_twice: NarrowAlongTwice;
     evaluate_pair: Pair;
     evaluate_first: First;
     evaluate_second: Second;
@@ -107,18 +122,42 @@ scalars! {
     evaluate_fifth: Fifth;
 }
 
-/// The slice itself, if `T` and `U` are one and the same type.
-fn same<T: 'static, U: 'static>(slice: &[T]) -> Option<&[U]> {
-    // SAFETY: the types are identical, so pointer, length and lifetime stay valid.
-    (TypeId::of::<T>() == TypeId::of::<U>())
-        .then(|| unsafe { std::slice::from_raw_parts(slice.as_ptr().cast::<U>(), slice.len()) })
+/// A field of unknown type.
+#[derive(Clone, Copy)]
+pub(crate) struct ErasedField<'a>(&'a dyn Table);
+
+impl<'a> ErasedField<'a> {
+    /// The field without its type.
+    pub fn of<F: VectorField>(field: &'a F) -> Self {
+        Self(field)
+    }
+
+    /// As [`VectorField::state_names`].
+    pub fn state_names(&self) -> Vec<String> {
+        self.0.state_names()
+    }
+
+    /// As [`VectorField::parameter_names`].
+    pub fn parameter_names(&self) -> Vec<String> {
+        self.0.parameter_names()
+    }
+
+    /// As [`VectorField::dimension`].
+    pub fn dimension(&self) -> usize {
+        self.0.dimension()
+    }
+
+    /// As [`VectorField::evaluate`], for the scalars of the list.
+    #[inline(always)]
+    pub fn evaluate<T: FieldScalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        T::evaluate(self.0, state, parameters, derivative);
+    }
 }
 
-/// The slice itself, if `T` and `U` are one and the same type.
-fn same_mut<T: 'static, U: 'static>(slice: &mut [T]) -> Option<&mut [U]> {
-    // SAFETY: the types are identical, so pointer, length and lifetime stay valid; the borrow is handed on.
-    (TypeId::of::<T>() == TypeId::of::<U>())
-        .then(|| unsafe { std::slice::from_raw_parts_mut(slice.as_mut_ptr().cast::<U>(), slice.len()) })
+impl std::fmt::Debug for ErasedField<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(formatter, "a vector field of {}", self.0.state_names().join(", "))
+    }
 }
 
 #[cfg(test)]
@@ -141,9 +180,9 @@ mod tests {
 
     #[test]
     fn an_erased_field_is_the_field() {
-        fn check<T: Scalar + PartialEq>(x: T, p: T) {
+        fn check<T: FieldScalar + PartialEq>(x: T, p: T) {
             let (mut direct, mut erased) = ([T::zero()], [T::zero()]);
-            Square.evaluate(&[x], &[p], &mut direct);
+            VectorField::evaluate(&Square, &[x], &[p], &mut direct);
             ErasedField::of(&Square).evaluate(&[x], &[p], &mut erased);
             assert!(direct == erased && direct[0].value() == 18.0);
         }
@@ -151,6 +190,6 @@ mod tests {
         check(Wide::variable(3.0, 1), Wide::variable(2.0, 5));
         check(NarrowAlongTwice::variable(Dual::from(3.0), 0), NarrowAlongTwice::from(2.0));
         check(Fifth::variable(Dual::from(3.0), 0), Fifth::from(2.0));
-        assert_eq!(VectorField::dimension(&ErasedField::of(&Square)), 1);
+        assert_eq!(ErasedField::of(&Square).dimension(), 1);
     }
 }

@@ -3,7 +3,7 @@
 //! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
 //! from forward-mode automatic differentiation ([`Dual`]).
 
-mod algebraic;
+pub mod algebraic;
 pub mod branch;
 pub mod collocation;
 pub mod continuation;
@@ -19,6 +19,7 @@ pub mod lanes;
 pub mod linear;
 pub mod locus;
 pub mod numbers;
+mod parameters;
 
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;

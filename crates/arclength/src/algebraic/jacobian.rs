@@ -1,6 +1,6 @@
 //! Jacobians by forward differentiation in chunks of four or eight directions.
 
-use super::AlgebraicProblem;
+use super::AlgebraicEquations;
 use crate::differentiation::Dual;
 
 /// Memory for one chunk width.
@@ -8,19 +8,19 @@ use crate::differentiation::Dual;
 struct Chunk<const N: usize> {
     unknown: Vec<Dual<f64, N>>,
     residual: Vec<Dual<f64, N>>,
-    scratch: Vec<Dual<f64, N>>,
 }
 
 impl<const N: usize> Chunk<N> {
-    fn jacobian<P: AlgebraicProblem>(
+    /// The Jacobian by `evaluate`; whether it serves this scalar.
+    fn jacobian(
         &mut self,
-        problem: &P,
+        evaluate: impl Fn(&[Dual<f64, N>], &mut [Dual<f64, N>]) -> bool,
+        equations: usize,
         unknown: &[f64],
         residual: &mut [f64],
         matrix: &mut [f64],
         rows: usize,
-    ) {
-        let equations = problem.equations();
+    ) -> bool {
         self.unknown.clear();
         self.unknown.extend(unknown.iter().map(|&value| Dual::constant(value)));
         self.residual.clear();
@@ -30,7 +30,9 @@ impl<const N: usize> Chunk<N> {
             for direction in 0..width {
                 self.unknown[first + direction] = Dual::variable(unknown[first + direction], direction);
             }
-            problem.evaluate(&self.unknown, &mut self.residual, &mut self.scratch);
+            if !evaluate(&self.unknown, &mut self.residual) {
+                return false;
+            }
             for direction in 0..width {
                 let column = &mut matrix[(first + direction) * rows..][..equations];
                 for (entry, value) in column.iter_mut().zip(&self.residual) {
@@ -42,12 +44,13 @@ impl<const N: usize> Chunk<N> {
         for (entry, value) in residual.iter_mut().zip(&self.residual) {
             *entry = value.value;
         }
+        true
     }
 }
 
 /// Computes Jacobians and keeps the memory for them.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Differentiator {
+pub struct Differentiator {
     narrow: Chunk<4>,
     wide: Chunk<8>,
 }
@@ -55,7 +58,7 @@ pub(crate) struct Differentiator {
 impl Differentiator {
     /// Writes `F(unknown)` into `residual` and its Jacobian, column-major with `rows` rows (at least the
     /// number of equations; the others are left alone), into `matrix`.
-    pub fn jacobian<P: AlgebraicProblem>(
+    pub fn jacobian<P: AlgebraicEquations>(
         &mut self,
         problem: &P,
         unknown: &[f64],
@@ -63,10 +66,16 @@ impl Differentiator {
         matrix: &mut [f64],
         rows: usize,
     ) {
-        if P::WIDE && unknown.len() > 4 {
-            self.wide.jacobian(problem, unknown, residual, matrix, rows);
-        } else {
-            self.narrow.jacobian(problem, unknown, residual, matrix, rows);
+        let equations = problem.equations();
+        let wide =
+            |unknown: &[Dual<f64, 8>], values: &mut [Dual<f64, 8>]| problem.evaluate_wide(unknown, values);
+        if unknown.len() > 4 && self.wide.jacobian(wide, equations, unknown, residual, matrix, rows) {
+            return;
         }
+        let narrow = |unknown: &[Dual<f64, 4>], values: &mut [Dual<f64, 4>]| {
+            problem.evaluate(unknown, values);
+            true
+        };
+        self.narrow.jacobian(narrow, equations, unknown, residual, matrix, rows);
     }
 }

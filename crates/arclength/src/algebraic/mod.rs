@@ -1,34 +1,24 @@
-//! Systems of algebraic equations written once over any scalar: derivatives, Newton's method, scaling.
+//! Systems of algebraic equations written once over any scalar: derivatives, Newton's method, scaling, curves of solutions.
 //!
-//! Equilibria, the defining systems of their bifurcations and the curves of such points in two
-//! parameters are all [`AlgebraicProblem`]s. Rows and columns are scaled before every factorisation,
-//! so that nothing depends on the units of variables and equations.
+//! An [`AlgebraicProblem`] is any smooth `F(z) = 0`. [`solve_square`] solves it where there are as many equations as unknowns;
+//! with one unknown more, the last of which is a parameter, [`AlgebraicCurve`] lets
+//! [`follow`](crate::continuation::follow) trace its solutions, locates folds and, by test functions and defining
+//! systems of a user's own, special points of other kinds. Fixed points of a map are an example (`examples/map.rs`).
+//!
+//! Equilibria, the defining systems of their bifurcations and the curves of such points in two parameters are all
+//! [`AlgebraicEquations`] on a [`DenseSystem`]. Rows and columns are scaled before every factorisation, so that nothing
+//! depends on the units of variables and equations.
 
 mod jacobian;
 mod newton;
+mod problem;
 mod scaled_lu;
 pub(crate) mod scales;
 mod system;
 
-pub(crate) use jacobian::Differentiator;
-pub(crate) use newton::{Solved, solve_square};
+pub use jacobian::Differentiator;
+pub use newton::{Solved, solve_square};
+pub use problem::{AlgebraicEquations, AlgebraicProblem};
 pub(crate) use scaled_lu::ScaledLu;
-pub(crate) use system::{DenseSystem, length, position};
-
-use crate::differentiation::Scalar;
-
-/// Equations `F(z) = 0`.
-pub trait AlgebraicProblem {
-    /// Whether Jacobians of more than four unknowns are computed eight columns at a time instead of four: faster, but one
-    /// more scalar to compile the problem for.
-    const WIDE: bool = false;
-
-    /// Number of unknowns.
-    fn unknowns(&self) -> usize;
-
-    /// Number of equations.
-    fn equations(&self) -> usize;
-
-    /// Writes `F(unknown)`; `scratch` is memory of any length that the problem may use.
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], scratch: &mut Vec<T>);
-}
+pub use system::DenseSystem;
+pub(crate) use system::{length, position};

@@ -6,7 +6,7 @@
 //! Jacobian changes by its own size.
 
 use crate::differentiation::Dual;
-use crate::field::VectorField;
+use crate::erased::ErasedField;
 
 /// A variable is at least this part of what the others, in its units, are.
 const COUPLED_SHARE: f64 = 1e-2;
@@ -22,8 +22,8 @@ const SWEEPS: usize = 30;
 
 /// Sizes of the states at an equilibrium; `speed` is the derivative of the field with respect to the parameters times
 /// their ranges (zero where nothing is known).
-pub(crate) fn natural_scales<F: VectorField>(
-    field: &F,
+pub(crate) fn natural_scales(
+    field: &ErasedField<'_>,
     state: &[f64],
     parameters: &[f64],
     speed: &[f64],
@@ -67,8 +67,8 @@ struct Derivatives {
     second: Vec<f64>,
 }
 
-fn derivatives<F: VectorField>(
-    field: &F,
+fn derivatives(
+    field: &ErasedField<'_>,
     state: &[f64],
     parameters: &[f64],
     speed: &[f64],
@@ -213,6 +213,7 @@ fn balance(jacobian: &[f64], n: usize, group: &[usize]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::differentiation::Scalar;
+    use crate::field::VectorField;
 
     /// A pendulum driven by a current, in units `scale` times larger.
     struct Scaled([f64; 3]);
@@ -252,9 +253,10 @@ mod tests {
 
     #[test]
     fn rounding_next_to_an_invariant_subspace_does_not_count() {
-        let exact = natural_scales(&Invariant, &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
+        let exact = natural_scales(&ErasedField::of(&Invariant), &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
         for predator in [1e-36, -1e-25, 1e-17, -1e-15] {
-            let scales = natural_scales(&Invariant, &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
+            let scales =
+                natural_scales(&ErasedField::of(&Invariant), &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
             for (scale, reference) in scales.iter().zip(&exact) {
                 assert!((scale / reference - 1.0).abs() < 1e-6, "{scales:?} {exact:?}");
             }
@@ -264,11 +266,13 @@ mod tests {
     #[test]
     fn scales_follow_the_units() {
         for state in [[0.0; 3], [0.3, 0.0, 4.0 * 0.3f64.sin()]] {
-            let reference = natural_scales(&Scaled([1.0; 3]), &state, &[0.5], &[0.0, 0.0, 1.0]);
+            let reference =
+                natural_scales(&ErasedField::of(&Scaled([1.0; 3])), &state, &[0.5], &[0.0, 0.0, 1.0]);
             assert!(reference.iter().all(|scale| (1e-3..10.0).contains(scale)), "{reference:?}");
             let units = [1e-6, 1e3, 1e9];
             let scaled_state: Vec<f64> = state.iter().zip(units).map(|(x, unit)| x * unit).collect();
-            let scaled = natural_scales(&Scaled(units), &scaled_state, &[0.5], &[0.0, 0.0, 1e9]);
+            let scaled =
+                natural_scales(&ErasedField::of(&Scaled(units)), &scaled_state, &[0.5], &[0.0, 0.0, 1e9]);
             for index in 0..3 {
                 let ratio = scaled[index] / (reference[index] * units[index]);
                 assert!((ratio - 1.0).abs() < 1e-4, "{state:?} {index} {ratio}");

@@ -1,12 +1,13 @@
 //! The linear algebra that a curve of solutions of an algebraic problem asks for.
 
-use super::{AlgebraicProblem, Differentiator, ScaledLu};
+use super::{AlgebraicEquations, Differentiator, ScaledLu};
 use crate::continuation::Solution;
 use crate::error::Error;
 
 /// A problem with one unknown more than equations, the scales of its unknowns, and memory.
 #[derive(Clone, Debug)]
-pub(crate) struct DenseSystem<P> {
+pub struct DenseSystem<P> {
+    /// The problem.
     pub problem: P,
     /// Sizes of the unknowns: the metric is Euclidean after division by them.
     pub scales: Vec<f64>,
@@ -16,10 +17,10 @@ pub(crate) struct DenseSystem<P> {
     visited: Vec<[f64; 2]>,
     lu: ScaledLu,
     differentiator: Differentiator,
-    scratch: Vec<f64>,
 }
 
-impl<P: AlgebraicProblem> DenseSystem<P> {
+impl<P: AlgebraicEquations> DenseSystem<P> {
+    /// The system of `problem` with the sizes of its unknowns.
     pub fn new(problem: P, scales: Vec<f64>) -> Self {
         let n = problem.unknowns();
         Self {
@@ -29,17 +30,16 @@ impl<P: AlgebraicProblem> DenseSystem<P> {
             visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
             lu: ScaledLu::default(),
             differentiator: Differentiator::default(),
-            scratch: Vec::new(),
         }
     }
 
-    /// As [`Curve::residual`].
+    /// As [`Curve::residual`](crate::continuation::Curve::residual).
     pub fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
         let equations = self.problem.equations();
-        self.problem.evaluate(unknown, &mut residual[..equations], &mut self.scratch);
+        self.problem.evaluate(unknown, &mut residual[..equations]);
     }
 
-    /// As [`Curve::factorize`].
+    /// As [`Curve::factorize`](crate::continuation::Curve::factorize).
     pub fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
         let n = unknown.len();
         self.differentiator.jacobian(&self.problem, unknown, residual, &mut self.matrix, n);
@@ -60,12 +60,12 @@ impl<P: AlgebraicProblem> DenseSystem<P> {
         self.lu.determinant_size()
     }
 
-    /// As [`Curve::solve`].
+    /// As [`Curve::solve`](crate::continuation::Curve::solve).
     pub fn solve(&self, vector: &mut [f64]) {
         self.lu.solve(vector);
     }
 
-    /// As [`Curve::apply_metric`].
+    /// As [`Curve::apply_metric`](crate::continuation::Curve::apply_metric).
     pub fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         for ((image, entry), scale) in image.iter_mut().zip(vector).zip(&self.scales) {
             *image = entry / (scale * scale);

@@ -142,7 +142,6 @@ impl<P, R> Branch<P, R> {
         followed: BothWays<Q, SpecialKind, R>,
         mut point: impl FnMut(Solution<Q>, Option<Label>) -> P,
     ) -> Self {
-        use crate::field::VectorField;
         let BothWays { solutions, start, stops, unlocated } = followed;
         let mut labels = LabelCounter::default();
         let points = solutions

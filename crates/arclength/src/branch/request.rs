@@ -4,7 +4,6 @@ use super::{LabelCounter, Monitor, SpecialKind, label_kind};
 use crate::continuation::{Bound, Observer, Origin, Request, Settings, Solution, Target};
 use crate::erased::ErasedField;
 use crate::error::Error;
-use crate::field::VectorField;
 use std::fmt;
 use std::ops::{ControlFlow, RangeInclusive};
 

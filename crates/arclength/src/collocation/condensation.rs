@@ -1,12 +1,12 @@
 //! Condensation of a linearised collocation system: the interior of every interval is eliminated by one small
-//! dense factorisation, and a [`Cyclic`] system in the left ends and the scalars is left.
+//! dense factorisation, and a [`Bidiagonal`] system in the left ends and the scalars is left.
 //!
 //! Apart from the evaluation of the vector field this is where the time of a continuation of cycles goes, so
 //! it is compiled once, not for every field, and also for processors with wide vectors and fused operations;
 //! [`LANES`] neighbouring intervals are condensed together, one in each lane of the vectors.
 //! Source: Ascher, Mattheij and Russell, *Numerical Solution of Boundary Value Problems* (1995), section 7.2.
 
-use super::bidiagonal::{Blocks, Cyclic};
+use super::bidiagonal::{Bidiagonal, Blocks, Sizes};
 use super::gauss::Gauss;
 use crate::lanes::{Kernel, run};
 use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
@@ -17,14 +17,16 @@ pub(crate) struct Condensation {
     pub(crate) gauss: Gauss,
     /// Number of state components.
     n: usize,
-    /// Number of scalars, and of dense rows.
+    /// Number of scalars.
     scalars: usize,
-    /// Diagonal of the boundary condition `y(1) = Theta y(0)`.
-    signs: Vec<f64>,
+    /// Number of boundary conditions.
+    boundary_conditions: usize,
     intervals: usize,
     /// Derivatives of the field at the Gauss points, to be filled in before [`factorize`](Self::factorize):
     /// `n` by `n + E` column-major for each point.
     pub(crate) derivatives: Vec<f64>,
+    /// Derivatives of the boundary conditions with respect to `y(1)`, `y(0)` and the scalars, column-major; to be filled in.
+    pub(crate) boundary: Vec<f64>,
     /// Gradients of the dense rows (conditions, then the border) in the states, row by row; to be filled in.
     pub(crate) gradients: Vec<f64>,
     /// Derivatives of the dense rows with respect to the scalars, row by row; to be filled in.
@@ -43,18 +45,21 @@ pub(crate) struct Condensation {
     scalar_columns: Vec<f64>,
     rows: Vec<f64>,
     states: Vec<f64>,
-    cyclic: Cyclic,
+    /// Right-hand sides of the conditions; end and scalars of the solution.
+    conditions: Vec<f64>,
+    bidiagonal: Bidiagonal,
 }
 
 impl Condensation {
-    pub(crate) fn new(degree: usize, n: usize, scalars: usize, signs: Vec<f64>) -> Self {
+    pub(crate) fn new(degree: usize, n: usize, scalars: usize, boundary_conditions: usize) -> Self {
         Self {
             gauss: Gauss::new(degree),
             n,
             scalars,
-            signs,
+            boundary_conditions,
             intervals: 0,
             derivatives: Vec::new(),
+            boundary: Vec::new(),
             gradients: Vec::new(),
             corner: Vec::new(),
             systems: Vec::new(),
@@ -66,7 +71,8 @@ impl Condensation {
             scalar_columns: Vec::new(),
             rows: Vec::new(),
             states: Vec::new(),
-            cyclic: Cyclic::default(),
+            conditions: Vec::new(),
+            bidiagonal: Bidiagonal::default(),
         }
     }
 
@@ -75,10 +81,12 @@ impl Condensation {
         let (n, e, degree) = (self.n, self.scalars, self.gauss.degree());
         let inner = degree * n;
         self.intervals = intervals;
+        let dense_rows = self.bidiagonal_sizes().dense_rows();
         self.derivatives.resize(intervals * inner * (n + e), 0.0);
-        self.gradients.resize(e * intervals * (inner + n), 0.0);
+        self.boundary.resize(self.boundary_conditions * (2 * n + e), 0.0);
+        self.gradients.resize(dense_rows * intervals * (inner + n), 0.0);
         self.corner.clear();
-        self.corner.resize(e * e, 0.0);
+        self.corner.resize(dense_rows * e, 0.0);
         let groups = intervals.div_ceil(LANES);
         self.systems.resize(groups * inner * (inner + n + e), Lanes::ZERO);
         self.exchanges.resize(groups * inner, [0; LANES]);
@@ -86,8 +94,30 @@ impl Condensation {
         self.particular.resize(groups * inner, Lanes::ZERO);
         self.transfer.resize(intervals * n * n, 0.0);
         self.scalar_columns.resize(intervals * n * e, 0.0);
-        self.rows.resize(e * intervals * n, 0.0);
+        self.rows.resize(dense_rows * intervals * n, 0.0);
         self.states.resize(intervals * n, 0.0);
+        self.conditions.resize(n + e, 0.0);
+    }
+
+    /// Sizes of the system that is left.
+    pub(crate) fn bidiagonal_sizes(&self) -> Sizes {
+        Sizes {
+            components: self.n,
+            scalars: self.scalars,
+            boundary_conditions: self.boundary_conditions,
+            intervals: self.intervals,
+        }
+    }
+
+    /// Index among all equations of a condition, counted from the first boundary condition to the border: the first `n` take
+    /// the place of the continuity at the end of the last interval.
+    pub(crate) fn place_of_condition(&self, condition: usize) -> usize {
+        let (n, size) = (self.n, (self.gauss.degree() + 1) * self.n);
+        if condition < n {
+            (self.intervals - 1) * size + condition
+        } else {
+            self.intervals * size + condition - n
+        }
     }
 
     /// The condensed blocks `R_j`.
@@ -132,11 +162,12 @@ impl Condensation {
         let blocks = Blocks {
             transfer: &self.transfer,
             scalar_columns: &self.scalar_columns,
+            boundary: &self.boundary,
             rows: &self.rows,
             corner: &self.corner,
-            signs: &self.signs,
         };
-        self.cyclic.factorize(blocks, self.n, self.scalars, self.intervals)
+        let sizes = self.bidiagonal_sizes();
+        self.bidiagonal.factorize(blocks, sizes)
     }
 
     /// Factorises the interior systems of a group of intervals and forms their responses.
@@ -226,7 +257,7 @@ impl Condensation {
         let (n, e, intervals) = (self.n, self.scalars, self.intervals);
         let size = inner + n;
         let response = &self.systems[group * system + inner * inner..(group + 1) * system];
-        for row in 0..e {
+        for row in 0..self.bidiagonal_sizes().dense_rows() {
             let gradient = &mut self.scaled[..inner];
             for (interval, lane) in lanes_of(group, intervals) {
                 let source = &self.gradients[(row * intervals + interval) * size + n..][..inner];
@@ -261,6 +292,11 @@ impl Condensation {
         let (inner, system) = self.sizes();
         let (n, intervals) = (self.n, self.intervals);
         let size = inner + n;
+        for condition in 0..self.conditions.len() {
+            let place = self.place_of_condition(condition);
+            self.conditions[condition] = std::mem::take(&mut right_hand_side[place]);
+        }
+        let dense = &mut self.conditions[self.boundary_conditions..];
         let (blocks, scalars) = right_hand_side.split_at_mut(intervals * size);
         for (group, values) in self.particular.chunks_exact_mut(inner).enumerate() {
             let count = LANES.min(intervals - group * LANES);
@@ -283,17 +319,18 @@ impl Condensation {
                     self.states[(group * LANES + lane) * n + component] = block[component] + sum.0[lane];
                 }
             }
-            for (row, scalar) in scalars.iter_mut().enumerate() {
+            for (row, value) in dense.iter_mut().enumerate() {
                 let start = (row * intervals + group * LANES) * size;
                 for (lane, gradient) in
                     self.gradients[start..start + count * size].chunks_exact(size).enumerate()
                 {
                     let products = gradient[n..].iter().zip(values.iter());
-                    *scalar -= products.map(|(entry, value)| entry * value.0[lane]).sum::<f64>();
+                    *value -= products.map(|(entry, value)| entry * value.0[lane]).sum::<f64>();
                 }
             }
         }
-        self.cyclic.solve(&mut self.states, scalars);
+        self.bidiagonal.solve(&mut self.states, &mut self.conditions);
+        scalars.copy_from_slice(&self.conditions[n..]);
         for (group, values) in self.particular.chunks_exact_mut(inner).enumerate() {
             let count = LANES.min(intervals - group * LANES);
             let starts = &self.states[group * LANES * n..][..count * n];

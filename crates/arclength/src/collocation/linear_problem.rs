@@ -61,7 +61,7 @@ impl Nodes<'_> {
 }
 
 impl LinearProblem {
-    /// Factorises the problem with `signs` at the boundary. `matrices` holds `M` at every Gauss point (`n` by `n`,
+    /// Factorises the problem with the `signs` of `y(1) = +-y(0)`. `matrices` holds `M` at every Gauss point (`n` by `n`,
     /// column-major); `columns` and `rows` are the functions `c_k` and `r_k`. `None` if the problem is
     /// singular.
     pub fn new(
@@ -76,8 +76,12 @@ impl LinearProblem {
         let degree = nodes.gauss.degree();
         let intervals = nodes.mesh.len() - 1;
         let size = (degree + 1) * n;
-        let mut condensation = Condensation::new(degree, n, scalars, signs);
+        let mut condensation = Condensation::new(degree, n, scalars, n);
         condensation.prepare(intervals);
+        for (component, sign) in signs.iter().enumerate() {
+            condensation.boundary[component * (n + 1)] = 1.0;
+            condensation.boundary[n * n + component * (n + 1)] = -sign;
+        }
         for (point, (_, node, weight)) in nodes.gauss_points().enumerate() {
             let target = &mut condensation.derivatives[point * n * (n + scalars)..][..n * (n + scalars)];
             target[..n * n].copy_from_slice(&matrices[point * n * n..(point + 1) * n * n]);

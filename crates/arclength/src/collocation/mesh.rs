@@ -6,8 +6,9 @@
 //! `h^(2m)` and much smaller.) Sources: de Boor, "Good approximation by splines with variable knots" (1973);
 //! Russell and Christiansen, "Adaptive mesh selection strategies" (1978).
 
-use super::equations::{Collocation, MOST_NODES, combine};
-use super::problem::PeriodicProblem;
+use super::equations::Collocation;
+use super::polynomials::{MOST_NODES, combine};
+use super::problem::BoundaryValueEquations;
 use super::resolution::Resolution;
 use crate::continuation::Adaptation;
 use crate::error::Error;
@@ -21,7 +22,7 @@ const TARGET: f64 = 0.2;
 const EXCESS: f64 = 1.6;
 
 /// Largest error of the polynomial on each interval, relative to `scales`.
-pub(crate) fn error_profile<P: PeriodicProblem>(
+pub(crate) fn error_profile<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     scales: &[f64],
@@ -42,13 +43,14 @@ pub(crate) fn error_profile<P: PeriodicProblem>(
     let (mut state, mut slope, mut field) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     (0..intervals)
         .map(|interval| {
-            let width = collocation.mesh()[interval + 1] - collocation.mesh()[interval];
+            let (left, right) = (collocation.mesh()[interval], collocation.mesh()[interval + 1]);
+            let width = right - left;
             let values = collocation.interval(unknown, interval);
             let mut largest = 0.0_f64;
             for (index, end) in ends.iter().enumerate() {
                 combine(values, &bases[index][..nodes], &mut state);
                 combine(values, &slopes[index][..nodes], &mut slope);
-                collocation.problem.field(&state, scalars, &mut field);
+                collocation.problem.field(left + end * width, &state, scalars, &mut field);
                 let constant = 1.0 / gauss.node_polynomial(*end);
                 for component in 0..scales.len() {
                     let residual = slope[component] - width * field[component];
@@ -65,7 +67,7 @@ pub(crate) fn error_profile<P: PeriodicProblem>(
 ///
 /// # Errors
 /// [`Error::MeshLimit`] when the errors are not finite or more intervals would be needed than allowed.
-pub(crate) fn fit_mesh<P: PeriodicProblem>(
+pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     collocation: &mut Collocation<P>,
     errors: &[f64],
     resolution: &Resolution,

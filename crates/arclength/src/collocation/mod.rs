@@ -1,10 +1,29 @@
 //! Orthogonal collocation of boundary value problems.
+//!
+//! A [`BoundaryValueProblem`] is `y' = g(t, y, s)` on the unit interval with boundary conditions `b(y(0), y(1), s) = 0` and
+//! conditions on integrals; `s` are scalars such as parameters and the length of the interval. [`BoundaryValueCurve`] lets
+//! [`follow`](crate::continuation::follow) trace its solutions along the last scalar on meshes that adapt, and locates folds:
+//! the Bratu problem is an example (`examples/bratu.rs`). Periodic orbits are the special case `y(1) = y(0)`; what is
+//! peculiar to them is in [`cycle`](crate::cycle).
+//!
+//! From the ground: `gauss` (points, weights, interpolation), `polynomials`, `problem`, `bidiagonal` and `condensation` (the linear
+//! algebra), `equations` and `linearization` ([`Collocation`]: residual and Jacobian), `mesh` (error estimate and adaptation), then
+//! `curve` and `fold`; `linear_problem` serves normal forms.
 
 pub(crate) mod bidiagonal;
 pub(crate) mod condensation;
 pub(crate) mod equations;
 pub(crate) mod gauss;
 pub(crate) mod linear_problem;
+mod linearization;
 pub(crate) mod mesh;
+pub(crate) mod polynomials;
 pub(crate) mod problem;
+mod reflections;
 pub(crate) mod resolution;
+
+pub use equations::Collocation;
+pub use gauss::Gauss;
+pub use polynomials::PiecewisePolynomial;
+pub use problem::{BoundaryValueEquations, BoundaryValueProblem, Reference};
+pub use resolution::Resolution;

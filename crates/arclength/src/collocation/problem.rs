@@ -1,33 +1,61 @@
-//! The contract of a periodic boundary value problem that collocation can discretise.
+//! The contract of a boundary value problem that collocation can discretise.
 
 use crate::differentiation::Scalar;
+use crate::erased::JacobianScalar;
 
-/// `y' = g(y, s)` on the unit interval with `y(1) = +-y(0)` componentwise and integral conditions.
+/// `y' = g(t, y, s)` on the unit interval with boundary conditions `b(y(0), y(1), s) = 0` and conditions on integrals of `y`.
 ///
-/// `s` are scalar unknowns such as the period and parameters. There is one condition fewer than there are
-/// scalars, so that solutions form curves.
-pub trait PeriodicProblem {
-    /// Number of components of `y`.
+/// `s` are scalar unknowns: parameters, or the length of the interval that was scaled to one. With `n` components and `E`
+/// scalars there are `n + E - 1` conditions, one fewer than a solution that stands alone needs, so that solutions form curves
+/// (Ascher, Mattheij and Russell, *Numerical Solution of Boundary Value Problems for Ordinary Differential Equations* (1995),
+/// section 1.2). The last scalar is the parameter along which [`BoundaryValueCurve`](super::BoundaryValueCurve) follows them.
+///
+/// ```
+/// use arclength::Scalar;
+/// use arclength::collocation::BoundaryValueProblem;
+///
+/// /// The Bratu problem `u'' + lambda exp(u) = 0`, `u(0) = u(1) = 0`.
+/// struct Bratu;
+/// impl BoundaryValueProblem for Bratu {
+///     fn dimension(&self) -> usize { 2 }
+///     fn scalars(&self) -> usize { 1 }
+///     fn field<T: Scalar>(&self, _time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
+///         derivative[0] = state[1];
+///         derivative[1] = -(scalars[0] * state[0].exp());
+///     }
+///     fn boundary_conditions<T: Scalar>(&self, start: &[T], end: &[T], _scalars: &[T], values: &mut [T]) {
+///         values[0] = start[0];
+///         values[1] = end[0];
+///     }
+/// }
+/// ```
+pub trait BoundaryValueProblem {
+    /// Number `n` of components of `y`.
     fn dimension(&self) -> usize;
 
-    /// Number of scalar unknowns.
+    /// Number `E` of scalar unknowns, one at least.
     fn scalars(&self) -> usize;
 
-    /// Whether a component returns to its negative after one period.
-    fn is_antiperiodic(&self, _component: usize) -> bool {
-        false
+    /// Number of conditions on integrals; the other `n + E - 1` are boundary conditions.
+    fn integral_conditions(&self) -> usize {
+        0
     }
 
-    /// Index of a scalar, not zero, that does nothing but multiply `g`, so that its derivative is known without differentiation.
-    fn factor(&self) -> Option<usize> {
-        None
+    /// Writes `g(time, state, scalars)` into `derivative` (`n` entries).
+    fn field<T: Scalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]);
+
+    /// Writes `b(start, end, scalars)` into `values` (an entry for every boundary condition).
+    fn boundary_conditions<T: Scalar>(&self, start: &[T], end: &[T], scalars: &[T], values: &mut [T]);
+
+    /// Writes the integrands whose integrals over the unit interval vanish into `values` (an entry for each).
+    fn integrands<T: Scalar>(
+        &self,
+        _state: &[T],
+        _scalars: &[T],
+        _reference: Reference<'_>,
+        _values: &mut [T],
+    ) {
     }
-
-    /// Writes `g(state, scalars)`.
-    fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]);
-
-    /// Writes the integrands whose integrals over the unit interval vanish (`scalars - 1` of them).
-    fn integrands<T: Scalar>(&self, state: &[T], scalars: &[T], reference: Reference<'_>, values: &mut [T]);
 }
 
 /// The solution that phase and normalisation conditions refer to, at one point in time.
@@ -37,4 +65,83 @@ pub struct Reference<'a> {
     pub state: &'a [f64],
     /// Its derivative with respect to the unit time.
     pub slope: &'a [f64],
+}
+
+/// What collocation asks of a boundary value problem: as [`BoundaryValueProblem`], which every one of these is, but only for
+/// the scalars that Jacobians are computed with.
+///
+/// Problems made of a field of unknown type, and defining systems made of other problems, serve these only.
+pub trait BoundaryValueEquations {
+    /// As [`BoundaryValueProblem::dimension`].
+    fn dimension(&self) -> usize;
+
+    /// As [`BoundaryValueProblem::scalars`].
+    fn scalars(&self) -> usize;
+
+    /// As [`BoundaryValueProblem::integral_conditions`].
+    fn integral_conditions(&self) -> usize;
+
+    /// Index of a scalar, not zero, that does nothing but multiply `g`, so that its derivative is known without differentiation.
+    fn factor(&self) -> Option<usize> {
+        None
+    }
+
+    /// Whether the boundary conditions are linear, so that their derivatives never change.
+    fn has_linear_boundary_conditions(&self) -> bool {
+        false
+    }
+
+    /// As [`BoundaryValueProblem::field`].
+    fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]);
+
+    /// As [`BoundaryValueProblem::boundary_conditions`].
+    fn boundary_conditions<T: JacobianScalar>(&self, start: &[T], end: &[T], scalars: &[T], values: &mut [T]);
+
+    /// As [`BoundaryValueProblem::integrands`].
+    fn integrands<T: JacobianScalar>(
+        &self,
+        state: &[T],
+        scalars: &[T],
+        reference: Reference<'_>,
+        values: &mut [T],
+    );
+}
+
+impl<P: BoundaryValueProblem> BoundaryValueEquations for P {
+    #[inline(always)]
+    fn dimension(&self) -> usize {
+        BoundaryValueProblem::dimension(self)
+    }
+    #[inline(always)]
+    fn scalars(&self) -> usize {
+        BoundaryValueProblem::scalars(self)
+    }
+    #[inline(always)]
+    fn integral_conditions(&self) -> usize {
+        BoundaryValueProblem::integral_conditions(self)
+    }
+    #[inline(always)]
+    fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        BoundaryValueProblem::field(self, time, state, scalars, derivative);
+    }
+    #[inline(always)]
+    fn boundary_conditions<T: JacobianScalar>(
+        &self,
+        start: &[T],
+        end: &[T],
+        scalars: &[T],
+        values: &mut [T],
+    ) {
+        BoundaryValueProblem::boundary_conditions(self, start, end, scalars, values);
+    }
+    #[inline(always)]
+    fn integrands<T: JacobianScalar>(
+        &self,
+        state: &[T],
+        scalars: &[T],
+        reference: Reference<'_>,
+        values: &mut [T],
+    ) {
+        BoundaryValueProblem::integrands(self, state, scalars, reference, values);
+    }
 }

@@ -3,10 +3,10 @@
 use crate::branch::invalid;
 use crate::error::Error;
 
-/// How finely cycles are resolved.
+/// How finely solutions are resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
-    /// Error estimate, relative to the amplitude of each state variable, that no reported cycle exceeds.
+    /// Error estimate, relative to the size of each component (of a cycle: its amplitude), that no reported solution exceeds.
     pub tolerance: f64,
     /// Degree of the polynomials, 2 to 16.
     pub degree: usize,

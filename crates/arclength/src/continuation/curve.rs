@@ -5,6 +5,7 @@ use super::solution::Solution;
 use super::stop::{Reason, Stop};
 use crate::error::Error;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// A curve of solutions `F(z) = 0`, `F: R^N -> R^(N-1)`, that [`follow`](super::follow) can trace.
 pub trait Curve {
@@ -59,8 +60,8 @@ pub trait Curve {
     }
 
     /// The test functions. Where several change their signs at one place their points are located in this order.
-    fn test_functions(&self) -> &'static [TestFunction<Self::Kind>] {
-        &[]
+    fn test_functions(&self) -> Cow<'static, [TestFunction<Self::Kind>]> {
+        Cow::Borrowed(&[])
     }
 
     /// The value of the test function for a kind at a solution; `None` where it is not defined.

@@ -26,8 +26,7 @@ impl Orbit {
     /// ```
     pub fn maximum(&self, function: impl Fn(&[f64]) -> f64) -> f64 {
         let gauss = Gauss::new(self.degree);
-        let mut basis = vec![0.0; self.degree + 1];
-        let mut value = |time: f64| function(&self.state_with(&gauss, &mut basis, time));
+        let value = |time: f64| function(&self.state_with(&gauss, time));
         let mut best = (f64::NEG_INFINITY, 0.0, 0.0);
         let count = self.mesh.len();
         let mut before = self.mesh[count - 1] - self.mesh[count - 2];
@@ -50,7 +49,7 @@ impl Orbit {
         }
         let (mut largest, middle, step) = best;
         let (mut left, mut right) = (middle - step, middle + step);
-        let mut inside = |time: f64| value(time.rem_euclid(1.0));
+        let inside = |time: f64| value(time.rem_euclid(1.0));
         let (mut one, mut other) = (left + GOLDEN * (right - left), right - GOLDEN * (right - left));
         let (mut at_one, mut at_other) = (inside(one), inside(other));
         while right - left > BRACKET * step {
@@ -77,14 +76,11 @@ impl Orbit {
     pub fn mean(&self, function: impl Fn(&[f64]) -> f64) -> f64 {
         let quadrature = Gauss::new(QUADRATURE);
         let gauss = Gauss::new(self.degree);
-        let mut basis = vec![0.0; self.degree + 1];
         let interval = |pair: &[f64]| {
             let length = pair[1] - pair[0];
             let values = quadrature.points.iter().zip(&quadrature.weights);
             let sum: f64 = values
-                .map(|(point, weight)| {
-                    weight * function(&self.state_with(&gauss, &mut basis, pair[0] + point * length))
-                })
+                .map(|(point, weight)| weight * function(&self.state_with(&gauss, pair[0] + point * length)))
                 .sum();
             length * sum
         };

@@ -1,17 +1,18 @@
 //! What continuation asks of a curve of cycles: residuals, meshes, test functions, where special points lie, where the curve ends.
 
-use super::curve::{CycleCurve, CycleInspection, state_metric};
+use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::extrema::ranges;
 use super::floquet::floquet;
 use super::special;
 use crate::branch::SpecialKind;
 use crate::collocation::mesh::{error_profile, fit_mesh};
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::events::{Event, Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop};
 use crate::error::{CorrectionFailure, Error};
+use std::borrow::Cow;
 
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
@@ -65,7 +66,7 @@ impl Curve for CycleCurve<'_> {
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         let end = vector.len() - 2;
-        state_metric(&self.collocation, &self.collocation.problem.scales, vector, image);
+        self.collocation.apply_metric(&self.collocation.problem.scales, vector, image);
         image[end] = vector[end] / (self.period_scale * self.period_scale);
         image[end + 1] = vector[end + 1] / (self.parameter_scale * self.parameter_scale);
     }
@@ -125,8 +126,8 @@ impl Curve for CycleCurve<'_> {
         finer < finest
     }
 
-    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
-        TEST_FUNCTIONS
+    fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
+        Cow::Borrowed(TEST_FUNCTIONS)
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<CycleInspection>) -> Option<Reading> {

@@ -7,7 +7,7 @@ use super::sizes::{StateSizes, vanishing_point};
 use super::switching::Branching;
 use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::error_profile;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::Settings;
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -148,34 +148,5 @@ impl<'a> CycleCurve<'a> {
         }
         let (a, b) = (before[before.len() - 1], after[after.len() - 1]);
         Some(vanishing_point((a, size_before), (b, size_after)))
-    }
-}
-
-/// Applies the metric of the states: mean square over the unit interval, each state in units of its scale.
-/// Components beyond the scales have weight zero.
-pub(super) fn state_metric<P: PeriodicProblem>(
-    collocation: &Collocation<P>,
-    scales: &[f64],
-    vector: &[f64],
-    image: &mut [f64],
-) {
-    let n = collocation.problem.dimension();
-    let size = collocation.interval_size();
-    let weights = &collocation.gauss().weights;
-    let square = |component: usize| scales.get(component).map_or(0.0, |scale| 1.0 / (scale * scale));
-    let squares: Vec<f64> = (0..n).map(square).collect();
-    for ((pair, vector), image) in
-        collocation.mesh().windows(2).zip(vector.chunks_exact(size)).zip(image.chunks_exact_mut(size))
-    {
-        let (start, rest) = image.split_at_mut(n);
-        start.fill(0.0);
-        for ((values, images), weight) in
-            vector[n..].chunks_exact(n).zip(rest.chunks_exact_mut(n)).zip(weights)
-        {
-            let weight = weight * (pair[1] - pair[0]);
-            for ((image, value), square) in images.iter_mut().zip(values).zip(&squares) {
-                *image = weight * square * value;
-            }
-        }
     }
 }

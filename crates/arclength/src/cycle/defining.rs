@@ -6,11 +6,11 @@
 //! (2004), section 10.4; Doedel, Govaerts and Kuznetsov, "Computation of periodic solution bifurcations in
 //! ODEs using bordered systems", SIAM J. Numer. Anal. 41 (2003).
 
-use super::limit_cycle::{phase_integrand, with_parameters};
-use crate::collocation::problem::{PeriodicProblem, Reference};
+use super::limit_cycle::phase_integrand;
+use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
-use crate::erased::ErasedField;
-use crate::field::VectorField;
+use crate::erased::{ErasedField, FieldScalar, JacobianScalar};
+use crate::parameters::with_parameters;
 
 /// Which special cycle a defining system is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub struct Defining<'a> {
     pub parameter_scale: f64,
 }
 
-impl PeriodicProblem for Defining<'_> {
+impl BoundaryValueEquations for Defining<'_> {
     #[inline]
     fn dimension(&self) -> usize {
         self.scales.len() * (1 + self.kind.eigenfunctions())
@@ -81,12 +81,32 @@ impl PeriodicProblem for Defining<'_> {
     }
 
     #[inline]
-    fn is_antiperiodic(&self, component: usize) -> bool {
-        self.kind == Kind::Doubling && component >= self.scales.len()
+    fn has_linear_boundary_conditions(&self) -> bool {
+        true
     }
 
     #[inline]
-    fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn integral_conditions(&self) -> usize {
+        2 + self.kind.own_scalars()
+    }
+
+    /// All components are periodic but the eigenfunction of a period doubling, which returns to its negative.
+    #[inline]
+    fn boundary_conditions<T: JacobianScalar>(
+        &self,
+        start: &[T],
+        end: &[T],
+        _scalars: &[T],
+        values: &mut [T],
+    ) {
+        let periodic = if self.kind == Kind::Doubling { self.scales.len() } else { start.len() };
+        for (index, ((value, start), end)) in values.iter_mut().zip(start).zip(end).enumerate() {
+            *value = if index < periodic { *end - *start } else { *end + *start };
+        }
+    }
+
+    #[inline]
+    fn field<T: JacobianScalar>(&self, _time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
         match self.kind {
             Kind::Torus => self.variational::<T, 2>(state, scalars, derivative),
             Kind::BranchPoint => self.adjoint(state, scalars, derivative),
@@ -95,7 +115,13 @@ impl PeriodicProblem for Defining<'_> {
     }
 
     #[inline]
-    fn integrands<T: Scalar>(&self, state: &[T], scalars: &[T], reference: Reference<'_>, values: &mut [T]) {
+    fn integrands<T: JacobianScalar>(
+        &self,
+        state: &[T],
+        scalars: &[T],
+        reference: Reference<'_>,
+        values: &mut [T],
+    ) {
         let n = self.scales.len();
         values[0] = phase_integrand(&state[..n], reference, &self.scales);
         let product = |a: &dyn Fn(usize) -> T, b: &dyn Fn(usize) -> T| -> T {
@@ -137,16 +163,16 @@ impl Defining<'_> {
         match self.second {
             Some(index) => {
                 let replaced = [first, (index, lift(scalars[2 + own]))];
-                with_parameters(&self.parameters, &replaced, action);
+                with_parameters(&self.parameters, replaced, action);
             }
-            None => with_parameters(&self.parameters, &[first], action),
+            None => with_parameters(&self.parameters, [first], action),
         }
     }
 
     /// The field with its derivative in the direction `direction` of the state, or in the first active parameter for the
     /// index behind the states.
     #[inline]
-    fn derivative_in<T: Scalar>(
+    fn derivative_in<T: JacobianScalar>(
         &self,
         direction: usize,
         state: &[T],
@@ -168,7 +194,7 @@ impl Defining<'_> {
     }
 
     #[inline]
-    fn adjoint<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn adjoint<T: JacobianScalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let n = self.scales.len();
         let (period, perturbation, multiple) = (scalars[0], scalars[1], scalars[2]);
         let mut values = vec![Dual::<T, 1>::zero(); n];
@@ -185,7 +211,7 @@ impl Defining<'_> {
     }
 
     #[inline]
-    fn adjoint_conditions<T: Scalar>(&self, state: &[T], scalars: &[T], values: &mut [T]) {
+    fn adjoint_conditions<T: JacobianScalar>(&self, state: &[T], scalars: &[T], values: &mut [T]) {
         let n = self.scales.len();
         let mut slopes = vec![Dual::<T, 1>::zero(); n];
         self.derivative_in(n, state, scalars, &mut slopes);
@@ -203,7 +229,10 @@ impl Defining<'_> {
     }
 
     #[inline]
-    fn variational<T: Scalar, const K: usize>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn variational<T: JacobianScalar, const K: usize>(&self, state: &[T], scalars: &[T], derivative: &mut [T])
+    where
+        Dual<T, K>: FieldScalar,
+    {
         let n = self.scales.len();
         let mut values = vec![Dual::<T, K>::zero(); n];
         let duals: Vec<Dual<T, K>> = (0..n)

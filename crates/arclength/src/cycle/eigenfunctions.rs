@@ -4,7 +4,7 @@ use super::defining::Kind;
 use super::limit_cycle::LimitCycle;
 use crate::collocation::equations::Collocation;
 use crate::collocation::linear_problem::{LinearProblem, NodeFunction, Nodes};
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::error::Error;
 use crate::linear::product_eigenvectors::product_eigenvector;
 use num_complex::Complex64;
@@ -38,7 +38,8 @@ impl<'a> Linearization<'a> {
         }
         let mut flow = vec![0.0; nodes.count() * n];
         for (state, target) in unknown.chunks_exact(n).zip(flow.chunks_exact_mut(n)) {
-            collocation.problem.field(state, scalars, target);
+            // The field of a cycle does not depend on the time.
+            collocation.problem.field(0.0, state, scalars, target);
             target.iter_mut().for_each(|entry| *entry /= scalars[0]);
         }
         Self { nodes, scales: &collocation.problem.scales, matrices, flow, parameter }
@@ -210,7 +211,7 @@ pub(crate) fn critical(
 
 /// Solutions of the variational equation with `z(1) = mu z(0)`, real for a real multiplier; for a complex one
 /// real and imaginary part of `z(t) exp(-i angle t)`, which is periodic when `mu = exp(i angle)`.
-fn eigenfunctions<P: PeriodicProblem>(
+fn eigenfunctions<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
     multiplier: Complex64,
     angle: f64,

@@ -2,9 +2,10 @@
 //! function of them.
 
 use super::orbit::Orbit;
-use crate::collocation::equations::{Collocation, MOST_NODES};
+use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::polynomials::Polynomials;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::differentiation::Dual;
 
 /// Local extrema among the nodes within this part of the amplitude of the extreme node are refined too.
@@ -21,13 +22,13 @@ pub(crate) struct Range {
 }
 
 /// Range of every component among the first `count`.
-pub(crate) fn ranges<P: PeriodicProblem>(
+pub(crate) fn ranges<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     count: usize,
 ) -> Vec<Range> {
     let n = collocation.problem.dimension();
-    let cycle = Polynomials { mesh: collocation.mesh(), gauss: collocation.gauss(), states: unknown, n };
+    let cycle = collocation.polynomials(unknown);
     let times = cycle.node_times();
     let mut values = vec![0.0; times.len()];
     (0..count)
@@ -39,7 +40,7 @@ pub(crate) fn ranges<P: PeriodicProblem>(
                 times: &times,
                 values: &values,
                 slope_at_node: &|index| cycle.slope_at_node(index, component),
-                at: &|time| cycle.at(time, component),
+                at: &|time| cycle.component(time - time.floor(), component),
             })
         })
         .collect()
@@ -80,55 +81,9 @@ impl Orbit {
             times: &times,
             values: &values,
             slope_at_node: &|node| at_node(node).1,
-            at: &|time| value_and_slope(&|index| cycle.at(time, index)),
+            at: &|time| value_and_slope(&|index| cycle.component(time - time.floor(), index)),
         });
         [smallest, largest]
-    }
-}
-
-/// A cycle in the unit time: states of `n` components at the left end and at the Gauss points of every interval.
-struct Polynomials<'a> {
-    mesh: &'a [f64],
-    gauss: &'a Gauss,
-    states: &'a [f64],
-    n: usize,
-}
-
-impl Polynomials<'_> {
-    fn node_times(&self) -> Vec<f64> {
-        let mut times = Vec::with_capacity((self.mesh.len() - 1) * (self.gauss.degree() + 1));
-        for pair in self.mesh.windows(2) {
-            times.push(pair[0]);
-            times.extend(self.gauss.points.iter().map(|point| pair[0] + point * (pair[1] - pair[0])));
-        }
-        times
-    }
-
-    /// Slope of a component at a node.
-    fn slope_at_node(&self, index: usize, component: usize) -> f64 {
-        let count = self.gauss.degree() + 1;
-        let (interval, node) = (index / count, index % count);
-        let width = self.mesh[interval + 1] - self.mesh[interval];
-        let values = self.states[interval * count * self.n..].iter().skip(component).step_by(self.n);
-        let slopes = self.gauss.slopes_at_node(node);
-        values.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>() / width
-    }
-
-    /// Value and slope of a component.
-    fn at(&self, time: f64, component: usize) -> (f64, f64) {
-        let time = time - time.floor();
-        let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= time);
-        let width = self.mesh[interval + 1] - self.mesh[interval];
-        let nodes = self.gauss.degree() + 1;
-        let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);
-        let position = (time - self.mesh[interval]) / width;
-        self.gauss.basis_with_slopes(position, &mut basis[..nodes], &mut slopes[..nodes]);
-        let size = nodes * self.n;
-        let values = &self.states[interval * size..(interval + 1) * size];
-        let sum = |weights: &[f64]| -> f64 {
-            weights.iter().enumerate().map(|(node, weight)| weight * values[node * self.n + component]).sum()
-        };
-        (sum(&basis[..nodes]), sum(&slopes[..nodes]) / width)
     }
 }
 

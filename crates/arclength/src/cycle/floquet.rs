@@ -8,7 +8,7 @@
 //! come from a periodic Schur decomposition.
 
 use crate::collocation::equations::Collocation;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::Spectrum;
 use crate::error::Error;
 use crate::linear::multiplier::Multiplier;
@@ -107,7 +107,7 @@ impl Floquet {
 }
 
 /// Multipliers from the blocks of the last factorisation at `unknown`, `scales` being the sizes of the states.
-pub(crate) fn floquet<P: PeriodicProblem>(
+pub(crate) fn floquet<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     scales: &[f64],
@@ -121,7 +121,8 @@ pub(crate) fn floquet<P: PeriodicProblem>(
     let mut signs = vec![1.0; intervals];
     for interval in 0..intervals {
         let reflector = &mut reflectors[interval * n..(interval + 1) * n];
-        collocation.problem.field(&collocation.interval(unknown, interval)[..n], scalars, reflector);
+        let start = &collocation.interval(unknown, interval)[..n];
+        collocation.problem.field(collocation.mesh()[interval], start, scalars, reflector);
         for (entry, scale) in reflector.iter_mut().zip(scales) {
             *entry /= scale;
         }

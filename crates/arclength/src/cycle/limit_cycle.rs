@@ -1,10 +1,10 @@
 //! The boundary value problem of a limit cycle: `u' = T f(u, p)`, `u(1) = u(0)`, with the integral phase
 //! condition of Doedel (1981).
 
-use crate::collocation::problem::{PeriodicProblem, Reference};
+use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::Scalar;
-use crate::erased::ErasedField;
-use crate::field::VectorField;
+use crate::erased::{ErasedField, JacobianScalar};
+use crate::parameters::with_parameters;
 
 /// A limit cycle with scalars `(T, p)`: period and active parameter.
 #[derive(Debug, Clone)]
@@ -19,7 +19,7 @@ pub struct LimitCycle<'a> {
     pub scales: Vec<f64>,
 }
 
-impl PeriodicProblem for LimitCycle<'_> {
+impl BoundaryValueEquations for LimitCycle<'_> {
     #[inline(always)]
     fn dimension(&self) -> usize {
         self.scales.len()
@@ -31,13 +31,23 @@ impl PeriodicProblem for LimitCycle<'_> {
     }
 
     #[inline(always)]
+    fn has_linear_boundary_conditions(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn integral_conditions(&self) -> usize {
+        1
+    }
+
+    #[inline(always)]
     fn factor(&self) -> Option<usize> {
         Some(0)
     }
 
     #[inline(always)]
-    fn field<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
-        with_parameters(&self.parameters, &[(self.active, scalars[1])], |parameters| {
+    fn field<T: JacobianScalar>(&self, _time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        with_parameters(&self.parameters, [(self.active, scalars[1])], |parameters| {
             self.field.evaluate(state, parameters, derivative);
         });
         for entry in derivative.iter_mut() {
@@ -46,7 +56,26 @@ impl PeriodicProblem for LimitCycle<'_> {
     }
 
     #[inline(always)]
-    fn integrands<T: Scalar>(&self, state: &[T], _scalars: &[T], reference: Reference<'_>, values: &mut [T]) {
+    fn boundary_conditions<T: JacobianScalar>(
+        &self,
+        start: &[T],
+        end: &[T],
+        _scalars: &[T],
+        values: &mut [T],
+    ) {
+        for ((value, start), end) in values.iter_mut().zip(start).zip(end) {
+            *value = *end - *start;
+        }
+    }
+
+    #[inline(always)]
+    fn integrands<T: JacobianScalar>(
+        &self,
+        state: &[T],
+        _scalars: &[T],
+        reference: Reference<'_>,
+        values: &mut [T],
+    ) {
         values[0] = phase_integrand(state, reference, &self.scales);
     }
 }
@@ -59,40 +88,4 @@ pub(crate) fn phase_integrand<T: Scalar>(state: &[T], reference: Reference<'_>, 
         sum += (state[index] - reference.state[index]) * (reference.slope[index] / (scale * scale));
     }
     sum
-}
-
-/// Calls `action` with the parameters, some of them replaced, without allocating for the usual numbers of them.
-#[inline(always)]
-pub(crate) fn with_parameters<T: Scalar, R>(
-    parameters: &[f64],
-    replaced: &[(usize, T)],
-    action: impl FnOnce(&[T]) -> R,
-) -> R {
-    // Dual numbers are large, so memory is not much more than is needed.
-    match parameters.len() {
-        0..=4 => with_memory::<T, R, 4>(parameters, replaced, action),
-        5..=10 => with_memory::<T, R, 10>(parameters, replaced, action),
-        11..=24 => with_memory::<T, R, 24>(parameters, replaced, action),
-        count => action(fill(&mut vec![T::zero(); count], parameters, replaced)),
-    }
-}
-
-#[inline(always)]
-fn with_memory<T: Scalar, R, const MOST: usize>(
-    parameters: &[f64],
-    replaced: &[(usize, T)],
-    action: impl FnOnce(&[T]) -> R,
-) -> R {
-    action(fill(&mut [T::zero(); MOST][..parameters.len()], parameters, replaced))
-}
-
-#[inline(always)]
-fn fill<'a, T: Scalar>(memory: &'a mut [T], parameters: &[f64], replaced: &[(usize, T)]) -> &'a [T] {
-    for (entry, value) in memory.iter_mut().zip(parameters) {
-        *entry = T::from(*value);
-    }
-    for (index, value) in replaced {
-        memory[*index] = *value;
-    }
-    memory
 }

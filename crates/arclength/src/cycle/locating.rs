@@ -1,6 +1,6 @@
 //! Newton's method on the defining system of a special cycle.
 
-use super::curve::{CycleCurve, CycleInspection, state_metric};
+use super::curve::{CycleCurve, CycleInspection};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
 use super::limit_cycle::LimitCycle;
@@ -9,7 +9,7 @@ use super::sizes::extent;
 use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::linear_problem::Nodes;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
 use crate::error::Error;
 
@@ -67,7 +67,7 @@ impl Curve for DefiningCurve<'_> {
         self.collocation.solve(right_hand_side);
     }
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
-        state_metric(&self.collocation, &self.scales, vector, image);
+        self.collocation.apply_metric(&self.scales, vector, image);
         let end = vector.len() - self.collocation.problem.scalars();
         image[end..].copy_from_slice(&vector[end..]);
         let scale = self.collocation.problem.period_scale;

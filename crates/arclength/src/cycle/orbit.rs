@@ -1,6 +1,7 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
 use crate::collocation::gauss::Gauss;
+use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
 use crate::integration::{Event, Integrator, autonomous};
@@ -242,32 +243,23 @@ impl Orbit {
     /// States at `count` equidistant times `0, T/count, ...`, with the times.
     pub fn sample(&self, count: usize) -> Vec<(f64, Vec<f64>)> {
         let gauss = Gauss::new(self.degree);
-        let mut basis = vec![0.0; self.degree + 1];
         (0..count)
             .map(|index| {
-                let time = index as f64 / count as f64;
-                (time * self.period, self.state_with(&gauss, &mut basis, time))
+                let phase = index as f64 / count as f64;
+                (phase * self.period, self.state_with(&gauss, phase))
             })
             .collect()
     }
 
     /// State at time `time` (any real number; the orbit repeats).
     pub fn state_at(&self, time: f64) -> Vec<f64> {
-        let phase = (time / self.period).rem_euclid(1.0);
-        self.state_with(&Gauss::new(self.degree), &mut vec![0.0; self.degree + 1], phase)
+        self.state_with(&Gauss::new(self.degree), (time / self.period).rem_euclid(1.0))
     }
 
-    pub(super) fn state_with(&self, gauss: &Gauss, basis: &mut [f64], phase: f64) -> Vec<f64> {
-        let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= phase);
-        let (left, right) = (self.mesh[interval], self.mesh[interval + 1]);
-        gauss.basis((phase - left) / (right - left), basis);
-        let size = (self.degree + 1) * self.dimension;
+    pub(super) fn state_with(&self, gauss: &Gauss, phase: f64) -> Vec<f64> {
         let mut state = vec![0.0; self.dimension];
-        crate::collocation::equations::combine(
-            &self.states[interval * size..(interval + 1) * size],
-            basis,
-            &mut state,
-        );
+        let polynomials = Polynomials { mesh: &self.mesh, gauss, n: self.dimension, states: &self.states };
+        polynomials.state(phase, &mut state);
         state
     }
 }

@@ -4,7 +4,7 @@
 use super::extrema::Range;
 use super::limit_cycle::LimitCycle;
 use crate::algebraic::scales::natural_scales;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 
 /// Part of its mean below which the amplitude of a state does not count as its size.
 const MEAN_PART: f64 = 0.01;

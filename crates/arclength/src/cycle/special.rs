@@ -8,7 +8,7 @@ use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::switching::{doubled, other_branch};
 use crate::branch::SpecialKind;
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Event, Location};
 use crate::continuation::{Bracket, Solution, along};
 use crate::error::Error;

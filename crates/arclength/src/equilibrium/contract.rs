@@ -9,6 +9,7 @@ use crate::continuation::events::{Event, Location, Reading, TestFunction, partne
 use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, events};
 use crate::error::Error;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// On the branch that turns at a pitchfork the parameter turns too, and an eigenvalue touches zero. At a neutral saddle the
 /// Hopf test vanishes as well.
@@ -85,8 +86,8 @@ impl Curve for EquilibriumCurve<'_> {
         Ok(Inspection { spectrum, rates, orientation, determinant, special: None })
     }
 
-    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
-        TEST_FUNCTIONS
+    fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
+        Cow::Borrowed(TEST_FUNCTIONS)
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {

@@ -6,8 +6,9 @@
 //! Funct. Anal. Optim.* 2 (1980), for branch points.
 
 use super::problem::EquilibriumProblem;
-use crate::algebraic::AlgebraicProblem;
+use crate::algebraic::AlgebraicEquations;
 use crate::differentiation::Scalar;
+use crate::erased::NarrowScalar;
 
 /// Inner product of a vector with a fixed one.
 pub(crate) fn against<T: Scalar>(fixed: &[f64], vector: &[T]) -> T {
@@ -38,7 +39,7 @@ pub(crate) struct FoldSystem<'a> {
     pub left: Vec<f64>,
 }
 
-impl AlgebraicProblem for FoldSystem<'_> {
+impl AlgebraicEquations for FoldSystem<'_> {
     fn unknowns(&self) -> usize {
         2 * self.equilibria.dimension + self.equilibria.active.len()
     }
@@ -47,7 +48,7 @@ impl AlgebraicProblem for FoldSystem<'_> {
         2 * self.equilibria.dimension + 1
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], _scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.equilibria.dimension;
         let ([state, vector], values) = parts(unknown, [n, n]);
         let (field, rest) = residual.split_at_mut(n);
@@ -70,7 +71,7 @@ pub(crate) struct HopfSystem<'a> {
     pub rate: f64,
 }
 
-impl AlgebraicProblem for HopfSystem<'_> {
+impl AlgebraicEquations for HopfSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.equilibria.dimension + 1 + self.equilibria.active.len()
     }
@@ -79,7 +80,7 @@ impl AlgebraicProblem for HopfSystem<'_> {
         3 * self.equilibria.dimension + 2
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], _scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.equilibria.dimension;
         let ([state, first, second, kappa], values) = parts(unknown, [n, n, n, 1]);
         let point = equilibrium(state, values);
@@ -110,7 +111,7 @@ pub(crate) struct BranchPointSystem<'a> {
     pub rate: f64,
 }
 
-impl AlgebraicProblem for BranchPointSystem<'_> {
+impl AlgebraicEquations for BranchPointSystem<'_> {
     fn unknowns(&self) -> usize {
         2 * self.equilibria.dimension + 1 + self.equilibria.active.len()
     }
@@ -119,7 +120,7 @@ impl AlgebraicProblem for BranchPointSystem<'_> {
         2 * self.equilibria.dimension + 2
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], _scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.equilibria.dimension;
         let ([state, left, beta], values) = parts(unknown, [n, n, 1]);
         let point = equilibrium(state, values);

@@ -2,7 +2,7 @@
 
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
-use crate::algebraic::{AlgebraicProblem, Differentiator};
+use crate::algebraic::{AlgebraicEquations, Differentiator};
 use crate::error::Error;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;

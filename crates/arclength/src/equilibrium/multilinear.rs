@@ -3,8 +3,7 @@
 //! Computed by nested dual numbers, one level for each direction, exact to rounding.
 
 use crate::differentiation::{Dual, Scalar};
-use crate::erased::ErasedField;
-use crate::field::VectorField;
+use crate::erased::{ErasedField, FieldScalar};
 use num_complex::Complex64;
 
 /// A number with one infinitesimal for each of several directions.
@@ -58,7 +57,7 @@ impl MultilinearForms<'_> {
         }
     }
 
-    fn nested<T: Nested>(&self, directions: &[&[f64]]) -> Vec<f64> {
+    fn nested<T: Nested + FieldScalar>(&self, directions: &[&[f64]]) -> Vec<f64> {
         let mut slopes = vec![0.0; directions.len()];
         let mut lift = |index: usize, value: f64| {
             for (slope, direction) in slopes.iter_mut().zip(directions) {
@@ -106,6 +105,7 @@ impl MultilinearForms<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::VectorField;
 
     struct Monomial;
 

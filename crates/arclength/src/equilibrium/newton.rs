@@ -7,7 +7,7 @@
 
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
-use crate::algebraic::{AlgebraicProblem, Differentiator, ScaledLu};
+use crate::algebraic::{AlgebraicEquations, Differentiator, ScaledLu};
 use crate::branch::check_length;
 use crate::erased::ErasedField;
 use crate::error::{CorrectionFailure, Error};
@@ -77,7 +77,6 @@ struct Search<'a> {
     matrix: Vec<f64>,
     residual: Vec<f64>,
     floors: Vec<f64>,
-    scratch: Vec<f64>,
 }
 
 impl<'a> Search<'a> {
@@ -91,7 +90,6 @@ impl<'a> Search<'a> {
             matrix: vec![0.0; n * n],
             residual: vec![0.0; n],
             floors,
-            scratch: Vec::new(),
         }
     }
 
@@ -145,7 +143,7 @@ impl<'a> Search<'a> {
                 for ((entry, here), step) in trial.iter_mut().zip(&state).zip(&update) {
                     *entry = here - damping * step;
                 }
-                self.problem.evaluate(&trial, &mut simplified, &mut self.scratch);
+                self.problem.evaluate(&trial, &mut simplified);
                 self.lu.solve(&mut simplified);
                 let simplified_size = crate::algebraic::length(&simplified, &scales);
                 if simplified_size <= (1.0 - 0.25 * damping) * size {

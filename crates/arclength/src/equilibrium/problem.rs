@@ -1,9 +1,9 @@
-//! Equilibria as an algebraic problem in the state and the active parameters.
+//! Equilibria as algebraic equations in the state and the active parameters.
 
-use crate::algebraic::AlgebraicProblem;
-use crate::differentiation::{Dual, Scalar};
-use crate::erased::ErasedField;
-use crate::field::VectorField;
+use crate::algebraic::AlgebraicEquations;
+use crate::differentiation::Dual;
+use crate::erased::{ErasedField, FieldScalar, NarrowScalar};
+use crate::parameters::with_parameters;
 
 /// `f(x, p) = 0` with the unknowns `(x, active parameters)`; the other parameters are fixed.
 #[derive(Clone, Debug)]
@@ -28,24 +28,24 @@ impl<'a> EquilibriumProblem<'a> {
         parameters
     }
 
-    /// The full list of parameters as numbers of type `T`.
-    fn fill<T: Scalar>(&self, values: &[T], parameters: &mut Vec<T>) {
-        parameters.clear();
-        parameters.extend(self.parameters.iter().map(|&value| T::from(value)));
-        for (&index, &value) in self.active.iter().zip(values) {
-            parameters[index] = value;
-        }
+    /// Writes `f` at the unknowns `(x, active parameters)`.
+    fn write_field<T: FieldScalar>(&self, unknown: &[T], value: &mut [T]) {
+        let (state, values) = unknown.split_at(self.dimension);
+        let active = self.active.iter().copied().zip(values.iter().copied());
+        with_parameters(&self.parameters, active, |parameters| self.field.evaluate(state, parameters, value));
     }
 
     /// Writes `f` into `value` and its derivative along `direction` into `image`; `direction` lies in the space of
     /// the unknowns and may stop after the states.
-    pub fn derivative_along<T: Scalar>(
+    pub fn derivative_along<T: FieldScalar>(
         &self,
         unknown: &[T],
         direction: &[T],
         value: &mut [T],
         image: &mut [T],
-    ) {
+    ) where
+        Dual<T, 1>: FieldScalar,
+    {
         let lifted: Vec<Dual<T, 1>> = unknown
             .iter()
             .enumerate()
@@ -54,11 +54,8 @@ impl<'a> EquilibriumProblem<'a> {
                 derivatives: [direction.get(index).copied().unwrap_or_else(T::zero)],
             })
             .collect();
-        let (state, values) = lifted.split_at(self.dimension);
-        let mut parameters = Vec::with_capacity(self.parameters.len());
-        self.fill(values, &mut parameters);
         let mut result = vec![Dual::constant(T::zero()); self.dimension];
-        self.field.evaluate(state, &parameters, &mut result);
+        self.write_field(&lifted, &mut result);
         for ((value, image), entry) in value.iter_mut().zip(image).zip(&result) {
             *value = entry.value;
             *image = entry.derivatives[0];
@@ -66,9 +63,7 @@ impl<'a> EquilibriumProblem<'a> {
     }
 }
 
-impl AlgebraicProblem for EquilibriumProblem<'_> {
-    const WIDE: bool = true;
-
+impl AlgebraicEquations for EquilibriumProblem<'_> {
     fn unknowns(&self) -> usize {
         self.dimension + self.active.len()
     }
@@ -77,9 +72,12 @@ impl AlgebraicProblem for EquilibriumProblem<'_> {
         self.dimension
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], scratch: &mut Vec<T>) {
-        let (state, values) = unknown.split_at(self.dimension);
-        self.fill(values, scratch);
-        self.field.evaluate(state, scratch, residual);
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
+        self.write_field(unknown, residual);
+    }
+
+    fn evaluate_wide(&self, unknown: &[Dual<f64, 8>], residual: &mut [Dual<f64, 8>]) -> bool {
+        self.write_field(unknown, residual);
+        true
     }
 }

@@ -3,10 +3,11 @@
 //! All systems are square and regular at generic points. Cusp: Spence and Werner, *IMA J. Numer. Anal.* 2 (1982). The
 //! others combine the systems of the curves that meet there.
 
-use crate::algebraic::AlgebraicProblem;
+use crate::algebraic::AlgebraicEquations;
 use crate::branch::SpecialKind;
-use crate::differentiation::{Dual, Scalar};
+use crate::differentiation::Dual;
 use crate::equilibrium::defining::{FoldSystem, HopfSystem, against, equilibrium, parts};
+use crate::erased::NarrowScalar;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -41,7 +42,7 @@ pub(super) struct CuspSystem<'a> {
     pub fold: FoldSystem<'a>,
 }
 
-impl AlgebraicProblem for CuspSystem<'_> {
+impl AlgebraicEquations for CuspSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.fold.equilibria.dimension + 2
     }
@@ -50,7 +51,7 @@ impl AlgebraicProblem for CuspSystem<'_> {
         self.unknowns()
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], _scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let problem = &self.fold.equilibria;
         let n = problem.dimension;
         let ([state, null, second], values) = parts(unknown, [n, n, n]);
@@ -86,7 +87,7 @@ pub(super) struct BogdanovTakensSystem<'a> {
     pub hopf: HopfSystem<'a>,
 }
 
-impl AlgebraicProblem for BogdanovTakensSystem<'_> {
+impl AlgebraicEquations for BogdanovTakensSystem<'_> {
     fn unknowns(&self) -> usize {
         3 * self.hopf.equilibria.dimension + 2
     }
@@ -95,11 +96,11 @@ impl AlgebraicProblem for BogdanovTakensSystem<'_> {
         self.unknowns()
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.hopf.equilibria.dimension;
         let mut inner = unknown.to_vec();
         inner.insert(3 * n, T::zero());
-        self.hopf.evaluate(&inner, residual, scratch);
+        self.hopf.evaluate(&inner, residual);
     }
 }
 
@@ -109,7 +110,7 @@ pub(super) struct ZeroHopfSystem<'a> {
     pub null_normal: Vec<f64>,
 }
 
-impl AlgebraicProblem for ZeroHopfSystem<'_> {
+impl AlgebraicEquations for ZeroHopfSystem<'_> {
     fn unknowns(&self) -> usize {
         4 * self.hopf.equilibria.dimension + 3
     }
@@ -118,11 +119,11 @@ impl AlgebraicProblem for ZeroHopfSystem<'_> {
         self.unknowns()
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.hopf.equilibria.dimension;
         let ([first, null], values) = parts(unknown, [3 * n + 1, n]);
         let (own, rest) = residual.split_at_mut(3 * n + 2);
-        self.hopf.evaluate(&[first, values].concat(), own, scratch);
+        self.hopf.evaluate(&[first, values].concat(), own);
         let (image, rest) = rest.split_at_mut(n);
         let point = equilibrium(&first[..n], values);
         self.hopf.equilibria.derivative_along(&point, null, &mut own[..n], image);
@@ -135,7 +136,7 @@ pub(super) struct HopfHopfSystem<'a> {
     pub pairs: [HopfSystem<'a>; 2],
 }
 
-impl AlgebraicProblem for HopfHopfSystem<'_> {
+impl AlgebraicEquations for HopfHopfSystem<'_> {
     fn unknowns(&self) -> usize {
         5 * self.pairs[0].equilibria.dimension + 4
     }
@@ -144,13 +145,13 @@ impl AlgebraicProblem for HopfHopfSystem<'_> {
         self.unknowns()
     }
 
-    fn evaluate<T: Scalar>(&self, unknown: &[T], residual: &mut [T], scratch: &mut Vec<T>) {
+    fn evaluate<T: NarrowScalar>(&self, unknown: &[T], residual: &mut [T]) {
         let n = self.pairs[0].equilibria.dimension;
         let ([state, one, other], values) = parts(unknown, [n, 2 * n + 1, 2 * n + 1]);
         let mut second = vec![T::zero(); 3 * n + 2];
-        self.pairs[1].evaluate(&[state, other, values].concat(), &mut second, scratch);
+        self.pairs[1].evaluate(&[state, other, values].concat(), &mut second);
         let (first, rest) = residual.split_at_mut(3 * n + 2);
-        self.pairs[0].evaluate(&[state, one, values].concat(), first, scratch);
+        self.pairs[0].evaluate(&[state, one, values].concat(), first);
         rest.copy_from_slice(&second[n..]);
     }
 }

@@ -8,6 +8,7 @@ use crate::continuation::events::{self, Location, Reading, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, distance};
 use crate::equilibrium::spectrum::without;
 use crate::error::Error;
+use std::borrow::Cow;
 use std::convert::Infallible;
 
 /// Perturbation of the field, relative to its fastest rate, beyond which a branch point does not persist.
@@ -59,8 +60,8 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         Ok(Inspection { spectrum, monitor, special: None })
     }
 
-    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
-        K::TEST_FUNCTIONS
+    fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
+        Cow::Borrowed(K::TEST_FUNCTIONS)
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {

@@ -1,7 +1,7 @@
 //! What the curves of folds, of Hopf points and of branch points have in common, and how they differ.
 
 use super::gauge::{PlaneGauge, combine, rewrite_vector};
-use crate::algebraic::{AlgebraicProblem, length};
+use crate::algebraic::{AlgebraicEquations, length};
 use crate::branch::SpecialKind;
 use crate::continuation::events::TestFunction;
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
@@ -49,7 +49,7 @@ impl Monitor {
 }
 
 /// A kind of special equilibria of which there are curves in two parameters.
-pub(super) trait LocusKind<'a>: AlgebraicProblem {
+pub(super) trait LocusKind<'a>: AlgebraicEquations {
     /// What the curve consists of.
     const KIND: SpecialKind;
 

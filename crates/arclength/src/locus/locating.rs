@@ -6,7 +6,7 @@ use super::codimension_two::{
 use super::curve::{Inspection, LocusCurve};
 use super::kind::LocusKind;
 use super::normal_form;
-use crate::algebraic::{AlgebraicProblem, ScaledLu, Solved, length, solve_square};
+use crate::algebraic::{AlgebraicEquations, ScaledLu, Solved, length, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, correct, finish, locate};
 use crate::equilibrium::defining::{FoldSystem, HopfSystem};
@@ -192,7 +192,7 @@ enum Newton {
 
 impl Newton {
     /// `squares` are the places among the unknowns and the units of the squares of frequencies.
-    fn on<P: AlgebraicProblem>(system: &P, start: &[f64], sizes: &[f64], squares: &[(usize, f64)]) -> Self {
+    fn on<P: AlgebraicEquations>(system: &P, start: &[f64], sizes: &[f64], squares: &[(usize, f64)]) -> Self {
         let Ok(solved) = solve_square(system, start, sizes) else { return Self::Failed };
         if squares.iter().any(|&(index, _)| solved.unknown[index] <= 0.0) {
             return Self::OtherKind;

@@ -16,6 +16,7 @@ use arclength::control::Control;
 use arclength::error::Error;
 use arclength::linear::lu;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::convert::Infallible;
 use std::f64::consts::TAU;
 
@@ -341,8 +342,8 @@ impl Curve for SlidingCurve<'_> {
         Ok(CurvePoint { motion })
     }
 
-    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
-        TEST_FUNCTIONS
+    fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
+        Cow::Borrowed(TEST_FUNCTIONS)
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<CurvePoint>) -> Option<Reading> {

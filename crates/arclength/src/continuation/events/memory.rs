@@ -12,7 +12,8 @@ pub(super) struct Memory {
 
 impl Memory {
     pub fn of<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> Self {
-        let readings = curve.test_functions().iter().map(|test| Some(curve.test(test.kind, solution)?.value));
+        let tests = curve.test_functions();
+        let readings = tests.iter().map(|test| Some(curve.test(test.kind, solution)?.value));
         Self { readings: readings.collect(), spectrum: Some(curve.spectrum(solution)) }
     }
 

@@ -23,7 +23,8 @@ pub(super) struct Node<C: Curve + ?Sized> {
 
 /// How many of the signs at a solution may be rounding error.
 pub(super) fn undecided<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> usize {
-    let readings = curve.test_functions().iter().filter_map(|test| curve.test(test.kind, solution));
+    let tests = curve.test_functions();
+    let readings = tests.iter().filter_map(|test| curve.test(test.kind, solution));
     curve.undecided(solution) + readings.filter(|reading| !reading.is_decided()).count()
 }
 

@@ -5,7 +5,7 @@ use super::monitor;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::{error_profile, fit_mesh};
-use crate::collocation::problem::PeriodicProblem;
+use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
 use crate::cycle::defining::Kind;
@@ -20,6 +20,7 @@ use crate::cycle::{CycleEnd, Resolution};
 use crate::error::{CorrectionFailure, Error};
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
 /// Sizes of eigenfunctions in the metric, so that they count less than states and parameters.
@@ -372,8 +373,8 @@ impl Curve for CycleLocusCurve<'_> {
         })
     }
 
-    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
-        monitor::test_functions(self.kind())
+    fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
+        Cow::Borrowed(monitor::test_functions(self.kind()))
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {

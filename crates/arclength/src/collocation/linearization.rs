@@ -1,0 +1,183 @@
+//! The Jacobian of a collocation system, bordered by one row, by dual numbers: its entries are written where
+//! [`Condensation`](super::condensation::Condensation) takes them from.
+
+use super::equations::Collocation;
+use super::problem::{BoundaryValueEquations, Reference};
+use crate::differentiation::{Dual, Scalar};
+use crate::erased::JacobianScalar;
+
+/// Memory for the evaluation of field and integrands with derivatives in up to `D` directions at a time.
+struct DualWorkspace<const D: usize> {
+    state: Vec<Dual<f64, D>>,
+    scalars: Vec<Dual<f64, D>>,
+    values: Vec<Dual<f64, D>>,
+    integrands: Vec<Dual<f64, D>>,
+}
+
+impl<const D: usize> DualWorkspace<D> {
+    fn new(n: usize, scalars: usize, integrals: usize) -> Self {
+        Self {
+            state: vec![Dual::zero(); n],
+            scalars: vec![Dual::zero(); scalars],
+            values: vec![Dual::zero(); n],
+            integrands: vec![Dual::zero(); integrals],
+        }
+    }
+}
+
+/// Directions of the narrow and of the wide workspace.
+const NARROW: usize = 4;
+const WIDE: usize = 8;
+
+/// A Gauss point of an interval.
+#[derive(Clone, Copy)]
+struct Place {
+    interval: usize,
+    point: usize,
+}
+
+impl<P: BoundaryValueEquations> Collocation<P> {
+    /// Linearises at `unknown`, bordered by `border`, writes the residual and factorises.
+    ///
+    /// Returns the sign of the determinant of the system reduced to the states at both ends and the scalars, zero if singular.
+    pub fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        let n = self.problem.dimension();
+        let e = self.problem.scalars();
+        let degree = self.gauss().degree();
+        let size = self.interval_size();
+        let intervals = self.intervals();
+        let mut integrals = vec![0.0; self.problem.integral_conditions()];
+        self.condensation.prepare(intervals);
+        let (states, scalars) = unknown.split_at(intervals * size);
+        for row in 0..integrals.len() {
+            for interval in 0..intervals {
+                let start = (row * intervals + interval) * size;
+                self.condensation.gradients[start..start + n].fill(0.0);
+            }
+        }
+        self.condensation.gradients[integrals.len() * intervals * size..]
+            .copy_from_slice(&border[..intervals * size]);
+        self.condensation.corner[integrals.len() * e..].copy_from_slice(&border[intervals * size..]);
+        let directions =
+            (0..n + e).filter(|&column| Some(column) != self.problem.factor().map(|index| n + index));
+        let directions: Vec<usize> = directions.collect();
+        let mut narrow = DualWorkspace::<NARROW>::new(n, e, integrals.len());
+        let mut wide = DualWorkspace::<WIDE>::new(n, e, integrals.len());
+        let mut values = vec![0.0; degree * n];
+        for interval in 0..intervals {
+            let here = &states[interval * size..(interval + 1) * size];
+            for point in 0..degree {
+                let state = &here[n * (point + 1)..n * (point + 2)];
+                let value = &mut values[point * n..(point + 1) * n];
+                let place = Place { interval, point };
+                for now in directions.chunks(WIDE) {
+                    // The values are the same in all chunks, so that only the first one counts them.
+                    let sums = if now[0] == directions[0] { &mut integrals[..] } else { &mut [] };
+                    if now.len() <= NARROW {
+                        self.differentiate(place, now, state, scalars, &mut narrow, value, sums);
+                    } else {
+                        self.differentiate(place, now, state, scalars, &mut wide, value, sums);
+                    }
+                }
+                if let Some(factor) = self.problem.factor() {
+                    let column = (interval * degree + point) * (n + e) + n + factor;
+                    let target = &mut self.condensation.derivatives[column * n..][..n];
+                    for (entry, value) in target.iter_mut().zip(value.iter()) {
+                        *entry = value / scalars[factor];
+                    }
+                }
+            }
+            self.interval_residual(interval, states, &values, &mut residual[interval * size..][..size]);
+        }
+        if !(self.boundary_is_differentiated && self.problem.has_linear_boundary_conditions()) {
+            self.differentiate_boundary(&states[..n], &self.end(states), scalars);
+            self.boundary_is_differentiated = true;
+        }
+        self.write_conditions(states, scalars, &integrals, residual);
+        self.condensation.factorize(&self.mesh)
+    }
+
+    /// Derivatives of the boundary conditions with respect to `y(1)`, `y(0)` and the scalars.
+    fn differentiate_boundary(&mut self, start: &[f64], end: &[f64], scalars: &[f64]) {
+        let n = start.len();
+        let conditions = self.boundary_conditions();
+        let point = [end, start, scalars].concat();
+        let mut duals: Vec<Dual<f64, WIDE>> = point.iter().map(|value| Dual::constant(*value)).collect();
+        let mut values = vec![Dual::zero(); conditions];
+        for first in (0..point.len()).step_by(WIDE) {
+            let width = WIDE.min(point.len() - first);
+            for direction in 0..width {
+                duals[first + direction].derivatives[direction] = 1.0;
+            }
+            let (end, rest) = duals.split_at(n);
+            let (start, scalars) = rest.split_at(n);
+            self.problem.boundary_conditions(start, end, scalars, &mut values);
+            for direction in 0..width {
+                let column =
+                    &mut self.condensation.boundary[(first + direction) * conditions..][..conditions];
+                for (entry, value) in column.iter_mut().zip(&values) {
+                    *entry = value.derivatives[direction];
+                }
+                duals[first + direction].derivatives[direction] = 0.0;
+            }
+        }
+    }
+
+    /// Derivatives of field and integrands at one Gauss point in some directions, with the values of the field; those of the
+    /// integrands are added up.
+    #[allow(clippy::too_many_arguments)] // The inner loop of `factorize`, apart to be readable.
+    fn differentiate<const D: usize>(
+        &mut self,
+        place: Place,
+        directions: &[usize],
+        state: &[f64],
+        scalars: &[f64],
+        duals: &mut DualWorkspace<D>,
+        values: &mut [f64],
+        integrals: &mut [f64],
+    ) where
+        Dual<f64, D>: JacobianScalar,
+    {
+        let (n, e, intervals, size) = (state.len(), scalars.len(), self.intervals(), self.interval_size());
+        let columns = n + e;
+        let node = place.interval * self.gauss().degree() + place.point;
+        let weight =
+            (self.mesh[place.interval + 1] - self.mesh[place.interval]) * self.gauss().weights[place.point];
+        for (dual, value) in duals.state.iter_mut().zip(state).chain(duals.scalars.iter_mut().zip(scalars)) {
+            *dual = Dual::constant(*value);
+        }
+        for (index, &direction) in directions.iter().enumerate() {
+            let dual =
+                if direction < n { &mut duals.state[direction] } else { &mut duals.scalars[direction - n] };
+            dual.derivatives[index] = 1.0;
+        }
+        let reference = Reference {
+            state: &self.reference[node * n..(node + 1) * n],
+            slope: &self.reference_slope[node * n..(node + 1) * n],
+        };
+        let time = self.time(place.interval, place.point);
+        self.problem.field(time, &duals.state, &duals.scalars, &mut duals.values);
+        self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
+        for (entry, dual) in values.iter_mut().zip(&duals.values) {
+            *entry = dual.value;
+        }
+        for (sum, dual) in integrals.iter_mut().zip(&duals.integrands) {
+            *sum += weight * dual.value;
+        }
+        for (index, &column) in directions.iter().enumerate() {
+            let target = &mut self.condensation.derivatives[(node * columns + column) * n..][..n];
+            for (entry, dual) in target.iter_mut().zip(&duals.values) {
+                *entry = dual.derivatives[index];
+            }
+            for (row, dual) in duals.integrands.iter().enumerate() {
+                let slope = weight * dual.derivatives[index];
+                if column < n {
+                    let position = (row * intervals + place.interval) * size + (place.point + 1) * n + column;
+                    self.condensation.gradients[position] = slope;
+                } else {
+                    self.condensation.corner[row * e + column - n] += slope;
+                }
+            }
+        }
+    }
+}
