@@ -9,6 +9,8 @@
 //! [`AlgebraicEquations`] on a [`DenseSystem`]. Rows and columns are scaled before every factorisation, so that nothing
 //! depends on the units of variables and equations.
 
+mod curve;
+mod fold;
 mod jacobian;
 mod newton;
 mod problem;
@@ -16,6 +18,7 @@ mod scaled_lu;
 pub(crate) mod scales;
 mod system;
 
+pub use curve::{AlgebraicCurve, AlgebraicPoint};
 pub use jacobian::Differentiator;
 pub use newton::{Solved, solve_square};
 pub use problem::{AlgebraicEquations, AlgebraicProblem};

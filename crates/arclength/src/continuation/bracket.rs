@@ -3,6 +3,7 @@
 
 use super::corrector::{correct, finish};
 use super::curve::Curve;
+use super::events::Location;
 use super::metric::{along, metric_image};
 use super::settings::Settings;
 use super::solution::{Solution, interpolate};
@@ -119,4 +120,41 @@ pub fn locate<C: Curve>(
 ) -> Result<Option<Solution<C::Point>>, Error> {
     let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
     Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
+}
+
+/// Parts of the distance between two solutions to which the zero of a test function is bracketed before Newton's method takes
+/// over, and tries again.
+const STARTS: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
+/// A special point may lie this part of the distance outside.
+const OUTSIDE: f64 = 1e-6;
+
+/// Locates the zero of a test function between two neighbouring solutions on its defining system: `solve` computes the unknowns of
+/// the curve there, as a rule by Newton's method, from starts that come ever closer.
+///
+/// # Errors
+/// When a solution cannot be inspected.
+pub fn locate_by_defining_system<C: Curve>(
+    curve: &mut C,
+    [before, after]: [&Solution<C::Point>; 2],
+    settings: &Settings,
+    mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
+    mut solve: impl FnMut(&mut C, &Solution<C::Point>) -> Result<Vec<f64>, Error>,
+) -> Result<Location<C::Point>, Error> {
+    let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else {
+        return Ok(Location::Missed);
+    };
+    let length = along(curve, before, &after.unknown);
+    for tolerance in STARTS {
+        let near = match bracket.narrow(curve, settings, tolerance, &mut test) {
+            Ok(Some(near)) => near.clone(),
+            Ok(None) | Err(Error::NotFound { .. }) => break,
+            Err(error) => return Err(error),
+        };
+        let Ok(unknown) = solve(curve, &near) else { continue };
+        let place = along(curve, before, &unknown);
+        if place >= -OUTSIDE * length && place <= (1.0 + OUTSIDE) * length {
+            return Ok(Location::At(finish(curve, unknown, &before.tangent)?));
+        }
+    }
+    Ok(Location::Missed)
 }

@@ -24,7 +24,7 @@ mod stop;
 pub use crate::error::CorrectionFailure;
 pub(crate) use both_ways::{BothWays, BothWaysOf, both_ways};
 pub(crate) use bracket::Bracket;
-pub use bracket::locate;
+pub use bracket::{locate, locate_by_defining_system};
 pub(crate) use corrector::finish;
 pub use corrector::{Correction, correct};
 pub use curve::{Adaptation, Curve, Ending, EventOf};
