@@ -12,7 +12,9 @@
 
 pub(crate) mod bidiagonal;
 pub(crate) mod condensation;
+mod curve;
 pub(crate) mod equations;
+mod fold;
 pub(crate) mod gauss;
 pub(crate) mod linear_problem;
 mod linearization;
@@ -22,6 +24,7 @@ pub(crate) mod problem;
 mod reflections;
 pub(crate) mod resolution;
 
+pub use curve::{BoundaryValueCurve, BoundaryValuePoint};
 pub use equations::Collocation;
 pub use gauss::Gauss;
 pub use polynomials::PiecewisePolynomial;
