@@ -132,6 +132,35 @@ fn eigenvalues_with_an_integral_condition_and_a_field_that_depends_on_the_time()
     }
 }
 
+/// A rod under pressure, `u'' + p sin u = 0`, `u(0) = u(1) = 0`, which buckles at `p = pi^2`.
+struct Rod;
+
+impl BoundaryValueProblem for Rod {
+    fn dimension(&self) -> usize {
+        2
+    }
+    fn scalars(&self) -> usize {
+        1
+    }
+    fn field<T: Scalar>(&self, _time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        derivative[0] = state[1];
+        derivative[1] = -(scalars[0] * state[0].sin());
+    }
+    fn boundary_conditions<T: Scalar>(&self, start: &[T], end: &[T], _scalars: &[T], values: &mut [T]) {
+        values[0] = start[0];
+        values[1] = end[0];
+    }
+}
+
+#[test]
+fn a_branch_point_is_noticed() {
+    let straight = (|_| vec![0.0; 2], &[5.0][..]);
+    let branch = followed(Rod, &[1.0, 1.0, 20.0], straight, [5.0, 25.0], &[]);
+    let [noticed] = &branch.unlocated[..] else { panic!("{:?}", branch.unlocated) };
+    assert_eq!(noticed.kind, Some(SpecialKind::BranchPoint));
+    assert!(noticed.between[0][0] < PI * PI && noticed.between[1][0] > PI * PI, "{noticed:?}");
+}
+
 /// How the phase of a cycle is fixed.
 #[derive(Clone, Copy, PartialEq)]
 enum Phase {

@@ -169,6 +169,30 @@ fn located(branch: &Branch, kind: SpecialKind) -> impl Iterator<Item = &[f64]> {
     special.map(|(solution, _)| solution.unknown.as_slice())
 }
 
+/// The logistic map `x -> a x (1 - x)`.
+#[derive(Clone)]
+struct Logistic;
+
+impl Map<1> for Logistic {
+    fn image<T: Scalar>(&self, state: &[T], a: T) -> [T; 1] {
+        [a * state[0] * (-state[0] + 1.0)]
+    }
+}
+
+#[test]
+fn a_branch_point_is_noticed() {
+    // The fixed points x = 0 and x = 1 - 1 / a cross at a = 1.
+    let branch = fixed_points(&Logistic, vec![0.0, 0.5], 1.0, [0.0, 1.7]);
+    // By the orientation and by the number of unstable multipliers.
+    let kinds: Vec<_> = branch.unlocated.iter().map(|change| change.kind).collect();
+    assert_eq!(kinds, [Some(SpecialKind::BranchPoint), None]);
+    for change in &branch.unlocated {
+        assert!(change.between[0][0] < 1.0 && change.between[1][0] > 1.0, "{change:?}");
+    }
+    let end = branch.solutions.last().expect("a solution");
+    assert_eq!(end.0.unknown, [0.0, 1.7]);
+}
+
 /// The Hénon map `(x, y) -> (1 - a x^2 + y, b x)` along `a`.
 #[derive(Clone)]
 struct Henon {

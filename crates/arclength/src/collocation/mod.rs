@@ -21,7 +21,6 @@ mod linearization;
 pub(crate) mod mesh;
 pub(crate) mod polynomials;
 pub(crate) mod problem;
-mod reflections;
 pub(crate) mod resolution;
 
 pub use curve::{BoundaryValueCurve, BoundaryValuePoint};

@@ -18,9 +18,20 @@ pub(crate) fn norm<C: Curve>(curve: &C, vector: &[f64], image: &mut [f64]) -> f6
     if square < 0.0 { 0.0 } else { square.sqrt() }
 }
 
+/// Sums that are formed side by side: one alone waits for every addition.
+const SUMS: usize = 4;
+
 /// Euclidean inner product.
 pub(crate) fn inner(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let ((blocks, rest), (other_blocks, other_rest)) = (a.as_chunks::<SUMS>(), b.as_chunks::<SUMS>());
+    let mut sums = [0.0; SUMS];
+    for (a, b) in blocks.iter().zip(other_blocks) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let last: f64 = rest.iter().zip(other_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + last
 }
 
 /// Position along the tangent at `origin`, in the metric of the curve.

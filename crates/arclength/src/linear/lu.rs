@@ -127,7 +127,11 @@ impl<'a> Block<'a> {
                 head[row] = subtract::<FUSED>(head[row], head[step], self.head[step][row]);
             }
         }
-        subtract_columns::<FUSED>(below, self.below, [head[0], head[1], head[2], head[3]]);
+        // Boundary conditions leave many columns alone.
+        let factors = [head[0], head[1], head[2], head[3]];
+        if factors != [0.0; BLOCK] {
+            subtract_columns::<FUSED>(below, self.below, factors);
+        }
     }
 }
 
