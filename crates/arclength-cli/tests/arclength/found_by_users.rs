@@ -240,7 +240,6 @@ fn cycles_are_born_where_the_normal_form_holds_only_nearby() {
 }
 
 #[test]
-#[ignore = "with --finer 3 steps are made anew without end where the branch comes back to its start: docs/known-limits.md"]
 fn a_closed_branch_of_cycles_that_starts_next_to_a_turning_point_ends_after_one_lap() {
     let folder = folder(TWO_OSCILLATORS);
     folder.succeed("simulate model.ode --duration 200 -q -o motion.json");

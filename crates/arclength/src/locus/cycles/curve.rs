@@ -123,18 +123,22 @@ impl<'a> CycleLocusCurve<'a> {
         self.system.collocation.problem.kind
     }
 
-    /// Measures the sizes of the states; whether they have changed so much that the normalisation has to follow.
+    /// Measures the period and the sizes of the states; whether they have changed so much that the normalisation has to follow.
     fn rescale(&mut self, cycle: &[f64]) -> bool {
         let mut changed = false;
-        let sizes = self.sizes.measure(&cycle[..cycle.len() - 3]);
-        let scales = self.system.collocation.problem.scales.iter_mut();
-        for ((old, size), least) in scales.zip(sizes).zip(&self.least) {
-            let scale = size.scale.max(*least);
+        let mut follow = |old: &mut f64, scale: f64| {
             let ratio = scale / *old;
             if scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
                 *old = scale;
                 changed = true;
             }
+        };
+        let (states, period) = (&cycle[..cycle.len() - 3], cycle[cycle.len() - 3]);
+        let problem = &mut self.system.collocation.problem;
+        follow(&mut problem.period_scale, period);
+        for ((old, size), least) in problem.scales.iter_mut().zip(self.sizes.measure(states)).zip(&self.least)
+        {
+            follow(old, size.scale.max(*least));
         }
         if changed {
             let scales = self.system.collocation.problem.scales.clone();
@@ -328,14 +332,13 @@ impl Curve for CycleLocusCurve<'_> {
         if period <= 0.0 || self.sizes.is_equilibrium(&cycle[..cycle.len() - 3]) {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
-        self.system.collocation.problem.period_scale = period;
         let rescaled = self.rescale(&cycle);
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
         let (adaptation, worst) =
             fit_mesh(&mut self.system.collocation, &errors, &self.resolution, unknown, vectors)?;
         self.error_estimate = worst;
-        Ok(if rescaled { Adaptation::Changed } else { adaptation })
+        Ok(if rescaled { Adaptation::Renormalised } else { adaptation })
     }
 
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
