@@ -27,6 +27,9 @@ use crate::field::VectorField;
 use crate::locus::request::{TwoParameters, point_forward};
 use std::ops::RangeInclusive;
 
+/// Part of its range by which a parameter of the start may lie outside by rounding.
+const START_ROUNDING: f64 = 1e-9;
+
 /// What a curve of special cycles starts from and how finely the cycles are resolved.
 #[derive(Clone, Debug, Default)]
 pub struct CycleLocusProblem {
@@ -261,8 +264,12 @@ impl<'a> Asked<'a> {
         Ok((curve, unknown))
     }
 
-    /// The first solution, corrected with one of the parameters fixed, and the tangent there.
+    /// The first solution inside the ranges, corrected with one of the parameters fixed, and the tangent there.
     fn first(&self, curve: &mut CycleLocusCurve<'a>, start: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let sought = match self.held {
+            Some(_) => "cycle on which the quantity to be held has its value",
+            None => "special cycle",
+        };
         let mut failure = None;
         for fixed in [1, 2] {
             let mut unknown = start.clone();
@@ -271,12 +278,36 @@ impl<'a> Asked<'a> {
             border[place] = 1.0;
             match correct(curve, &mut unknown, &border, &self.settings) {
                 Ok(_) => match finish(curve, unknown, &border) {
-                    Ok(solution) => return Ok((solution.unknown, solution.tangent)),
+                    Ok(solution) if self.is_inside(&solution.unknown) => {
+                        return Ok((solution.unknown, solution.tangent));
+                    }
+                    Ok(_) => failure = failure.or(Some(self.outside(sought))),
                     Err(error) => failure = failure.or(Some(error)),
                 },
-                Err(cause) => failure = failure.or(Some(Error::NotFound { sought: "special cycle", cause })),
+                Err(cause) => failure = failure.or(Some(Error::NotFound { sought, cause })),
             }
         }
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "Floquet multipliers" }))
+    }
+    /// Whether both parameters are inside their ranges, but for rounding.
+    fn is_inside(&self, unknown: &[f64]) -> bool {
+        let values = &unknown[unknown.len() - 2..];
+        values.iter().zip(&self.along).all(|(value, (_, range))| {
+            let margin = START_ROUNDING * (range.end() - range.start());
+            (range.start() - margin..=range.end() + margin).contains(value)
+        })
+    }
+
+    fn outside(&self, sought: &str) -> Error {
+        let ranges = self
+            .along
+            .iter()
+            .map(|(name, range)| format!("{name} from {} to {}", range.start(), range.end()));
+        let ranges: Vec<String> = ranges.collect();
+        invalid(
+            "start",
+            &format!("{sought}, outside the ranges"),
+            &format!("one inside {}", ranges.join(", ")),
+        )
     }
 }
