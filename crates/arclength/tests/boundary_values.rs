@@ -264,7 +264,8 @@ fn a_fold_with_several_scalars_and_conditions_of_every_kind() {
             follow(&mut curve, unknown, back, &request, &mut |_, _| ControlFlow::Continue(())).unwrap();
         let folds = folds(&branch);
         assert_eq!(folds.len(), 1, "{}", branch.stop);
-        assert_relative_eq!(folds[0].scalars[1], -0.25, max_relative = 1e-11);
+        // As accurate as the mesh, whose error estimate is below 1e-9.
+        assert_relative_eq!(folds[0].scalars[1], -0.25, max_relative = 1e-9);
         assert_relative_eq!(folds[0].scalars[0], 2.0 * PI / 1.5, max_relative = 1e-6);
         let other = requested(&branch).into_iter().next().expect("the stable cycle");
         assert_relative_eq!(other.scalars[0], 2.0 * PI / (2.0 - square), max_relative = 1e-9);

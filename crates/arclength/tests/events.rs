@@ -1,7 +1,7 @@
 //! No special point is lost, invented or found twice, wherever it lies on a branch and however close to the next one.
 
 use arclength::branch::{Labelled, SpecialKind};
-use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit};
+use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use arclength::equilibrium::Equilibria;
 use arclength::{Scalar, VectorField};
 use proptest::prelude::*;
@@ -80,7 +80,9 @@ fn folds_of_a_homoclinic_snake_alternate() {
     let third = along(Equilibria::of(&Chua).from_branch_point(second.branch_points().next().unwrap()));
     let hopf = third.hopf_points().next().expect("a Hopf point");
     let cycles = Cycles::of(&Chua, CycleStart::from(hopf)).parameters(&hopf.parameters);
-    let branch = cycles.along("alpha", -1.0..=12.0).run().unwrap();
+    // Coarser meshes know the parameter no better than some folds lie apart.
+    let resolution = Resolution::with_tolerance(1e-10);
+    let branch = cycles.along("alpha", -1.0..=12.0).resolution(resolution).run().unwrap();
     let folds: Vec<_> = branch.of_kind(SpecialKind::FoldOfCycles).collect();
     // Minima between the maxima at the periods 10.70, 13.12 and 15.54.
     for (period, value) in [(11.9112, 11.07835363), (14.3329, 11.078398422)] {

@@ -1,6 +1,6 @@
 //! One step: predict, correct, adapt the discretisation, shorten where the corrector fails or the curve turns too much.
 
-use super::corrector::{correct, finish};
+use super::corrector::{correct, finish, renormalise};
 use super::curve::{Adaptation, Curve};
 use super::metric::{inner, metric_image, norm};
 use super::settings::Settings;
@@ -95,10 +95,18 @@ pub(super) fn advance<C: Curve>(
         if let Some((tangent, _)) = old_previous.as_mut() {
             carried.push(tangent);
         }
-        let solution = settle(curve, unknown, &mut carried, settings);
+        let settled = settle(curve, unknown, &mut carried, settings);
         current.unknown = unknown_now;
         current.tangent = tangent_now;
-        let solution = match solution {
+        // Both ends of a step have one normalisation.
+        let settled = settled.and_then(|(solution, adaptation)| {
+            if adaptation == Adaptation::Renormalised {
+                renormalise(curve, current, settings)?;
+                old_previous = None;
+            }
+            Ok(solution)
+        });
+        let solution = match settled {
             Ok(solution) => solution,
             Err(Error::NotFound { cause, .. }) => {
                 *previous = old_previous;
@@ -106,6 +114,7 @@ pub(super) fn advance<C: Curve>(
                 if *step < settings.smallest_step {
                     return Err(Stop::StepTooSmall { cause });
                 }
+                return_to(curve, current, previous, settings).map_err(Stop::Failed)?;
                 continue;
             }
             Err(error) => return Err(Stop::Failed(error)),
@@ -120,6 +129,7 @@ pub(super) fn advance<C: Curve>(
         if turns && length > TURNING_LIMIT * settings.smallest_step {
             *previous = old_previous;
             *step = length * STEP_HALVING;
+            return_to(curve, current, previous, settings).map_err(Stop::Failed)?;
             continue;
         }
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
@@ -130,6 +140,23 @@ pub(super) fn advance<C: Curve>(
         *step = (length * growth.max(STEP_REDUCTION)).min(settings.largest_step);
         return Ok(solution);
     }
+}
+
+/// Adapts discretisation and normalisation once more to a solution from which a step was made that did not hold: they are those
+/// of the end of that step, from which the solution differs by more than a distance along the curve.
+///
+/// # Errors
+/// As [`Curve::adapt`], and when the corrector fails.
+pub(super) fn return_to<C: Curve>(
+    curve: &mut C,
+    solution: &mut Solution<C::Point>,
+    previous: &mut Option<(Vec<f64>, f64)>,
+    settings: &Settings,
+) -> Result<(), Error> {
+    let mut carried = vec![&mut solution.tangent];
+    carried.extend(previous.as_mut().map(|(tangent, _)| tangent));
+    curve.adapt(&mut solution.unknown, &mut carried)?;
+    renormalise(curve, solution, settings)
 }
 
 /// Angle between the tangents at two solutions in the plane of two bounded parameters; zero if there are not two or the curve
@@ -145,19 +172,22 @@ fn angle_in_plane<P>(current: &Solution<P>, next: &Solution<P>, bounds: &[Bound]
 
 /// Adapts the discretisation to a corrected solution until it holds, then finishes it.
 ///
-/// `carried[1]` is the tangent of the solution before.
+/// `carried[1]` is the tangent of the solution before. Of several adaptations the one that changed most is told.
 fn settle<C: Curve>(
     curve: &mut C,
     mut unknown: Vec<f64>,
     carried: &mut [&mut Vec<f64>],
     settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
+) -> Result<(Solution<C::Point>, Adaptation), Error> {
     let mut refinements = 0;
+    let mut most = Adaptation::Unchanged;
     loop {
         for _ in 0..MOST_ADAPTATIONS {
-            if curve.adapt(&mut unknown, carried)? == Adaptation::Unchanged {
+            let adaptation = curve.adapt(&mut unknown, carried)?;
+            if adaptation == Adaptation::Unchanged {
                 break;
             }
+            most = most.max(adaptation);
             let border = metric_image(curve, carried[1]);
             correct(curve, &mut unknown, &border, settings)
                 .map_err(|cause| Error::NotFound { sought: "solution on the adapted mesh", cause })?;
@@ -165,7 +195,7 @@ fn settle<C: Curve>(
         let tangent = carried[1].clone();
         let solution = finish(curve, unknown, &tangent)?;
         if curve.resolves(&solution.point) || refinements == MOST_REFINEMENTS {
-            return Ok(solution);
+            return Ok((solution, most));
         }
         unknown = solution.unknown;
         refinements += 1;

@@ -131,10 +131,21 @@ pub(crate) fn finish<C: Curve>(
     unknown: Vec<f64>,
     old_tangent: &[f64],
 ) -> Result<Solution<C::Point>, Error> {
+    let (tangent, sign) = tangent_at(curve, &unknown, old_tangent)?;
+    let point = curve.inspect(&unknown, &tangent, sign)?;
+    Ok(Solution { unknown, tangent, orientation: sign, point })
+}
+
+/// The unit tangent at a corrected solution in the direction of `old_tangent`, with the sign of the determinant.
+fn tangent_at<C: Curve>(
+    curve: &mut C,
+    unknown: &[f64],
+    old_tangent: &[f64],
+) -> Result<(Vec<f64>, f64), Error> {
     let border = metric_image(curve, old_tangent);
     let mut tangent = vec![0.0; unknown.len()];
     let singular = Error::NotFound { sought: "tangent", cause: CorrectionFailure::Singular };
-    let sign = curve.factorize(&unknown, &border, &mut tangent);
+    let sign = curve.factorize(unknown, &border, &mut tangent);
     if sign == 0.0 {
         return Err(singular);
     }
@@ -149,6 +160,23 @@ pub(crate) fn finish<C: Curve>(
         return Err(singular);
     }
     tangent.iter_mut().for_each(|entry| *entry /= length);
-    let point = curve.inspect(&unknown, &tangent, sign)?;
-    Ok(Solution { unknown, tangent, orientation: sign, point })
+    Ok((tangent, sign))
+}
+
+/// Solves once more for a solution whose normalisation is that of another one; its point stays.
+///
+/// # Errors
+/// [`Error::NotFound`] when the corrector fails; the solution is then what it was.
+pub(crate) fn renormalise<C: Curve>(
+    curve: &mut C,
+    solution: &mut Solution<C::Point>,
+    settings: &Settings,
+) -> Result<(), Error> {
+    let border = metric_image(curve, &solution.tangent);
+    let mut unknown = solution.unknown.clone();
+    correct(curve, &mut unknown, &border, settings)
+        .map_err(|cause| Error::NotFound { sought: "solution in the new normalisation", cause })?;
+    let (tangent, orientation) = tangent_at(curve, &unknown, &solution.tangent)?;
+    *solution = Solution { unknown, tangent, orientation, point: solution.point.clone() };
+    Ok(())
 }

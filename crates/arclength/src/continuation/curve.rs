@@ -156,10 +156,12 @@ pub enum Ending<R> {
 }
 
 /// Whether [`Curve::adapt`] changed the discretisation, so that the solution has to be corrected again.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Adaptation {
     /// The discretisation stays.
     Unchanged,
     /// The discretisation is new and all vectors were carried over.
     Changed,
+    /// So is the normalisation of the unknowns, perhaps: solutions of before solve the equations only once they are corrected.
+    Renormalised,
 }

@@ -1,11 +1,11 @@
 //! The run itself: step, search for special points, locate what was asked for, recognise the end, repeat.
 
-use super::advance::{STEP_REDUCTION, advance, converge};
+use super::advance::{STEP_REDUCTION, advance, converge, return_to};
 use super::closure::Closure;
 use super::corrector::between;
 use super::curve::{Curve, Ending};
 use super::events::{EventSearch, Events, Unlocated};
-use super::metric::{along, distance};
+use super::metric::along;
 use super::requested::{Between, Origin, Target, first_exit, fix, insert_targets, insert_values};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
@@ -149,6 +149,9 @@ impl<C: Curve> Run<'_, '_, C> {
                 Step::Again(shorter) => {
                     length = shorter;
                     previous = None;
+                    if let Err(error) = return_to(self.curve, &mut current, &mut previous, settings) {
+                        return Stop::Failed(error);
+                    }
                 }
                 Step::End(stop) => return stop,
             }
@@ -220,9 +223,8 @@ impl<C: Curve> Run<'_, '_, C> {
         let failed = |error| Step::End(Stop::Failed(error));
         let Events { found, unlocated } =
             self.search.between(self.curve, current, advanced, settings).map_err(|error| match error {
-                // Beside the start of the step, and not ahead of it, the way along the tangent is no measure of the step.
                 Error::OtherBranch => {
-                    Step::Again(STEP_REDUCTION * distance(self.curve, &current.unknown, &advanced.unknown))
+                    Step::Again(STEP_REDUCTION * along(self.curve, current, &advanced.unknown))
                 }
                 error => failed(error),
             })?;

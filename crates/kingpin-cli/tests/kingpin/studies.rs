@@ -10,7 +10,6 @@ fn value(findings: &serde_json::Value, start: &str) -> f64 {
 
 /// Folds from AUTO-07p (collocation, 150 x 4).
 #[test]
-#[ignore = "the curve of folds ends early in the study, not in `kingpin locus`: docs/known-limits.md"]
 fn the_isola_has_the_folds_of_the_reference() {
     let folder = Folder::new();
     let findings = folder.json("study isola --quiet");

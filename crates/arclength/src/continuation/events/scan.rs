@@ -191,13 +191,7 @@ impl<'s, C: Curve> Scan<'s, C> {
         if vanishes {
             return Ok(());
         }
-        let length = distance(self.curve, &before.solution.unknown, &after.solution.unknown);
-        let located = match self.curve.locate(test.kind, [&before.solution, &after.solution]) {
-            // A step this short is not made anew.
-            Err(Error::OtherBranch) if length <= self.settings.shortest_jump => Ok(Location::Missed),
-            located => located,
-        };
-        let location = match located? {
+        let location = match self.curve.locate(test.kind, [&before.solution, &after.solution])? {
             Location::At(solution) | Location::Bracketed(solution)
                 if !self.lies_between(&solution, &before.solution, &after.solution) =>
             {

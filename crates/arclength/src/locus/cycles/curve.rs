@@ -1,6 +1,7 @@
 //! A curve of special cycles as continuation sees it.
 
 use super::end::CycleLocusEnd;
+use super::hold::Hold;
 use super::monitor;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
@@ -91,6 +92,8 @@ pub(super) struct CycleLocusCurve<'a> {
     /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
     sign: Option<f64>,
     schur: Option<(usize, PeriodicSchur)>,
+    /// What keeps its value along a curve of [any cycles](Kind::Cycle).
+    pub hold: Option<Hold>,
 }
 
 impl<'a> CycleLocusCurve<'a> {
@@ -117,6 +120,7 @@ impl<'a> CycleLocusCurve<'a> {
             least,
             sign: None,
             schur: None,
+            hold: None,
         }
     }
 
@@ -124,18 +128,22 @@ impl<'a> CycleLocusCurve<'a> {
         self.system.collocation.problem.kind
     }
 
-    /// Measures the sizes of the states; whether they have changed so much that the normalisation has to follow.
+    /// Measures the period and the sizes of the states; whether they have changed so much that the normalisation has to follow.
     fn rescale(&mut self, cycle: &[f64]) -> bool {
         let mut changed = false;
-        let sizes = self.sizes.measure(&cycle[..cycle.len() - 3]);
-        let scales = self.system.collocation.problem.scales.iter_mut();
-        for ((old, size), least) in scales.zip(sizes).zip(&self.least) {
-            let scale = size.scale.max(*least);
+        let mut follow = |old: &mut f64, scale: f64| {
             let ratio = scale / *old;
             if scale > 0.0 && ratio.is_finite() && !(1.0 / SIZE_CHANGE..=SIZE_CHANGE).contains(&ratio) {
                 *old = scale;
                 changed = true;
             }
+        };
+        let (states, period) = (&cycle[..cycle.len() - 3], cycle[cycle.len() - 3]);
+        let problem = &mut self.system.collocation.problem;
+        follow(&mut problem.period_scale, period);
+        for ((old, size), least) in problem.scales.iter_mut().zip(self.sizes.measure(states)).zip(&self.least)
+        {
+            follow(old, size.scale.max(*least));
         }
         if changed {
             let scales = self.system.collocation.problem.scales.clone();
@@ -167,7 +175,7 @@ impl<'a> CycleLocusCurve<'a> {
             Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
             Kind::Doubling => critical.doubling(eigenfunctions),
             Kind::Torus => critical.torus(eigenfunctions).map(|[real, _]| real),
-            Kind::BranchPoint => None,
+            Kind::BranchPoint | Kind::Cycle => None,
         };
         let scales = &self.system.collocation.problem.scales;
         let sizes: Vec<f64> =
@@ -309,14 +317,23 @@ impl Curve for CycleLocusCurve<'_> {
 
     fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
         self.system.residual(unknown, residual);
+        if let Some(hold) = &self.hold {
+            hold.add_residual(&self.system, unknown, residual);
+        }
     }
 
     fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.system.factorize(unknown, border, residual)
+        match &mut self.hold {
+            None => self.system.factorize(unknown, border, residual),
+            Some(hold) => hold.factorize(&mut self.system, unknown, border, residual),
+        }
     }
 
     fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.system.solve(right_hand_side);
+        match &self.hold {
+            None => self.system.solve(right_hand_side),
+            Some(hold) => hold.solve(&mut self.system, right_hand_side),
+        }
     }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
@@ -329,14 +346,13 @@ impl Curve for CycleLocusCurve<'_> {
         if period <= 0.0 || self.sizes.is_equilibrium(&cycle[..cycle.len() - 3]) {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
-        self.system.collocation.problem.period_scale = period;
         let rescaled = self.rescale(&cycle);
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
         let (adaptation, worst) =
             fit_mesh(&mut self.system.collocation, &errors, &self.resolution, unknown, vectors)?;
         self.error_estimate = worst;
-        Ok(if rescaled { Adaptation::Changed } else { adaptation })
+        Ok(if rescaled { Adaptation::Renormalised } else { adaptation })
     }
 
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
