@@ -147,17 +147,11 @@ impl Condensation {
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
     pub(crate) fn factorize(&mut self, mesh: &[f64]) -> f64 {
-        run(Factorization(self, mesh))
-    }
-
-    #[inline(always)]
-    fn factorize_kernel<const FUSED: bool>(&mut self, mesh: &[f64]) -> f64 {
         for group in 0..self.exchanged.len() {
-            if !self.condense::<FUSED>(group, mesh) {
+            if !run(Elimination(self, group, mesh)) {
                 return 0.0;
             }
-            self.write_transfer::<FUSED>(group);
-            self.reduce_rows::<FUSED>(group);
+            run(Reduction(self, group));
         }
         let blocks = Blocks {
             transfer: &self.transfer,
@@ -357,15 +351,29 @@ impl Condensation {
     }
 }
 
-/// [`Condensation::factorize`] with the vector instructions of the processor.
-struct Factorization<'a>(&'a mut Condensation, &'a [f64]);
+/// The elimination of the interior of a group of intervals, with the vector instructions of the processor. Kernels are kept
+/// small: in a large one the loops have too few registers.
+struct Elimination<'a>(&'a mut Condensation, usize, &'a [f64]);
 
-impl Kernel for Factorization<'_> {
-    type Output = f64;
+impl Kernel for Elimination<'_> {
+    type Output = bool;
 
     #[inline(always)]
-    fn run<const FUSED: bool>(self) -> f64 {
-        self.0.factorize_kernel::<FUSED>(self.1)
+    fn run<const FUSED: bool>(self) -> bool {
+        self.0.condense::<FUSED>(self.1, self.2)
+    }
+}
+
+/// What is left of a group of intervals, with the vector instructions of the processor.
+struct Reduction<'a>(&'a mut Condensation, usize);
+
+impl Kernel for Reduction<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) {
+        self.0.write_transfer::<FUSED>(self.1);
+        self.0.reduce_rows::<FUSED>(self.1);
     }
 }
 
