@@ -18,6 +18,8 @@ mod reflections;
 #[cfg(test)]
 mod tests;
 
+use crate::lanes::{Kernel, run};
+
 use crate::linear::lu;
 use reflections::{dot, reflect, solve_triangle_from_left, triangularize};
 
@@ -85,16 +87,7 @@ impl Bidiagonal {
     /// depend on the number of intervals; zero if the system is singular.
     pub fn factorize(&mut self, blocks: Blocks<'_>, sizes: Sizes) -> f64 {
         self.sizes = sizes;
-        // Loops over few states are worth unrolling.
-        match sizes.components {
-            1 => self.factorize_kernel(blocks, 1),
-            2 => self.factorize_kernel(blocks, 2),
-            3 => self.factorize_kernel(blocks, 3),
-            4 => self.factorize_kernel(blocks, 4),
-            5 => self.factorize_kernel(blocks, 5),
-            6 => self.factorize_kernel(blocks, 6),
-            n => self.factorize_kernel(blocks, n),
-        }
+        run(Factorization(self, blocks))
     }
 
     #[inline(always)]
@@ -304,6 +297,28 @@ impl Bidiagonal {
                 }
             }
             next.copy_from_slice(here);
+        }
+    }
+}
+
+/// [`Bidiagonal::factorize`] with the vector instructions of the processor; no operation is fused.
+struct Factorization<'a>(&'a mut Bidiagonal, Blocks<'a>);
+
+impl Kernel for Factorization<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(self) -> f64 {
+        let Self(system, blocks) = self;
+        // Loops over few states are worth unrolling.
+        match system.sizes.components {
+            1 => system.factorize_kernel(blocks, 1),
+            2 => system.factorize_kernel(blocks, 2),
+            3 => system.factorize_kernel(blocks, 3),
+            4 => system.factorize_kernel(blocks, 4),
+            5 => system.factorize_kernel(blocks, 5),
+            6 => system.factorize_kernel(blocks, 6),
+            n => system.factorize_kernel(blocks, n),
         }
     }
 }
