@@ -7,6 +7,7 @@
 //! requests.
 
 pub mod branch;
+mod calls;
 pub mod course;
 pub mod cycles;
 pub mod diagram;

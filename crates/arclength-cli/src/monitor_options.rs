@@ -7,7 +7,8 @@ use clap::Args;
 #[derive(Args, Debug)]
 pub struct MonitorOptions {
     /// Record an expression along the branch, and give points where it has these values; on cycles with max(..), min(..),
-    /// mean(..), period and parameters, such as "max(x)-min(x)=1,2"
+    /// mean(..), at(.., PHASE), period and parameters, such as "max(x)-min(x)=1,2"; the phase from 0 to 1 is counted from
+    /// the place where the first state is largest
     #[arg(long, value_name = "EXPRESSION[=A,B,..]", allow_hyphen_values = true)]
     monitor: Vec<Monitored>,
 

@@ -28,6 +28,17 @@ impl Folder {
         folder
     }
 
+    /// A folder with a model of this text.
+    fn with_text(model: &str, text: &str) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        folder.write(model, text);
+        folder
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.0.path().join(name), text).unwrap();
+    }
+
     fn run(&self, arguments: &str) -> Run {
         let output = Command::new(env!("CARGO_BIN_EXE_arclength"))
             .args(arguments.split_whitespace())

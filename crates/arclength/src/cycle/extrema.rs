@@ -87,11 +87,11 @@ impl Orbit {
 }
 
 /// A cycle in the unit time: states of `n` components at the left end and at the Gauss points of every interval.
-struct Polynomials<'a> {
-    mesh: &'a [f64],
-    gauss: &'a Gauss,
-    states: &'a [f64],
-    n: usize,
+pub(super) struct Polynomials<'a> {
+    pub(super) mesh: &'a [f64],
+    pub(super) gauss: &'a Gauss,
+    pub(super) states: &'a [f64],
+    pub(super) n: usize,
 }
 
 impl Polynomials<'_> {
@@ -115,7 +115,7 @@ impl Polynomials<'_> {
     }
 
     /// Value and slope of a component.
-    fn at(&self, time: f64, component: usize) -> (f64, f64) {
+    pub(super) fn at(&self, time: f64, component: usize) -> (f64, f64) {
         let time = time - time.floor();
         let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= time);
         let width = self.mesh[interval + 1] - self.mesh[interval];
