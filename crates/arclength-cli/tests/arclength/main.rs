@@ -2,6 +2,7 @@
 
 mod found_by_users;
 mod monitors;
+mod orbits;
 mod restarts;
 mod switching;
 
