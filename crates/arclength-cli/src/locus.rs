@@ -1,5 +1,6 @@
 //! `arclength locus`: a curve of special points in two parameters.
 
+use crate::monitor_options::MonitorOptions;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::{PointReference, Values};
 use clap::Args;
@@ -27,6 +28,9 @@ pub struct Locus {
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
 
+    #[command(flatten)]
+    monitors: MonitorOptions,
+
     /// Tell the story of the run after the table
     #[arg(long)]
     explain: bool,
@@ -51,6 +55,7 @@ impl Locus {
             from: self.from.clone(),
             at: requested_values(&self.at, &plane[0].key, str::eq_ignore_ascii_case)?,
             plane,
+            monitors: self.monitors.asked(),
             steps: self.steps.into(),
             mesh: self.mesh.into(),
         };
