@@ -2,7 +2,7 @@
 
 use crate::monitor_options::MonitorOptions;
 use arclength_analysis::locus::LocusRequest;
-use arclength_analysis::{PointReference, Values};
+use arclength_analysis::{Monitored, PointReference, Values};
 use clap::Args;
 use kingpin_terminal::{
     Failure, MeshOptions, OutputOptions, PlaneOptions, ProgressDisplay, StepOptions, requested_values,
@@ -11,13 +11,15 @@ use kingpin_terminal::{
 /// The curve of special points in two parameters, with its points of codimension two
 ///
 /// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus
-/// bifurcations (NS) of cycles.
+/// bifurcations (NS) of cycles. With --hold any cycles on which a quantity keeps its value: with a large period they follow
+/// homoclinic orbits.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: arclength locus --from equilibria.json:HB1 --in p=0:1,q=2:5 -o hopf.json -o hopf.svg"
 )]
 pub struct Locus {
-    /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS) wrote, with its model
+    /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS; any with --hold) wrote, with its
+    /// model
     #[arg(long, value_name = "FILE.json:LABEL")]
     from: PointReference,
 
@@ -27,6 +29,11 @@ pub struct Locus {
     /// Values of the first parameter at which points are wanted exactly
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
+
+    /// Follow the cycles on which an expression keeps its value (the one at the start if none is given), in max(..), min(..),
+    /// mean(..), at(.., PHASE), period and parameters, such as period=50
+    #[arg(long, value_name = "EXPRESSION[=VALUE]", allow_hyphen_values = true)]
+    hold: Option<Monitored>,
 
     #[command(flatten)]
     monitors: MonitorOptions,
@@ -55,6 +62,7 @@ impl Locus {
             from: self.from.clone(),
             at: requested_values(&self.at, &plane[0].key, str::eq_ignore_ascii_case)?,
             plane,
+            hold: self.hold.clone(),
             monitors: self.monitors.asked(),
             steps: self.steps.into(),
             mesh: self.mesh.into(),

@@ -1,7 +1,7 @@
 //! A curve of special cycles in two parameters, of any model.
 
 use super::quantities::Quantities;
-use crate::branch::{Origin, pairs, shortened, tests};
+use crate::branch::{Origin, pairs, parameters, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::labels::{self, is_bifurcation};
@@ -63,8 +63,11 @@ pub struct CycleCurvePoint {
 /// A curve of special cycles in two parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CycleCurve {
-    /// What the curve consists of.
-    pub kind: SpecialKind,
+    /// What the curve consists of; nothing where it consists of any cycles.
+    pub kind: Option<SpecialKind>,
+    /// What keeps its value along the curve, with that value.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub held: NamedNumbers,
     /// The parameters that vary.
     #[serde(rename = "in")]
     pub plane: [VaryingParameter; 2],
@@ -82,7 +85,7 @@ pub struct CycleCurve {
 impl CycleCurve {
     /// The result of a curve, with why it ends at its first and at its last point; `named` gives a state by name.
     pub fn new<'a>(
-        kind: SpecialKind,
+        kind: Option<SpecialKind>,
         quantities: impl Into<Quantities<'a>>,
         from: Origin,
         points: Vec<CycleLocusPoint>,
@@ -113,7 +116,20 @@ impl CycleCurve {
             End::monitored(stops[1].as_ref(), &plane, monitors, last(points.last())),
         ];
         let unlocated = unlocated.iter().map(UnlocatedChangeResult::from).collect();
-        Self { kind, plane, from, ends, unlocated, points }
+        Self { kind, held: NamedNumbers::default(), plane, from, ends, unlocated, points }
+    }
+
+    /// The same with what keeps its value along it.
+    pub fn holding(self, name: &str, value: f64) -> Self {
+        Self { held: NamedNumbers(vec![(name.to_owned(), value)]), ..self }
+    }
+
+    /// What the curve consists of, in words.
+    pub fn name(&self) -> String {
+        match self.kind {
+            Some(kind) => kind.name().to_owned(),
+            None => format!("cycles with {}", parameters(&self.held.0)),
+        }
     }
 
     /// What was detected but not located.
@@ -134,9 +150,10 @@ impl CycleCurve {
 
     fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
         let (name, color): (&'static str, Color) = match self.kind {
-            SpecialKind::FoldOfCycles => ("folds of cycles", palette::SKY_BLUE),
-            SpecialKind::PeriodDoubling => ("period doublings", palette::ORANGE),
-            _ => ("torus bifurcations", palette::PURPLE),
+            None => ("cycles", palette::VERMILION),
+            Some(SpecialKind::FoldOfCycles) => ("folds of cycles", palette::SKY_BLUE),
+            Some(SpecialKind::PeriodDoubling) => ("period doublings", palette::ORANGE),
+            Some(_) => ("torus bifurcations", palette::PURPLE),
         };
         let points = self.points.iter();
         Curve::of(
@@ -168,7 +185,7 @@ impl CycleCurve {
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let [one, two] = [&self.plane[0], &self.plane[1]].map(VaryingParameter::heading);
         let period = self.plane[0].heading_beside("period", "s");
-        let torus = self.kind == SpecialKind::Torus;
+        let torus = self.kind == Some(SpecialKind::Torus);
         let argument = ["argument"].into_iter().filter(|_| torus);
         let headings = ["label", &one, &two, &period, "coefficient"].into_iter().chain(argument);
         let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));

@@ -7,7 +7,6 @@ use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::stored_model::StoredModel;
 use crate::varying_parameter::VaryingParameter;
-use arclength::branch::SpecialKind;
 use arclength::locus::CycleLocusBranch;
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
@@ -43,7 +42,7 @@ impl CycleLocusResult {
             parameters: chosen.named_parameters(&branch.active),
             model: chosen.stored.clone(),
             curve: CycleCurve::new(
-                branch.kind.unwrap_or(SpecialKind::FoldOfCycles),
+                branch.kind,
                 Quantities { plane: plane.map(VaryingParameter::from), monitors },
                 from,
                 branch.points,
@@ -52,6 +51,13 @@ impl CycleLocusResult {
                 |state| chosen.named_state(state),
             ),
         }
+    }
+}
+
+impl CycleLocusResult {
+    /// The same with what keeps its value along it.
+    pub(super) fn holding(self, name: &str, value: f64) -> Self {
+        Self { curve: self.curve.holding(name, value), ..self }
     }
 }
 
@@ -65,7 +71,7 @@ impl Report for CycleLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (what, model) = (self.curve.kind.name(), &self.model.name);
+        let (what, model) = (self.curve.name(), &self.model.name);
         let heading = format!("curve: {what}, of {model} at {}", parameters(&self.parameters.0));
         self.curve.write_table(&heading, out)
     }
@@ -76,7 +82,7 @@ impl Report for CycleLocusResult {
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
         let [one, two] = self.curve.keys();
-        let description = format!("{} of {} in {one} and {two}", self.curve.kind.name(), self.model.name);
+        let description = format!("{} of {} in {one} and {two}", self.curve.name(), self.model.name);
         Ok(Some(self.curve.figure(&description, [one, two], [|value| value; 2])))
     }
 

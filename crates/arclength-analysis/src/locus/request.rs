@@ -16,7 +16,7 @@ use arclength::continuation::Settings;
 use arclength::control::Control;
 use arclength::cycle::Orbit;
 use arclength::equilibrium::{BranchPoint, FoldPoint, HopfPoint, SpecialPoint, equilibrium_settings};
-use arclength::locus::{CycleLocus, CycleLocusPoint, EquilibriumLocus, LocusPoint};
+use arclength::locus::{CycleLocus, CycleLocusPoint, EquilibriumLocus, Held, LocusPoint};
 use arclength_ode::Quantity;
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ use std::ops::ControlFlow;
 /// A curve of special points in two parameters, with its points of codimension two.
 ///
 /// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus bifurcations
-/// (NS) of cycles.
+/// (NS) of cycles. With a quantity to be held, any cycles on which it keeps its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocusRequest {
     /// The labelled point, with its model and parameters.
@@ -36,6 +36,9 @@ pub struct LocusRequest {
     /// Values of the first parameter at which points are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
+    /// What keeps its value along a curve of any cycles: its first value, or the one where the curve starts.
+    #[serde(default)]
+    pub hold: Option<Monitored>,
     /// What is recorded along the curve.
     #[serde(default)]
     pub monitors: Vec<Monitored>,
@@ -76,12 +79,21 @@ enum Start {
     Hopf(HopfPoint),
     BranchPoint(BranchPoint),
     Cycle(SpecialKind, Orbit),
+    Held(Held, Orbit),
 }
 
 impl LocusRequest {
     /// A request with the default of everything else.
     pub fn new(from: PointReference, plane: [Interval; 2]) -> Self {
-        Self { from, plane, at: Vec::new(), monitors: Vec::new(), steps: Steps::default(), mesh: Mesh::default() }
+        Self {
+            from,
+            plane,
+            at: Vec::new(),
+            hold: None,
+            monitors: Vec::new(),
+            steps: Steps::default(),
+            mesh: Mesh::default(),
+        }
     }
 
     /// Reads the labelled point and checks every field.
@@ -107,7 +119,8 @@ impl LocusRequest {
             chosen.starts_within(&["in"], interval, &point.label)?;
         }
         first.check_values(&self.at)?;
-        let start = Start::at(&point).ok_or_else(|| {
+        let held = self.hold.as_ref().map(|asked| self.held(asked, &point)).transpose()?;
+        let start = held.or_else(|| Start::at(&point)).ok_or_else(|| {
             self.from.failure(format!(
                 "no curve of special points starts at {}; allowed: folds (LP), Hopf points (HB) and branch points (BP) of \
                  equilibria, folds (LPC), period doublings (PD) and torus bifurcations (NS) of cycles",
@@ -116,7 +129,7 @@ impl LocusRequest {
         })?;
         let mut monitors = Monitors::default();
         for asked in &self.monitors {
-            if let Start::Cycle(..) = start {
+            if let Start::Cycle(..) | Start::Held(..) = start {
                 monitors.on_cycles.push((asked.clone(), asked.on_cycles(chosen)?));
             } else {
                 monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(chosen)?));
@@ -133,6 +146,43 @@ impl LocusRequest {
             steps: self.steps,
             mesh: self.mesh,
         })
+    }
+}
+
+impl LocusRequest {
+    /// The start of a curve of cycles on which a quantity keeps its value.
+    fn held(&self, asked: &Monitored, point: &LabelledPoint) -> Result<Start, Error> {
+        let LabelledSolution::Cycle { orbit, .. } = &point.solution else {
+            return Err(self.from.failure(format!(
+                "nothing can be held from {}; allowed: cycles, special or not",
+                point.label
+            )));
+        };
+        let monitor = asked.on_cycles(&point.chosen)?;
+        let held =
+            Held::new(&asked.expression, move |orbit, parameters| Some(monitor.value(orbit, parameters)));
+        let here = held.of(orbit, &point.chosen.parameters);
+        let held = match (&asked.at[..], here) {
+            ([], Some(here)) => held.at(here),
+            ([value], Some(_)) => held.at(*value),
+            ([_, _, ..], _) => {
+                return Err(Error::invalid(
+                    &["hold"],
+                    asked.expression.clone(),
+                    "several values are given",
+                    "one value, or none for the one where the curve starts",
+                ));
+            }
+            (_, None) => {
+                return Err(Error::invalid(
+                    &["hold"],
+                    asked.expression.clone(),
+                    format!("it has no value at {}", point.label),
+                    "an expression that has a value there",
+                ));
+            }
+        };
+        Ok(Start::Held(held, orbit.clone()))
     }
 }
 
@@ -171,7 +221,22 @@ impl LocusAnalysis {
             Start::Hopf(hopf) => (curve.from_hopf(hopf), "the Hopf points through it"),
             Start::BranchPoint(point) => (curve.from_branch_point(point), "the branch points through it"),
             Start::Cycle(kind, orbit) => {
-                return self.of_cycles(*kind, orbit, control).map(LocusResult::Cycles);
+                let curve = CycleLocus::of(&self.point.chosen.model);
+                let curve = curve.from_cycle(*kind, orbit, &self.point.chosen.parameters);
+                let how = match kind {
+                    SpecialKind::FoldOfCycles => "the folds of cycles through it",
+                    SpecialKind::PeriodDoubling => "the period doublings through it",
+                    _ => "the torus bifurcations through it",
+                };
+                return self.of_cycles(curve, how, control).map(LocusResult::Cycles);
+            }
+            Start::Held(held, orbit) => {
+                let curve = CycleLocus::of(&self.point.chosen.model);
+                let curve = curve.from_held_cycle(held.clone(), orbit, &self.point.chosen.parameters);
+                let result = self.of_cycles(curve, "the cycles through it", control)?;
+                return Ok(LocusResult::Cycles(
+                    result.holding(held.name(), held.value().unwrap_or(f64::NAN)),
+                ));
             }
         };
         let [first, second] = &self.plane;
@@ -201,25 +266,14 @@ impl LocusAnalysis {
 
     fn of_cycles(
         &self,
-        kind: SpecialKind,
-        orbit: &Orbit,
+        curve: CycleLocus<'_>,
+        how: &str,
         control: &Control<'_>,
     ) -> Result<CycleLocusResult, Error> {
-        let how = match kind {
-            SpecialKind::FoldOfCycles => "the folds of cycles through it",
-            SpecialKind::PeriodDoubling => "the period doublings through it",
-            _ => "the torus bifurcations through it",
-        };
         let [first, second] = &self.plane;
-        let curve = CycleLocus::of(&self.point.chosen.model).from_cycle(
-            kind,
-            orbit,
-            &self.point.chosen.parameters,
-        );
         let monitors = self.monitors.on_cycles.iter().map(|(asked, monitor)| {
-            let value = |point: &CycleLocusPoint| {
-                Some(monitor.value(&point.orbit, &self.parameters(point.values)))
-            };
+            let value =
+                |point: &CycleLocusPoint| Some(monitor.value(&point.orbit, &self.parameters(point.values)));
             Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
         });
         let branch = monitors

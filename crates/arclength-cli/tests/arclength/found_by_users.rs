@@ -102,17 +102,17 @@ init v=-65,m=.052,h=.596,n=.317
 done
 ";
 
-fn folder(text: &str) -> Folder {
+pub(crate) fn folder(text: &str) -> Folder {
     let folder = Folder::with("lure.ode");
     std::fs::write(folder.0.path().join("model.ode"), text).unwrap();
     folder
 }
 
-fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
-fn points(result: &Value) -> &[Value] {
+pub(crate) fn points(result: &Value) -> &[Value] {
     result["points"].as_array().unwrap()
 }
 

@@ -1,6 +1,7 @@
 //! The program `arclength` as others run it, with models of the gallery and their published values.
 
 mod found_by_users;
+mod held;
 mod monitors;
 mod orbits;
 mod restarts;

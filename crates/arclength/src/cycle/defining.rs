@@ -26,13 +26,15 @@ pub enum Kind {
     /// Branch point: `u' = T f + b psi`, `psi' = -T f_x^T psi + sigma f`, periodic, with `psi` orthogonal to `f` and
     /// to the derivative of `f` in the active parameter; own scalars `b` and `sigma`, both zero at the solution.
     BranchPoint,
+    /// Any cycle: `u' = T f`, with a linear condition on the scalars that stands for one from outside.
+    Cycle,
 }
 
 impl Kind {
     /// Number of own scalars.
     pub fn own_scalars(self) -> usize {
         match self {
-            Self::Doubling => 0,
+            Self::Doubling | Self::Cycle => 0,
             Self::Fold => 1,
             Self::BranchPoint => 2,
             Self::Torus => 3,
@@ -44,6 +46,7 @@ impl Kind {
         match self {
             Self::Fold | Self::Doubling | Self::BranchPoint => 1,
             Self::Torus => 2,
+            Self::Cycle => 0,
         }
     }
 }
@@ -67,6 +70,8 @@ pub struct Defining<'a> {
     pub period_scale: f64,
     /// Size of the active parameter.
     pub parameter_scale: f64,
+    /// Coefficients of `(T, p, second p)` in the condition that [`Kind::Cycle`] adds.
+    pub stand_in: [f64; 3],
 }
 
 impl PeriodicProblem for Defining<'_> {
@@ -91,6 +96,7 @@ impl PeriodicProblem for Defining<'_> {
             Kind::Torus => self.variational::<T, 2>(state, scalars, derivative),
             Kind::BranchPoint => self.adjoint(state, scalars, derivative),
             Kind::Fold | Kind::Doubling => self.variational::<T, 1>(state, scalars, derivative),
+            Kind::Cycle => self.flow(state, scalars, derivative),
         }
     }
 
@@ -98,6 +104,10 @@ impl PeriodicProblem for Defining<'_> {
     fn integrands<T: Scalar>(&self, state: &[T], scalars: &[T], reference: Reference<'_>, values: &mut [T]) {
         let n = self.scales.len();
         values[0] = phase_integrand(&state[..n], reference, &self.scales);
+        if self.kind == Kind::Cycle {
+            values[1] = scalars.iter().zip(self.stand_in).map(|(scalar, factor)| *scalar * factor).sum();
+            return;
+        }
         let product = |a: &dyn Fn(usize) -> T, b: &dyn Fn(usize) -> T| -> T {
             (0..n).map(|index| a(index) * b(index) / (self.scales[index] * self.scales[index])).sum()
         };
@@ -107,7 +117,7 @@ impl PeriodicProblem for Defining<'_> {
         }
         values[1] = product(&v, &v) - 1.0;
         match self.kind {
-            Kind::Doubling | Kind::BranchPoint => {}
+            Kind::Doubling | Kind::BranchPoint | Kind::Cycle => {}
             Kind::Fold => {
                 let beta = scalars[1] / self.period_scale;
                 values[1] += beta * beta;
@@ -168,6 +178,15 @@ impl Defining<'_> {
     }
 
     #[inline]
+    fn flow<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+        let lift = |value| value;
+        self.with_active(scalars, lift, |parameters: &[T]| {
+            self.field.evaluate(state, parameters, derivative)
+        });
+        derivative.iter_mut().for_each(|entry| *entry *= scalars[0]);
+    }
+
+    #[inline]
     fn adjoint<T: Scalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let n = self.scales.len();
         let (period, perturbation, multiple) = (scalars[0], scalars[1], scalars[2]);
@@ -225,7 +244,7 @@ impl Defining<'_> {
                 derivative[(direction + 1) * n + index] = values[index].derivatives[direction] * period;
             }
             match self.kind {
-                Kind::Doubling | Kind::BranchPoint => {}
+                Kind::Doubling | Kind::BranchPoint | Kind::Cycle => {}
                 Kind::Fold => derivative[n + index] += scalars[1] * values[index].value,
                 Kind::Torus => {
                     let theta = scalars[1];

@@ -166,6 +166,7 @@ pub(crate) fn critical(
             let factor = (1.0 + (beta / period).powi(2)).sqrt().recip();
             (vec![function.iter().map(|value| value * factor).collect()], vec![beta * factor])
         }),
+        Kind::Cycle => Some((Vec::new(), Vec::new())),
         Kind::BranchPoint => linearization
             .null_function()
             .and_then(|(null, _)| linearization.adjoint_null_function(&null))

@@ -41,6 +41,7 @@ impl<'a> DefiningCurve<'a> {
             scales: problem.scales.clone(),
             period_scale: unknown[unknown.len() - 3 - kind.own_scalars()],
             parameter_scale: parameter_scales[0],
+            stand_in: [0.0; 3],
         };
         let scales = component_scales(&problem.scales, kind, 1.0);
         let mut collocation = Collocation::new(defining, mesh, degree);
@@ -76,7 +77,7 @@ impl Curve for DefiningCurve<'_> {
         let times = match self.collocation.problem.kind {
             Kind::Fold => end + 1..end + 2,
             Kind::Torus => end + 2..end + 4,
-            Kind::Doubling | Kind::BranchPoint => end..end,
+            Kind::Doubling | Kind::BranchPoint | Kind::Cycle => end..end,
         };
         image[times].iter_mut().for_each(|entry| *entry /= scale * scale);
         let last = vector.len() - 2;

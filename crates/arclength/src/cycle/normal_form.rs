@@ -116,6 +116,7 @@ impl<'a> CriticalCycle<'a> {
             linear.nodes.product(function, &dual)
         };
         match (kind, &functions[..]) {
+            (Kind::Cycle, _) => self.period.recip(),
             // The coefficient is quadratic.
             (Kind::Fold, [null]) => {
                 let (across, size) = self.across_the_flow(null);

@@ -124,6 +124,7 @@ fn newton(
             Kind::Doubling => Some(point.doubling_test()),
             Kind::Torus => torus_test(point, rank),
             Kind::BranchPoint => branch_point_test(solution, sign),
+            Kind::Cycle => None,
         }
     };
     let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
@@ -195,6 +196,7 @@ fn describe(
             }
             (named, None)
         }
+        Kind::Cycle => (Vec::new(), None),
         Kind::BranchPoint => {
             let other = other_branch(
                 &orbit,

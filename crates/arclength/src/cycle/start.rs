@@ -6,6 +6,7 @@ use super::end::CycleEnd;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::switching::{Branching, Departure, HopfStart};
+use crate::algebraic::scales::natural_scales;
 use crate::branch::{Branch, Continuation, Label, Problem, SpecialKind, invalid, observer, request};
 use crate::collocation::equations::Collocation;
 use crate::collocation::resolution::Resolution;
@@ -297,7 +298,9 @@ impl<'a> Asked<'a> {
     ) -> Result<FollowedCycles, Error> {
         // Shorter steps asked for mean a shorter first one.
         let share = (self.settings.initial_step / Settings::default().initial_step).min(1.0);
-        let amplitude = share * hopf.first_amplitude(self.bound.width());
+        let standing = vec![0.0; hopf.state.len()];
+        let scales = natural_scales(&self.field, hopf.state, &self.parameters, &standing);
+        let amplitude = share * hopf.first_amplitude(self.bound.width(), &scales);
         self.first_of(amplitude, AMPLITUDE_REDUCTION, |amplitude| {
             let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
             self.follow(&start, false, request, observer)

@@ -21,7 +21,7 @@ const FIRST_INTERVALS: usize = 8;
 /// Amplitude of the first cycle, as part of the amplitude at which the normal form has moved the parameter by
 /// the length of its range.
 const FIRST_AMPLITUDE: f64 = 0.02;
-/// Largest amplitude of the first cycle relative to the size of the equilibrium, for want of a better measure.
+/// Largest amplitude of the first cycle relative to the natural size of a state.
 const LARGEST_FIRST_AMPLITUDE: f64 = 0.1;
 /// Below this part of the other coefficients of the branching equation a coefficient counts as zero.
 const NEGLIGIBLE: f64 = 1e-6;
@@ -225,18 +225,15 @@ pub(super) struct HopfStart<'a> {
 }
 
 impl HopfStart<'_> {
-    /// Amplitude to start with, so that the first cycle is some part of the parameter's range `width` away.
-    pub fn first_amplitude(&self, width: f64) -> f64 {
+    /// Amplitude to start with, so that the first cycle is some part of the parameter's range `width` away; `scales` are the
+    /// sizes of the states.
+    pub fn first_amplitude(&self, width: f64, scales: &[f64]) -> f64 {
         // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
         let natural = (width * self.crossing_speed / self.cubic_coefficient).abs().sqrt();
-        let limit = self
-            .state
-            .iter()
-            .zip(self.eigenvector)
-            .filter(|(value, _)| **value != 0.0)
-            .map(|(value, component)| LARGEST_FIRST_AMPLITUDE * value.abs() / component.norm().max(1e-300))
+        let sizes = scales.iter().zip(self.eigenvector);
+        let limit = sizes
+            .map(|(scale, component)| LARGEST_FIRST_AMPLITUDE * scale / component.norm().max(1e-300))
             .fold(0.0, f64::max);
-        let limit = if limit > 0.0 { limit } else { LARGEST_FIRST_AMPLITUDE };
         let natural_start = FIRST_AMPLITUDE * natural;
         if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit }
     }

@@ -21,5 +21,5 @@ mod run;
 
 pub use branch::{EquilibriumLocusBranch, LocusPoint};
 pub use codimension_two::CodimensionTwoPoint;
-pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusEnd, CycleLocusPoint, CycleLocusProblem};
+pub use cycles::{CycleLocus, CycleLocusBranch, CycleLocusEnd, CycleLocusPoint, CycleLocusProblem, Held};
 pub use run::{EquilibriumLocus, EquilibriumLocusStart};

@@ -55,7 +55,8 @@ impl CycleLocusResult {
         curve: kingpin::branches::CycleCurve,
     ) -> Self {
         let kingpin::branches::CycleCurve { kind, points, stops, unlocated } = curve;
-        let curve = CycleCurve::new(kind, plane.varying(), from, points, &stops, &unlocated, named_state);
+        let curve =
+            CycleCurve::new(Some(kind), plane.varying(), from, points, &stops, &unlocated, named_state);
         Self { wheel, plane, curve }
     }
 }
@@ -70,7 +71,7 @@ impl Report for CycleLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let kind = self.curve.kind.name();
+        let kind = self.curve.name();
         let heading = format!("curve: {kind}, at {}", description::of(&self.wheel, &self.plane.keys()));
         self.curve.write_table(&heading, out)
     }
@@ -80,7 +81,7 @@ impl Report for CycleLocusResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let (kind, [one, two]) = (self.curve.kind.name(), self.plane.keys());
+        let (kind, [one, two]) = (self.curve.name(), self.plane.keys());
         let description =
             format!("{kind} in {one} and {two} at {}", description::of(&self.wheel, &[one, two]));
         let [first, second] = self.plane.labels();

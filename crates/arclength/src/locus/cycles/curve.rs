@@ -1,6 +1,7 @@
 //! A curve of special cycles as continuation sees it.
 
 use super::end::CycleLocusEnd;
+use super::hold::Hold;
 use super::monitor;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
@@ -90,6 +91,8 @@ pub(super) struct CycleLocusCurve<'a> {
     /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
     sign: Option<f64>,
     schur: Option<(usize, PeriodicSchur)>,
+    /// What keeps its value along a curve of [any cycles](Kind::Cycle).
+    pub hold: Option<Hold>,
 }
 
 impl<'a> CycleLocusCurve<'a> {
@@ -116,6 +119,7 @@ impl<'a> CycleLocusCurve<'a> {
             least,
             sign: None,
             schur: None,
+            hold: None,
         }
     }
 
@@ -170,7 +174,7 @@ impl<'a> CycleLocusCurve<'a> {
             Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
             Kind::Doubling => critical.doubling(eigenfunctions),
             Kind::Torus => critical.torus(eigenfunctions).map(|[real, _]| real),
-            Kind::BranchPoint => None,
+            Kind::BranchPoint | Kind::Cycle => None,
         };
         let scales = &self.system.collocation.problem.scales;
         let sizes: Vec<f64> =
@@ -312,14 +316,23 @@ impl Curve for CycleLocusCurve<'_> {
 
     fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
         self.system.residual(unknown, residual);
+        if let Some(hold) = &self.hold {
+            hold.add_residual(&self.system, unknown, residual);
+        }
     }
 
     fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.system.factorize(unknown, border, residual)
+        match &mut self.hold {
+            None => self.system.factorize(unknown, border, residual),
+            Some(hold) => hold.factorize(&mut self.system, unknown, border, residual),
+        }
     }
 
     fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.system.solve(right_hand_side);
+        match &self.hold {
+            None => self.system.solve(right_hand_side),
+            Some(hold) => hold.solve(&mut self.system, right_hand_side),
+        }
     }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {

@@ -114,7 +114,8 @@ impl Asked<'_> {
         (from, ranges): ([f64; 2], [f64; 2]),
     ) -> Option<CycleLocusPoint> {
         let period = orbit.period;
-        let problem = CycleLocusProblem { start: Some((kind, orbit)), resolution: self.resolution };
+        let problem =
+            CycleLocusProblem { start: Some((Some(kind), orbit)), resolution: self.resolution, held: None };
         let [first, second] = &self.along[..] else { return None };
         let curve = CycleLocus::of_erased(self.field, problem)
             .parameters(&parameters)

@@ -104,6 +104,11 @@ pub(super) fn tests(
             add(SpecialKind::PeriodDoublingTorus, (!rest.is_empty()).then(|| distance(&rest, -1.0)));
             add(SpecialKind::DoubleTorus, pair_product(&rest));
         }
+        Kind::Cycle => {
+            add(SpecialKind::FoldOfCycles, (!multipliers.is_empty()).then(|| distance(multipliers, 1.0)));
+            add(SpecialKind::PeriodDoubling, (!multipliers.is_empty()).then(|| distance(multipliers, -1.0)));
+            add(SpecialKind::Torus, pair_product(multipliers));
+        }
         Kind::BranchPoint => {}
     }
     tests
@@ -131,7 +136,13 @@ pub(super) fn test_functions(kind: Kind) -> &'static [TestFunction<SpecialKind>]
         TestFunction::new(SpecialKind::PeriodDoublingTorus).changing(&[1]).of_spectrum(),
         TestFunction::new(SpecialKind::DoubleTorus).changing(&[0, 2]).of_spectrum(),
     ];
+    const CYCLE: &[TestFunction<SpecialKind>] = &[
+        TestFunction::new(SpecialKind::FoldOfCycles).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::PeriodDoubling).changing(&[1]).of_spectrum(),
+        TestFunction::new(SpecialKind::Torus).changing(&[0, 2]).of_spectrum(),
+    ];
     match kind {
+        Kind::Cycle => CYCLE,
         Kind::Fold => FOLD,
         Kind::Doubling => DOUBLING,
         Kind::Torus => TORUS,
@@ -145,7 +156,7 @@ pub(super) fn growth(kind: Kind, floquet: &Floquet, angle: f64) -> Spectrum {
         Kind::Fold => &[Complex64::ZERO],
         Kind::Doubling => &[Complex64::new(0.0, PI)],
         Kind::Torus => &[Complex64::new(0.0, angle), Complex64::new(0.0, -angle)],
-        Kind::BranchPoint => &[],
+        Kind::BranchPoint | Kind::Cycle => &[],
     };
     let mut spectrum = floquet.growth();
     spectrum.exponents = without(&spectrum.exponents, critical);
@@ -168,7 +179,7 @@ pub(super) fn is_coefficient(kind: SpecialKind) -> bool {
 pub(super) fn is_genuine(sought: SpecialKind, kind: Kind, multipliers: &[Complex64]) -> bool {
     let by_pair = match sought {
         SpecialKind::FoldTorus | SpecialKind::PeriodDoublingTorus => kind != Kind::Torus,
-        SpecialKind::DoubleTorus => true,
+        SpecialKind::DoubleTorus | SpecialKind::Torus => true,
         _ => false,
     };
     if !by_pair {

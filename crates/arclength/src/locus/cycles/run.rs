@@ -3,6 +3,8 @@
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
 use super::end::CycleLocusEnd;
+use super::held::Held;
+use super::hold::Hold;
 use crate::branch::{
     Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
 };
@@ -25,10 +27,14 @@ use crate::field::VectorField;
 use crate::locus::request::{TwoParameters, point_forward};
 use std::ops::RangeInclusive;
 
+/// Part of its range by which a parameter of the start may lie outside by rounding.
+const START_ROUNDING: f64 = 1e-9;
+
 /// What a curve of special cycles starts from and how finely the cycles are resolved.
 #[derive(Clone, Debug, Default)]
 pub struct CycleLocusProblem {
-    pub(super) start: Option<(SpecialKind, Orbit)>,
+    pub(super) start: Option<(Option<SpecialKind>, Orbit)>,
+    pub(super) held: Option<Held>,
     pub(super) resolution: Resolution,
 }
 
@@ -91,7 +97,15 @@ impl<'a> CycleLocus<'a> {
 
     /// Starts at a special cycle: a fold (`FoldOfCycles`), a period doubling or a torus bifurcation, with all parameters there.
     pub fn from_cycle(mut self, kind: SpecialKind, orbit: &Orbit, parameters: &[f64]) -> Self {
-        self.start.start = Some((kind, orbit.clone()));
+        self.start.start = Some((Some(kind), orbit.clone()));
+        self.parameters(parameters)
+    }
+
+    /// Starts at any cycle, with all parameters there, and follows the cycles on which a quantity keeps its value. Along curves
+    /// on which the period keeps a large value homoclinic orbits are followed (Doedel and Kernevez, 1986).
+    pub fn from_held_cycle(mut self, held: Held, orbit: &Orbit, parameters: &[f64]) -> Self {
+        self.start.start = Some((None, orbit.clone()));
+        self.start.held = Some(held);
         self.parameters(parameters)
     }
 
@@ -111,10 +125,11 @@ impl<'a> CycleLocus<'a> {
             return Err(invalid("start", "nothing", "a special cycle"));
         };
         let kind = match special {
-            SpecialKind::FoldOfCycles => Kind::Fold,
-            SpecialKind::PeriodDoubling => Kind::Doubling,
-            SpecialKind::Torus => Kind::Torus,
-            other => {
+            None => Kind::Cycle,
+            Some(SpecialKind::FoldOfCycles) => Kind::Fold,
+            Some(SpecialKind::PeriodDoubling) => Kind::Doubling,
+            Some(SpecialKind::Torus) => Kind::Torus,
+            Some(other) => {
                 let allowed = "fold of cycles, period doubling, torus bifurcation";
                 return Err(invalid("start", other.name(), allowed));
             }
@@ -128,6 +143,7 @@ impl<'a> CycleLocus<'a> {
         let asked = Asked {
             field: self.field,
             two: TwoParameters::checked(&active, &bounds, &names, &parameters)?,
+            held: self.start.held.clone(),
             parameters,
             along: self.ranges.clone(),
             resolution: self.start.resolution,
@@ -148,7 +164,7 @@ impl<'a> CycleLocus<'a> {
         let place = (&asked.parameters[..], &active[..]);
         let branch =
             Branch::assemble(&asked.field, place, followed, |solution, label| point(&solution, label));
-        let mut branch = Branch { kind: Some(special), ..branch };
+        let mut branch = Branch { kind: special, ..branch };
         asked.solve_for_ends(&mut branch);
         Ok(branch)
     }
@@ -158,6 +174,8 @@ impl<'a> CycleLocus<'a> {
 pub(super) struct Asked<'a> {
     pub field: ErasedField<'a>,
     pub parameters: Vec<f64>,
+    /// What keeps its value, on a curve of any cycles.
+    pub held: Option<Held>,
     pub two: TwoParameters,
     /// Names and ranges of the two parameters.
     pub along: Vec<(String, RangeInclusive<f64>)>,
@@ -232,11 +250,26 @@ impl<'a> Asked<'a> {
         let nodes = (orbit.mesh.clone(), orbit.degree);
         let system = DefiningCurve::new(&base.problem, kind, nodes, (Some(active[1]), ranges), &unknown);
         let control = (self.resolution, self.settings);
-        Ok((CycleLocusCurve::new(system, base, sizes, active[1], control, least), unknown))
+        let mut curve = CycleLocusCurve::new(system, base, sizes, active[1], control, least);
+        if let Some(held) = &self.held {
+            let value = held.value().or_else(|| held.of(orbit, parameters)).ok_or_else(|| {
+                invalid(
+                    held.name(),
+                    "a quantity without a value where the curve starts",
+                    "one that has a value",
+                )
+            })?;
+            curve.hold = Some(Hold::new(held.clone(), value));
+        }
+        Ok((curve, unknown))
     }
 
-    /// The first solution, corrected with one of the parameters fixed, and the tangent there.
+    /// The first solution inside the ranges, corrected with one of the parameters fixed, and the tangent there.
     fn first(&self, curve: &mut CycleLocusCurve<'a>, start: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>), Error> {
+        let sought = match self.held {
+            Some(_) => "cycle on which the quantity to be held has its value",
+            None => "special cycle",
+        };
         let mut failure = None;
         for fixed in [1, 2] {
             let mut unknown = start.clone();
@@ -245,12 +278,36 @@ impl<'a> Asked<'a> {
             border[place] = 1.0;
             match correct(curve, &mut unknown, &border, &self.settings) {
                 Ok(_) => match finish(curve, unknown, &border) {
-                    Ok(solution) => return Ok((solution.unknown, solution.tangent)),
+                    Ok(solution) if self.is_inside(&solution.unknown) => {
+                        return Ok((solution.unknown, solution.tangent));
+                    }
+                    Ok(_) => failure = failure.or(Some(self.outside(sought))),
                     Err(error) => failure = failure.or(Some(error)),
                 },
-                Err(cause) => failure = failure.or(Some(Error::NotFound { sought: "special cycle", cause })),
+                Err(cause) => failure = failure.or(Some(Error::NotFound { sought, cause })),
             }
         }
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "Floquet multipliers" }))
+    }
+    /// Whether both parameters are inside their ranges, but for rounding.
+    fn is_inside(&self, unknown: &[f64]) -> bool {
+        let values = &unknown[unknown.len() - 2..];
+        values.iter().zip(&self.along).all(|(value, (_, range))| {
+            let margin = START_ROUNDING * (range.end() - range.start());
+            (range.start() - margin..=range.end() + margin).contains(value)
+        })
+    }
+
+    fn outside(&self, sought: &str) -> Error {
+        let ranges = self
+            .along
+            .iter()
+            .map(|(name, range)| format!("{name} from {} to {}", range.start(), range.end()));
+        let ranges: Vec<String> = ranges.collect();
+        invalid(
+            "start",
+            &format!("{sought}, outside the ranges"),
+            &format!("one inside {}", ranges.join(", ")),
+        )
     }
 }
