@@ -41,8 +41,6 @@ impl FromStr for CycleSource {
             return Ok(Self::Samples { samples: path.to_owned() });
         }
         let reference = text.parse().map(Self::Point);
-        reference.map_err(|_| {
-            "it must have the form FILE.json:LABEL, such as hopf.json:HB1, or be a file of samples, FILE.csv".to_owned()
-        })
+        reference.map_err(|problem: String| format!("{problem}, or be a file of samples, FILE.csv"))
     }
 }

@@ -25,84 +25,110 @@ const COMPARED: usize = 100;
 /// than [`Orbit::FEWEST_SAMPLES`] rows, states that do not change, an orbit that does not close, or more than one period.
 pub fn read_orbit(path: &Path, states: &[impl AsRef<str>]) -> Result<Orbit, Error> {
     let bytes = std::fs::read(path).map_err(|source| Error::Unreadable { path: path.to_owned(), source })?;
-    let failure = |line: u64, column: Option<&str>, problem: String| Error::OrbitFile {
-        path: path.to_owned(),
-        line,
-        column: column.map(str::to_owned),
-        problem,
-    };
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        failure(line, None, format!("these are no comma-separated values: {error}"))
-    };
-    let mut reader = ReaderBuilder::new().trim(Trim::All).flexible(true).from_reader(bytes.as_slice());
-    let header = reader.headers().map_err(unreadable)?.clone();
-    let names: Vec<&str> = std::iter::once(TIME).chain(states.iter().map(AsRef::as_ref)).collect();
-    let places = names.iter().map(|name| {
-        column(&header, name).ok_or_else(|| {
-            let known: Vec<&str> = header.iter().collect();
-            let problem = format!(
-                "there is no such column; the columns are: {}; needed are: {}",
-                known.join(", "),
-                names.join(", ")
-            );
-            failure(1, Some(name), problem)
-        })
-    });
-    let places: Vec<usize> = places.collect::<Result<_, _>>()?;
+    let names = std::iter::once(TIME).chain(states.iter().map(AsRef::as_ref)).collect();
+    let file = File { path, names };
+    file.orbit(&file.rows(&bytes)?)
+}
 
-    let (mut times, mut samples, mut last) = (Vec::new(), Vec::new(), 1);
-    for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        last = record.position().map_or(last + 1, csv::Position::line);
-        let number = |(name, place): (&&str, &usize)| {
-            let text = record.get(*place).unwrap_or_default();
-            let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| failure(last, Some(name), format!("`{text}` is no finite number")))
+/// A file with the names of the columns that are needed of it: the time and the states.
+struct File<'a> {
+    path: &'a Path,
+    names: Vec<&'a str>,
+}
+
+/// The rows of a file.
+struct Rows {
+    times: Vec<f64>,
+    samples: Vec<Vec<f64>>,
+    /// Line of the last one.
+    last: u64,
+}
+
+impl File<'_> {
+    fn failure(&self, line: u64, column: Option<&str>, problem: String) -> Error {
+        Error::OrbitFile { path: self.path.to_owned(), line, column: column.map(str::to_owned), problem }
+    }
+
+    fn rows(&self, bytes: &[u8]) -> Result<Rows, Error> {
+        let unreadable = |error: csv::Error| {
+            let line = error.position().map_or(1, csv::Position::line);
+            self.failure(line, None, format!("these are no comma-separated values: {error}"))
         };
-        let row: Vec<f64> = names.iter().zip(&places).map(number).collect::<Result<_, _>>()?;
-        if let Some(before) = times.last().filter(|before| row[0] <= **before) {
-            let (time, before) = (readable(row[0]), readable(*before));
-            return Err(failure(last, Some(TIME), format!("{time} does not come after {before}")));
-        }
-        times.push(row[0]);
-        samples.push(row[1..].to_vec());
-    }
-    if samples.len() < Orbit::FEWEST_SAMPLES {
-        let problem = format!(
-            "the file ends after {} rows; allowed: at least {}",
-            samples.len(),
-            Orbit::FEWEST_SAMPLES
-        );
-        return Err(failure(last, None, problem));
-    }
-    let sizes = sizes(&samples);
-    if sizes.iter().all(|size| *size == 0.0) {
-        let problem = "the states are the same in all rows: this is an equilibrium, no cycle".to_owned();
-        return Err(failure(last, None, problem));
-    }
-    let orbit = Orbit::from_samples(&times, &samples).map_err(|error| {
-        let [first, end] = [&samples[0], &samples[samples.len() - 1]];
-        let gap = |state: usize| (end[state] - first[state]).abs() / sizes[state];
-        match (0..sizes.len()).filter(|state| gap(*state) > 0.0).max_by(|a, b| gap(*a).total_cmp(&gap(*b))) {
-            Some(state) => {
-                let (end, first) = (readable(end[state]), readable(first[state]));
-                let problem = format!(
-                    "the orbit does not close: {end} in the last row, {first} in the first one; try: cut the file to exactly one \
-                     period, so that the last row repeats the first"
-                );
-                failure(last, Some(names[state + 1]), problem)
+        let mut reader = ReaderBuilder::new().trim(Trim::All).flexible(true).from_reader(bytes);
+        let places = self.columns(reader.headers().map_err(unreadable)?)?;
+        let mut rows = Rows { times: Vec::new(), samples: Vec::new(), last: 1 };
+        for record in reader.records() {
+            let record = record.map_err(unreadable)?;
+            let line = record.position().map_or(rows.last + 1, csv::Position::line);
+            let number = |(name, place): (&&str, &usize)| {
+                let text = record.get(*place).unwrap_or_default();
+                let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+                number.ok_or_else(|| self.failure(line, Some(name), format!("`{text}` is no finite number")))
+            };
+            let mut row: Vec<f64> = self.names.iter().zip(&places).map(number).collect::<Result<_, _>>()?;
+            let time = row.remove(0);
+            if let Some(before) = rows.times.last().filter(|before| time <= **before) {
+                let problem = format!("{} does not come after {}", readable(time), readable(*before));
+                return Err(self.failure(line, Some(TIME), problem));
             }
-            None => error.into(),
+            rows.times.push(time);
+            rows.samples.push(row);
+            rows.last = line;
         }
-    })?;
-    match (2..=MOST_PERIODS).rev().find(|periods| repeats(&orbit, *periods, &sizes)) {
-        Some(periods) => Err(failure(
-            last,
-            None,
-            format!("the rows reach over {periods} periods; try: cut the file to exactly one period"),
-        )),
-        None => Ok(orbit),
+        Ok(rows)
+    }
+
+    /// The places of the columns that are needed.
+    fn columns(&self, header: &StringRecord) -> Result<Vec<usize>, Error> {
+        let place = |name: &&str| {
+            column(header, name).ok_or_else(|| {
+                let known: Vec<&str> = header.iter().collect();
+                let problem = format!(
+                    "there is no such column; the columns are: {}; needed are: {}",
+                    known.join(", "),
+                    self.names.join(", ")
+                );
+                self.failure(1, Some(name), problem)
+            })
+        };
+        self.names.iter().map(place).collect()
+    }
+
+    fn orbit(&self, Rows { times, samples, last }: &Rows) -> Result<Orbit, Error> {
+        if samples.len() < Orbit::FEWEST_SAMPLES {
+            let (count, fewest) = (samples.len(), Orbit::FEWEST_SAMPLES);
+            let problem = format!("the file ends after {count} rows; allowed: at least {fewest}");
+            return Err(self.failure(*last, None, problem));
+        }
+        let sizes = sizes(samples);
+        if sizes.iter().all(|size| *size == 0.0) {
+            let problem = "the states are the same in all rows: this is an equilibrium, no cycle".to_owned();
+            return Err(self.failure(*last, None, problem));
+        }
+        let orbit = Orbit::from_samples(times, samples).map_err(|error| {
+            let [first, end] = [&samples[0], &samples[samples.len() - 1]];
+            let gap = |state: usize| (end[state] - first[state]).abs() / sizes[state];
+            let open = (0..sizes.len()).filter(|state| gap(*state) > 0.0);
+            match open.max_by(|one, other| gap(*one).total_cmp(&gap(*other))) {
+                Some(state) => {
+                    let (end, first) = (readable(end[state]), readable(first[state]));
+                    let problem = format!(
+                        "the orbit does not close: {end} in the last row, {first} in the first one; try: cut the file to \
+                         exactly one period, so that the last row repeats the first"
+                    );
+                    self.failure(*last, Some(self.names[state + 1]), problem)
+                }
+                None => error.into(),
+            }
+        })?;
+        match (2..=MOST_PERIODS).rev().find(|periods| repeats(&orbit, *periods, &sizes)) {
+            Some(periods) => {
+                let problem =
+                    format!("the rows reach over {periods} periods; try: cut the file to exactly one period");
+                Err(self.failure(*last, None, problem))
+            }
+            None => Ok(orbit),
+        }
     }
 }
 

@@ -47,7 +47,7 @@ fn the_same_cycle_is_found_again(set: &[(&str, &str)], along: Interval, at: f64,
     request.from = Some(CycleSource::Samples { samples: path.clone() });
     let second = run(&request);
     let again = &asked(&second).cycle;
-    let close = |one: f64, other: f64| (one - other).abs() < 1e-8 * one.abs();
+    let close = |one: f64, other: f64| (one - other).abs() <= 1e-8 * one.abs();
     assert!(close(cycle.period, again.period), "{} {}", cycle.period, again.period);
     for ((name, one), (_, other)) in cycle.max.0.iter().zip(&again.max.0) {
         assert!(close(*one, *other), "{name}: {one} {other}");
