@@ -35,11 +35,8 @@ pub fn of_equilibrium(special: &SpecialPoint) -> String {
                 coefficient("a22", Some(point.parametric))
             ),
             (Crossing::Pitchfork, cubic) => {
-                let sense = match cubic {
-                    Some(cubic) if cubic < 0.0 => "supercritical ",
-                    Some(_) => "subcritical ",
-                    None => "",
-                };
+                let sense =
+                    point.criticality.map_or(String::new(), |sense| format!("{} ", criticality(sense)));
                 format!("{sense}pitchfork, {}", coefficient("c", cubic))
             }
         },

@@ -108,3 +108,37 @@ fn orbits_that_do_not_fit_are_refused() {
         assert!(run(wrong.clone()), "{wrong:?}");
     }
 }
+
+/// A Hopf point whose state is zero but for rounding starts its cycles, in any units.
+#[test]
+fn first_cycles_are_sized_by_the_field_and_not_by_rounding() {
+    for (unit, rest) in [(1.0, 1e-17), (1.0, 0.0), (1e3, 1e-17), (1e-6, 0.0)] {
+        struct Circle(f64);
+        impl VectorField for Circle {
+            fn state_names(&self) -> Vec<String> {
+                vec!["x".into(), "y".into()]
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                vec!["m".into()]
+            }
+            fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+                let square = (s[0] * s[0] + s[1] * s[1]) / (self.0 * self.0);
+                d[0] = (p[0] - square) * s[0] - s[1] * 0.8;
+                d[1] = (p[0] - square) * s[1] + s[0] * 0.8;
+            }
+        }
+        let half = 0.5_f64.sqrt();
+        let start = CycleStart::Hopf {
+            state: vec![rest, 0.0],
+            frequency: 0.8,
+            eigenvector: vec![Complex64::new(half, 0.0), Complex64::new(0.0, -half)],
+            crossing_speed: 1.0,
+            cubic_coefficient: -1.0 / (unit * unit),
+        };
+        let field = Circle(unit);
+        let branch =
+            Cycles::of(&field, start).parameters(&[0.0]).along("m", -0.5..=0.2).at(&[0.01]).run().unwrap();
+        let found = branch.points.iter().find(|cycle| cycle.value == 0.01).unwrap();
+        assert!((found.max[0] / (0.1 * unit) - 1.0).abs() < 1e-8, "{unit}: {}", found.max[0]);
+    }
+}

@@ -3,7 +3,7 @@
 use approx::assert_relative_eq;
 use arclength::branch::Stability;
 use arclength::continuation::Stop;
-use arclength::equilibrium::{Equilibria, EquilibriumBranch, EquilibriumEnd, SpecialPoint, find_equilibrium};
+use arclength::equilibrium::{Equilibria, EquilibriumBranch, SpecialPoint, find_equilibrium};
 use arclength::linear::eigenvalues::eigenvalues;
 use arclength::{Dual, Error, Scalar, VectorField};
 use proptest::prelude::*;
@@ -242,31 +242,6 @@ fn both_branches_of_a_pitchfork_are_found_from_either() {
     let back = Equilibria::of(&Pitchfork).from_branch_point(point).along("p", -1.0..=2.0).run().unwrap();
     assert!(back.points.iter().all(|point| point.state[0] == 0.0));
     assert_eq!((back.points[0].value, back.points[back.points.len() - 1].value), (-1.0, 2.0));
-}
-
-field!(Hyperbola, ["x"], ["p"], |x, p, d| {
-    d[0] = -(p[0] * x[0]) + 1.0;
-});
-
-field!(Logarithm, ["x"], ["p"], |x, p, d| {
-    d[0] = x[0].exp() - p[0];
-});
-
-#[test]
-fn branches_that_go_to_infinity_end() {
-    let branch =
-        Equilibria::of(&Hyperbola).start(&[1.0]).parameters(&[1.0]).along("p", -1.0..=2.0).run().unwrap();
-    match &branch.stops[0] {
-        Some(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })) => assert!(parameter.abs() < 1e-5),
-        other => panic!("{other:?}"),
-    }
-    let branch = Equilibria::of(&Logarithm).parameters(&[1.0]).along("p", 0.0..=2.0).run().unwrap();
-    assert!(matches!(branch.stops[0], Some(Stop::RangeEnd { value: 0.0, .. })), "{:?}", branch.stops);
-    let branch = Equilibria::of(&Logarithm).parameters(&[1.0]).along("p", -1.0..=2.0).run().unwrap();
-    match &branch.stops[0] {
-        Some(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })) => assert!(parameter.abs() < 1e-5),
-        other => panic!("{other:?}"),
-    }
 }
 
 #[test]

@@ -13,7 +13,7 @@ use arclength::branch::Monitor;
 use arclength::control::Control;
 use arclength::equilibrium::{BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings};
 use arclength_ode::Quantity;
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{readable, significant};
 use serde::{Deserialize, Serialize};
 
 /// A branch of equilibria along a parameter.
@@ -66,7 +66,8 @@ impl EquilibriaRequest {
     /// What is wrong with the model or a field.
     pub fn validate(&self) -> Result<EquilibriaAnalysis, Error> {
         self.steps.check()?;
-        let OpenedModel { chosen, point, warnings } = self.model.open()?;
+        let OpenedModel { chosen, point, mut warnings } = self.model.open()?;
+        warnings.extend(slowness(chosen.model.states().len()));
         let active = chosen.along(&["along"], &self.along)?;
         self.along.check_values(&self.at)?;
         if let Some(point) = &point {
@@ -86,6 +87,19 @@ impl EquilibriaRequest {
             steps: self.steps,
         })
     }
+}
+
+/// Numbers of states from which on a step takes a time worth telling before, and seconds for the cube of their number (eigenvalues,
+/// on a processor of today).
+const MANY_STATES: usize = 200;
+const SECONDS: f64 = 1e-8;
+
+/// What a model of so many states will take, where that is long.
+fn slowness(states: usize) -> Option<String> {
+    (states >= MANY_STATES).then(|| {
+        let seconds = significant(SECONDS * (states as f64).powi(3), 1);
+        format!("{states} states: a step takes about {seconds} s, most of it for eigenvalues (Ctrl-C keeps the branch up to there)")
+    })
 }
 
 impl EquilibriaAnalysis {

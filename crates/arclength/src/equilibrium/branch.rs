@@ -87,7 +87,13 @@ impl EquilibriumPoint {
         Self {
             value,
             state: state.to_vec(),
-            stability: spectrum.stability,
+            // An eigenvalue on the axis, however its rounding comes out, decides nothing.
+            stability: match special.as_deref() {
+                Some(SpecialPoint::Fold(_) | SpecialPoint::BranchPoint(_) | SpecialPoint::Hopf(_)) => {
+                    Stability::Undecided
+                }
+                _ => spectrum.stability,
+            },
             eigenvalues: spectrum.eigenvalues.clone(),
             label,
             tests: vec![

@@ -4,6 +4,7 @@ use super::fold::null_vectors;
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu, length};
+use crate::branch::Criticality;
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +47,9 @@ pub struct BranchPoint {
     /// At a pitchfork, the cubic coefficient of the flow on the centre manifold, `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6`:
     /// negative if the pitchfork is supercritical.
     pub cubic: Option<f64>,
+    /// The sense of a pitchfork; degenerate where the other branch is vertical within rounding.
+    #[serde(default)]
+    pub criticality: Option<Criticality>,
     /// How the branches cross.
     pub crossing: Crossing,
     /// Tangents (state, then parameter) of the branch on which the point was found and of the other one; of unit length
@@ -55,6 +59,8 @@ pub struct BranchPoint {
 
 /// A coefficient smaller than this, relative to the others, is zero at a pitchfork.
 const PITCHFORK: f64 = 1e-6;
+/// Part of its range by which the parameter changes along the other branch of a pitchfork below which it is rounding.
+const VERTICAL: f64 = 1e-10;
 
 impl BranchPoint {
     /// The branch point at a located singular equilibrium on a branch with the direction `tangent`.
@@ -143,7 +149,17 @@ impl BranchPoint {
             let cubes = forms.real(&[&null_vector, &null_vector, &null_vector]);
             (project(&cubes) + 3.0 * project(&forms.real(&[&null_vector, &correction]))) / 6.0
         });
+        let criticality = cubic.map(|cubic| {
+            // Along the other branch the parameter changes by this part of its range while the state changes by its size.
+            let curvature = cubic / null_size.powi(3) / b;
+            match cubic {
+                _ if curvature.abs() < VERTICAL || curvature.is_nan() => Criticality::Degenerate,
+                _ if cubic < 0.0 => Criticality::Supercritical,
+                _ => Criticality::Subcritical,
+            }
+        });
         Ok(Some(Self {
+            criticality,
             value: parameters[active],
             parameters,
             active,

@@ -6,7 +6,7 @@ use super::locating;
 use super::special::SpecialPoint;
 use crate::branch::{SpecialKind, Stability};
 use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
-use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, events};
+use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, distance, events};
 use crate::error::Error;
 use num_complex::Complex64;
 
@@ -29,11 +29,12 @@ const NEARLY_FOLD: f64 = 1e-9;
 const DISPLACEMENT: f64 = 1e-7;
 /// Rate of change of the parameter, as part of the whole, and growth of a state since the start that together mean that the
 /// state grows without bound.
-const VERTICAL: f64 = 1e-9;
+const VERTICAL: f64 = 1e-7;
 const UNBOUNDED_GROWTH: f64 = 1e6;
-/// Part of its range by which the parameter has to change in [`MOST_IDLE_STEPS`] steps.
+/// Part of its range by which the parameter has to change within a way of this length, in sizes of the states: it stands still
+/// otherwise. On an analytic curve it does so from the start on or nowhere; where it has moved before it tends to a limit.
 const IDLE: f64 = 1e-13;
-const MOST_IDLE_STEPS: usize = 20;
+const LONGEST_IDLE_WAY: f64 = 5.0;
 
 impl Curve for EquilibriumCurve<'_> {
     type Point = Inspection;
@@ -175,19 +176,21 @@ impl Curve for EquilibriumCurve<'_> {
         let range = self.system.scales[n];
         let parameter = after.unknown[n];
         if (parameter - before.unknown[n]).abs() > IDLE * range {
-            self.idle_steps = 0;
+            self.idle_way = 0.0;
+            self.has_moved = true;
         } else {
-            self.idle_steps += 1;
+            self.idle_way += distance(self, &before.unknown, &after.unknown);
         }
-        let grown = self
-            .system
-            .scales
-            .iter()
-            .zip(&self.first_scales)
-            .any(|(now, first)| *now > UNBOUNDED_GROWTH * first);
+        let sizes = self.system.scales.iter().zip(&self.first_scales);
+        let growth = sizes.map(|(now, first)| now / first).fold(0.0, f64::max);
         let vertical = self.turn(&after.tangent).abs() < VERTICAL;
-        if self.idle_steps > MOST_IDLE_STEPS || (vertical && grown) {
+        let idle = self.idle_way > LONGEST_IDLE_WAY;
+        if (vertical && growth > UNBOUNDED_GROWTH) || (idle && self.has_moved) {
+            let parameter = self.limit(before, after);
             return Some(Ending::After(Stop::Problem(EquilibriumEnd::StateUnbounded { parameter })));
+        }
+        if idle {
+            return Some(Ending::After(Stop::Problem(EquilibriumEnd::ParameterStandsStill { parameter })));
         }
         // The parameter creeps up to the end of its range and never reaches it.
         let end = [self.bound.lower, self.bound.upper]

@@ -27,7 +27,10 @@ pub(crate) struct EquilibriumCurve<'a> {
     pub system: DenseSystem<EquilibriumProblem<'a>>,
     pub settings: Settings,
     pub(super) bound: Bound,
-    pub(super) idle_steps: usize,
+    /// Length of the way on which the parameter has stood still.
+    pub(super) idle_way: f64,
+    /// Whether it has moved since the start.
+    pub(super) has_moved: bool,
     pub(super) first_scales: Vec<f64>,
     pub(super) workspace: EigenvalueWorkspace,
     pub(super) scratch: Vec<f64>,
@@ -41,7 +44,8 @@ impl<'a> EquilibriumCurve<'a> {
             system: DenseSystem::new(problem, scales.clone()),
             settings,
             bound,
-            idle_steps: 0,
+            idle_way: 0.0,
+            has_moved: false,
             first_scales: scales,
             workspace,
             scratch: Vec::new(),
@@ -50,7 +54,22 @@ impl<'a> EquilibriumCurve<'a> {
 
     /// Forgets the direction followed before.
     pub fn restart(&mut self) {
-        self.idle_steps = 0;
+        self.idle_way = 0.0;
+        self.has_moved = false;
+    }
+
+    /// The value to which the parameter tends where its rate dies out along the curve: from the rates at two solutions.
+    pub(super) fn limit(&self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> f64 {
+        let n = self.dimension();
+        let parameter = after.unknown[n];
+        let [one, other] = [before, after].map(|solution| solution.tangent[n]);
+        let ratio = other / one;
+        if !(ratio > 0.0 && ratio < 1.0) {
+            return parameter;
+        }
+        // A geometric series of steps like the last one.
+        let left = (parameter - before.unknown[n]) * ratio / (1.0 - ratio);
+        (parameter + left).clamp(self.bound.lower, self.bound.upper)
     }
 
     pub fn dimension(&self) -> usize {

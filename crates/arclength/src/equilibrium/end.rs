@@ -15,23 +15,38 @@ pub enum EquilibriumEnd {
         /// That value.
         parameter: f64,
     },
+    /// The state changes and the parameter does not: equilibria for one value of it.
+    ParameterStandsStill {
+        /// That value.
+        parameter: f64,
+    },
 }
 
 impl WithParameters for EquilibriumEnd {
     fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self {
-        let Self::StateUnbounded { parameter } = self;
-        Self::StateUnbounded { parameter: convert(0, parameter) }
+        match self {
+            Self::StateUnbounded { parameter } => Self::StateUnbounded { parameter: convert(0, parameter) },
+            Self::ParameterStandsStill { parameter } => {
+                Self::ParameterStandsStill { parameter: convert(0, parameter) }
+            }
+        }
     }
 }
 
 impl Reason for EquilibriumEnd {
     fn explain(&self, wording: &Wording<'_>) -> Explanation {
-        let Self::StateUnbounded { parameter } = self;
         let key = wording.name(0);
-        Explanation::of(format!(
-            "the state grows without bound while {key} tends to {}",
-            readable(*parameter)
-        ))
-        .try_this("nothing, if it does in truth; else other coordinates, such as reciprocals")
+        match self {
+            Self::StateUnbounded { parameter } => Explanation::of(format!(
+                "the state grows without bound while {key} tends to {}",
+                readable(*parameter)
+            ))
+            .try_this("nothing, if it does in truth; else other coordinates, such as reciprocals"),
+            Self::ParameterStandsStill { parameter } => Explanation::of(format!(
+                "{key} stands still at {} while the state changes: there are equilibria for this value only, a whole line of them",
+                readable(*parameter)
+            ))
+            .try_this("another parameter; where a state is to end the branch, --until STATE=VALUE"),
+        }
     }
 }

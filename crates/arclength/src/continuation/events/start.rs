@@ -38,5 +38,21 @@ pub(crate) fn around_start<C: Curve>(
     let [Some(behind), Some(ahead)] = ends else { return Ok(Events::default()) };
     let mut left = Node::new(curve, behind.reversed());
     let mut right = Node::new(curve, ahead);
-    search(curve, [&mut left, &mut right], &Memory::default(), bounds, settings)
+    let mut events = search(curve, [&mut left, &mut right], &Memory::default(), bounds, settings)?;
+    // The neighbourhood of a start at the end of a range lies outside in part.
+    let inside = |value: f64, bound: &Bound| {
+        let margin = ROUNDING * bound.width();
+        (bound.lower - margin..=bound.upper + margin).contains(&value)
+    };
+    events
+        .found
+        .retain(|event| bounds.iter().all(|bound| inside(bound.value(&event.solution.unknown), bound)));
+    events.unlocated.retain(|change| {
+        let ends = change.between.iter();
+        ends.flat_map(|values| values.iter().zip(bounds)).any(|(value, bound)| inside(*value, bound))
+    });
+    Ok(events)
 }
+
+/// Part of its range by which a parameter may lie outside by rounding.
+const ROUNDING: f64 = 1e-12;
