@@ -99,6 +99,22 @@ pub enum Error {
         /// What is wrong, and what is allowed.
         problem: String,
     },
+    /// A file of samples of an orbit that cannot be used.
+    #[error(
+        "{}: line {line}{}: {problem}",
+        path.display(),
+        column.as_ref().map_or(String::new(), |name| format!(", column {name}"))
+    )]
+    OrbitFile {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The column, where it is one that is at fault.
+        column: Option<String>,
+        /// What is wrong, and what is allowed.
+        problem: String,
+    },
     /// A continuation failed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),

@@ -7,7 +7,9 @@
 //! requests.
 
 pub mod branch;
+mod calls;
 pub mod course;
+mod cycle_source;
 pub mod cycles;
 pub mod diagram;
 mod end;
@@ -20,6 +22,7 @@ mod model;
 mod model_request;
 mod monitor;
 pub mod normal_form;
+mod orbit_file;
 pub mod picture;
 mod point_reference;
 mod result_file;
@@ -32,12 +35,14 @@ mod varying_parameter;
 
 pub use arclength::control::{Control, Progress};
 pub use branch::Origin;
+pub use cycle_source::CycleSource;
 pub use end::End;
 pub use error::{AnalysisError, Error, InvalidField};
 pub use interval::{Assignment, Interval, IntervalError, SampledInterval, Values};
 pub use model::ChosenModel;
 pub use model_request::{ModelRequest, ModelSource, OpenedModel};
 pub use monitor::{MonitorError, Monitored};
+pub use orbit_file::read_orbit;
 pub use point_reference::PointReference;
 pub use result_file::ResultFile;
 pub use start::{LabelledPoint, LabelledSolution};

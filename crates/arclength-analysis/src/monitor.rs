@@ -1,8 +1,10 @@
 //! Monitors: expressions that are recorded along a branch, with values at which a point is wanted or the branch ends.
 //!
 //! On equilibria an expression has a value. On a cycle a state has none, but `max(..)`, `min(..)` and `mean(..)` of an expression
-//! have, and so have the `period` and the parameters.
+//! have, and its value `at(.., PHASE)`, and so have the `period` and the parameters. A phase is a part of the period, counted
+//! from the place where the first state is largest.
 
+use crate::calls::{Call, Part, arguments_of, divide, mentions, part_name};
 use crate::error::Error;
 use crate::model::ChosenModel;
 use arclength::cycle::Orbit;
@@ -86,7 +88,9 @@ impl Monitored {
     /// # Errors
     /// An expression that cannot be read, or in which a state stands that has no value of its own on a cycle.
     pub(crate) fn on_cycles(&self, chosen: &ChosenModel) -> Result<CycleMonitor, Error> {
-        let (outer, parts) = divide(&self.expression);
+        // A model may have a function of its own by that name.
+        let phases = chosen.model.quantity("at(0, 0)", &[]).is_err();
+        let (outer, parts) = divide(&self.expression, phases);
         let state = chosen
             .model
             .states()
@@ -96,7 +100,7 @@ impl Monitored {
             return Err(self.wrong(
                 format!("the state {state} has no single value on a cycle"),
                 &format!(
-                    "max({state}), min({state}), mean({state}), of expressions too, parameters and period"
+                    "max({state}), min({state}), mean({state}), at({state}, PHASE), of expressions too, parameters and period"
                 ),
             ));
         }
@@ -116,22 +120,51 @@ impl Monitored {
             read => (read, true),
         };
         let outer = outer.map_err(|error| self.wrong(reason(&error), CYCLES))?;
-        let parts = parts.into_iter().map(|(kind, expression)| {
+        let parts = parts.into_iter().map(|Part { call, argument }| {
+            let (taken, expression) = match call {
+                Call::Largest => (Taken::Largest, argument),
+                Call::Smallest => (Taken::Smallest, argument),
+                Call::Mean => (Taken::Mean, argument),
+                Call::At => {
+                    let (expression, phase) = self.phase(&argument, chosen)?;
+                    (Taken::At(phase), expression)
+                }
+            };
             let quantity = chosen.model.quantity(&expression, &[]);
-            Ok((kind, quantity.map_err(|error| self.wrong(reason(&error), CYCLES))?))
+            Ok((taken, quantity.map_err(|error| self.wrong(reason(&error), CYCLES))?))
         });
         Ok(CycleMonitor { outer, parts: parts.collect::<Result<_, Error>>()?, has_period })
+    }
+
+    /// The expression and the phase of a call of `at`.
+    fn phase(&self, arguments: &str, chosen: &ChosenModel) -> Result<(String, f64), Error> {
+        let wrong = |problem: String| self.wrong(problem, PHASES);
+        let [expression, phase] = arguments_of(arguments)[..] else {
+            return Err(wrong(format!("at({arguments}) does not have an expression and a phase")));
+        };
+        let phase = phase.trim();
+        let quantity = chosen.model.quantity(phase, &[]).map_err(|error| wrong(reason(&error)))?;
+        // What is not constant is not a number here.
+        let [states, parameters] =
+            [chosen.model.states(), chosen.model.parameters()].map(|names| vec![f64::NAN; names.len()]);
+        let value = quantity.value(&states, &parameters, &[]);
+        let named = chosen.model.states().iter().chain(chosen.model.parameters());
+        let varies = named.into_iter().any(|name| mentions(phase, |word| name.eq_ignore_ascii_case(word)));
+        if varies || value.is_nan() {
+            return Err(wrong(format!("the phase {phase} is not constant")));
+        }
+        if !(0.0..1.0).contains(&value) {
+            return Err(wrong(format!("the phase {phase} is outside one period")));
+        }
+        Ok((expression.to_owned(), value))
     }
 }
 
 const EQUILIBRIA: &str = "an expression in the names of the model";
-const CYCLES: &str =
-    "max(..), min(..) and mean(..) of expressions in the names of the model, parameters and period";
+const CYCLES: &str = "max(..), min(..), mean(..) and at(.., PHASE) of expressions in the names of the model, parameters and period";
+const PHASES: &str = "at(EXPRESSION, PHASE), such as at(x, 0.25), where the phase is a constant from 0 to below 1: a part of the \
+                      period, counted from the place where the first state is largest";
 const PERIOD: &str = "period";
-
-fn part_name(index: usize) -> String {
-    format!("along_cycle_{index}")
-}
 
 /// Values of monitors by name, where they exist.
 pub(crate) fn named(names: &[String], values: &[f64]) -> NamedNumbers {
@@ -161,17 +194,19 @@ fn reason(error: &OdeError) -> String {
 
 /// What is taken of an expression along a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum Taken {
     Largest,
     Smallest,
     Mean,
+    /// The value at a phase.
+    At(f64),
 }
 
 /// A monitor on cycles.
 #[derive(Clone, Debug)]
 pub(crate) struct CycleMonitor {
     outer: Quantity,
-    parts: Vec<(Kind, Quantity)>,
+    parts: Vec<(Taken, Quantity)>,
     has_period: bool,
 }
 
@@ -181,12 +216,13 @@ impl CycleMonitor {
         let mut others: Vec<f64> = self
             .parts
             .iter()
-            .map(|(kind, quantity)| {
+            .map(|(taken, quantity)| {
                 let function = |state: &[f64]| quantity.value(state, parameters, &[]);
-                match kind {
-                    Kind::Largest => orbit.maximum(function),
-                    Kind::Smallest => orbit.minimum(function),
-                    Kind::Mean => orbit.mean(function),
+                match taken {
+                    Taken::Largest => orbit.maximum(function),
+                    Taken::Smallest => orbit.minimum(function),
+                    Taken::Mean => orbit.mean(function),
+                    Taken::At(phase) => orbit.at_phase(*phase, function),
                 }
             })
             .collect();
@@ -196,86 +232,9 @@ impl CycleMonitor {
     }
 }
 
-/// The names in an expression, with where each ends.
-fn names(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    let is_part = |character: char| character.is_ascii_alphanumeric() || character == '_';
-    let mut rest = 0;
-    std::iter::from_fn(move || {
-        loop {
-            let start = rest + text[rest..].find(is_part)?;
-            let end =
-                text[start..].find(|character| !is_part(character)).map_or(text.len(), |end| start + end);
-            rest = end;
-            if text[start..].starts_with(|first: char| !first.is_ascii_digit()) {
-                return Some((start, &text[start..end]));
-            }
-        }
-    })
-}
-
-fn mentions(text: &str, is_meant: impl Fn(&str) -> bool) -> bool {
-    names(text).any(|(_, name)| is_meant(&name.to_ascii_lowercase()))
-}
-
-/// Takes calls of `max`, `min` and `mean` with one argument out of an expression: the expression with names in their place, and
-/// what each stands for. (With two arguments `max` and `min` are functions of numbers.)
-fn divide(text: &str) -> (String, Vec<(Kind, String)>) {
-    let (mut outer, mut parts, mut copied) = (String::new(), Vec::new(), 0);
-    for (start, name) in names(text) {
-        let kind = match name.to_ascii_lowercase().as_str() {
-            "max" => Kind::Largest,
-            "min" => Kind::Smallest,
-            "mean" => Kind::Mean,
-            _ => continue,
-        };
-        let after = start + name.len();
-        if start < copied {
-            continue;
-        }
-        let Some((open, close)) = single_argument(text, after) else { continue };
-        outer.push_str(&text[copied..start]);
-        parts.push((kind, text[open..close].to_owned()));
-        outer.push_str(&part_name(parts.len()));
-        copied = close + 1;
-    }
-    outer.push_str(&text[copied..]);
-    (outer, parts)
-}
-
-/// Where the only argument of a call lies whose name ends at `after`.
-fn single_argument(text: &str, after: usize) -> Option<(usize, usize)> {
-    let gap = text[after..].find(|character: char| !character.is_whitespace())?;
-    let open = after + gap;
-    if !text[open..].starts_with('(') {
-        return None;
-    }
-    let mut depth = 0;
-    for (index, character) in text[open..].char_indices() {
-        match character {
-            '(' => depth += 1,
-            ')' => depth -= 1,
-            ',' if depth == 1 => return None,
-            _ => {}
-        }
-        if depth == 0 {
-            return Some((open + 1, open + index));
-        }
-    }
-    None
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn calls_along_the_cycle_are_told_from_functions_of_numbers() {
-        let (outer, parts) = divide("max(x+y) - min( max(x, y) ) + max(a, 1) + mean(f(x))/2");
-        assert_eq!(outer, "along_cycle_1 - along_cycle_2 + max(a, 1) + along_cycle_3/2");
-        let expected = [(Kind::Largest, "x+y"), (Kind::Smallest, " max(x, y) "), (Kind::Mean, "f(x)")]
-            .map(|(kind, text)| (kind, text.to_owned()));
-        assert_eq!(parts, expected);
-    }
 
     #[test]
     fn what_is_no_monitor_is_refused() {

@@ -5,7 +5,8 @@ use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::simulate::SimulateRequest;
 use arclength_analysis::{
-    AnalysisError, Control, Interval, ModelRequest, ModelSource, PointReference, Progress, StoredModel,
+    AnalysisError, Control, CycleSource, Interval, ModelRequest, ModelSource, PointReference, Progress,
+    StoredModel,
 };
 use kingpin_report::NamedNumbers;
 use serde_json::{from_value, json, to_value};
@@ -33,6 +34,13 @@ fn what_is_not_given_has_its_default() {
         assert_eq!(whole[field], value);
     }
     assert_eq!(from_value::<CyclesRequest>(whole).unwrap(), request);
+
+    let short = json!({"from": {"samples": "o.csv"}, "model": {"file": "m.ode"}, "along": interval("alpha", 0.0, 1.0)});
+    let samples = CycleSource::Samples { samples: "o.csv".into() };
+    let mut request = CyclesRequest::new(samples, alpha.clone());
+    request.model = Some(ModelSource::File("m.ode".into()));
+    assert_eq!(from_value::<CyclesRequest>(short).unwrap(), request);
+    assert_eq!(from_value::<CyclesRequest>(to_value(&request).unwrap()).unwrap(), request);
 
     let short = json!({"from": from, "in": [interval("alpha", 0.0, 1.0), interval("beta", 2.0, 3.0)]});
     assert_eq!(from_value::<LocusRequest>(short).unwrap(), LocusRequest::new(reference, [alpha, beta]));

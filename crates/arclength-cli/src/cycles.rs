@@ -1,25 +1,33 @@
-//! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result.
+//! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result or from samples of an orbit.
 
 use crate::model_options::ParameterOptions;
 use crate::monitor_options::MonitorOptions;
 use arclength_analysis::cycles::CyclesRequest;
-use arclength_analysis::{Interval, PointReference, Values};
+use arclength_analysis::{CycleSource, Interval, ModelSource, Values};
 use clap::Args;
 use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
+use std::path::PathBuf;
 
-/// Limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result
+/// Limit cycles along a parameter, from a point of an earlier result or from samples of an orbit
 ///
 /// From a Hopf point (HB) the cycles that are born there are followed, from a period doubling (PD) the doubled ones, from a
-/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, and from the end (END) of a
-/// time history the cycle on which it has settled.
+/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, from the end (END) of a
+/// time history the cycle on which it has settled, and from samples of an orbit the cycle nearest to them, stable or not.
 #[derive(Args, Debug)]
 #[command(
-    after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json"
+    after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json\n         \
+                  arclength cycles model.ode --from orbit.csv -s p=0.5 --along p=0:1"
 )]
 pub struct Cycles {
-    /// Labelled point of a file that `equilibria`, `cycles` or `simulate` wrote, with its model and parameters
-    #[arg(long, value_name = "FILE.json:LABEL")]
-    from: PointReference,
+    /// File of the model, with samples of an orbit only: a labelled point has its own
+    #[arg(value_name = "MODEL.ode", help_heading = "Model")]
+    model: Option<PathBuf>,
+
+    /// Labelled point of a file that `equilibria`, `cycles` or `simulate` wrote, with its model and parameters; or samples
+    /// of an orbit over one period: a line of names, among them t and all states, and rows of which the last repeats the
+    /// first
+    #[arg(long, value_name = "FILE.json:LABEL|FILE.csv")]
+    from: CycleSource,
 
     /// Parameter and its interval
     #[arg(long, value_name = "KEY=A:B")]
@@ -59,6 +67,7 @@ impl Cycles {
         let output = self.output.prepare()?.explain(self.explain);
         let request = CyclesRequest {
             from: self.from.clone(),
+            model: self.model.clone().map(ModelSource::File),
             set: self.parameters.values()?,
             along: self.along.clone(),
             at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,

@@ -1,5 +1,6 @@
 //! `arclength locus`: a curve of special points in two parameters.
 
+use crate::monitor_options::MonitorOptions;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::{Monitored, PointReference, Values};
 use clap::Args;
@@ -30,9 +31,12 @@ pub struct Locus {
     at: Vec<Values>,
 
     /// Follow the cycles on which an expression keeps its value (the one at the start if none is given), in max(..), min(..),
-    /// mean(..), period and parameters, such as period=50
+    /// mean(..), at(.., PHASE), period and parameters, such as period=50
     #[arg(long, value_name = "EXPRESSION[=VALUE]", allow_hyphen_values = true)]
     hold: Option<Monitored>,
+
+    #[command(flatten)]
+    monitors: MonitorOptions,
 
     /// Tell the story of the run after the table
     #[arg(long)]
@@ -59,6 +63,7 @@ impl Locus {
             at: requested_values(&self.at, &plane[0].key, str::eq_ignore_ascii_case)?,
             plane,
             hold: self.hold.clone(),
+            monitors: self.monitors.asked(),
             steps: self.steps.into(),
             mesh: self.mesh.into(),
         };

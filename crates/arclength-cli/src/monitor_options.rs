@@ -6,12 +6,13 @@ use clap::Args;
 /// What is recorded along a branch, and where it ends for that.
 #[derive(Args, Debug)]
 pub struct MonitorOptions {
-    /// Record an expression along the branch, and give points where it has these values; on cycles with max(..), min(..),
-    /// mean(..), period and parameters, such as "max(x)-min(x)=1,2"
+    /// Record an expression along the branch or curve, and give points where it has these values; on cycles with max(..), min(..),
+    /// mean(..), at(.., PHASE), period and parameters, such as "max(x)-min(x)=1,2"; the phase from 0 to 1 is counted from
+    /// the place where the first state is largest
     #[arg(long, value_name = "EXPRESSION[=A,B,..]", allow_hyphen_values = true)]
     monitor: Vec<Monitored>,
 
-    /// End the branch where an expression has a value, such as period=50
+    /// End the branch or curve where an expression has a value, such as period=50
     #[arg(long, value_name = "EXPRESSION=A", allow_hyphen_values = true)]
     until: Vec<Monitored>,
 }

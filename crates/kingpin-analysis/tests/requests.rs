@@ -1,6 +1,6 @@
 //! Requests as plain data: the defaults are those of the command line, and what makes no sense is refused.
 
-use arclength_analysis::{AnalysisError, Interval};
+use arclength_analysis::{AnalysisError, CycleSource, Interval, PointReference};
 use kingpin_analysis::basin::BasinRequest;
 use kingpin_analysis::chart::ChartRequest;
 use kingpin_analysis::cycles::CyclesRequest;
@@ -30,7 +30,12 @@ fn what_is_not_given_has_its_default() {
     let along = json!({"key": "r", "start": 1.0, "end": "inf"});
     let straight = Interval::new("r", f64::INFINITY, 1.0);
     check(json!({"along": along}), &HopfRequest::new(straight.clone()));
-    check(json!({"along": along}), &CyclesRequest::new(straight));
+    let mut cycles = CyclesRequest::new(straight);
+    check(json!({"along": along}), &cycles);
+    cycles.from = Some(PointReference { path: "a.json".into(), label: "AT1".to_owned() }.into());
+    check(json!({"along": along, "from": {"path": "a.json", "label": "AT1"}}), &cycles);
+    cycles.from = Some(CycleSource::Samples { samples: "o.csv".into() });
+    check(json!({"along": along, "from": {"samples": "o.csv"}}), &cycles);
 }
 
 #[test]

@@ -54,7 +54,7 @@ fn cycles_and_curves_start_from_them() {
     let control = Control::unobserved(&stop);
     for (file, label) in [("hopf.json", "HB1"), ("cycles.json", "HB1"), ("cycles.json", "AT1")] {
         let mut request = CyclesRequest::new(Interval::new("v", 8.0, 9.0));
-        request.from = Some(point(file, label));
+        request.from = Some(point(file, label).into());
         let result = request.validate().unwrap().run(&control).unwrap();
         assert!(result.points.len() > 5, "{file}:{label}");
     }

@@ -1,7 +1,7 @@
-//! `kingpin cycles`: limit cycles from the Hopf points of an interval, or from a labelled point of an earlier result.
+//! `kingpin cycles`: limit cycles from the Hopf points of an interval, a labelled point of an earlier result or samples of an orbit.
 
 use crate::wheel_options::{WheelOptions, parameter_help};
-use arclength_analysis::{Interval, PointReference, Values};
+use arclength_analysis::{CycleSource, Interval, Values};
 use clap::Args;
 use kingpin_analysis::cycles::CyclesRequest;
 use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
@@ -9,7 +9,7 @@ use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, Ste
 const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
          kingpin cycles --from cycles.json:AT3 --along r=1:inf";
 
-/// Limit cycles along a parameter, from Hopf points or from a labelled point of an earlier result
+/// Limit cycles along a parameter, from Hopf points, a labelled point of an earlier result or samples of an orbit
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub struct Cycles {
@@ -21,9 +21,11 @@ pub struct Cycles {
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
 
-    /// Start from a labelled point of a file that `hopf`, `cycles` or `locus` wrote, with its wheel
-    #[arg(long, value_name = "FILE.json:LABEL", conflicts_with = "wheel")]
-    from: Option<PointReference>,
+    /// Start from a labelled point of a file that `hopf`, `cycles` or `locus` wrote, with its wheel; or from samples of an
+    /// orbit of the wheel over one period: a line of names, among them t and all states, and rows of which the last repeats
+    /// the first
+    #[arg(long, value_name = "FILE.json:LABEL|FILE.csv")]
+    from: Option<CycleSource>,
 
     /// At a period doubling or a branch point follow the branch of the point itself, not the one that leaves there
     #[arg(long, requires = "from")]

@@ -60,8 +60,11 @@ impl<E: AnalysisError> From<E> for Failure {
     }
 }
 
-/// The option by which a field of a request is given.
+/// The option by which a field of a request is given; the file of a model needs none.
 fn option(field: &str) -> String {
+    if field == "model" {
+        return "MODEL.ode".to_owned();
+    }
     format!("--{}", field.replace('_', "-"))
 }
 

@@ -2,11 +2,14 @@
 
 use super::result::CyclesResult;
 use crate::branch::Origin;
+use crate::cycle_source::CycleSource;
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::labels::kind;
 use crate::model::ChosenModel;
+use crate::model_request::{ModelRequest, ModelSource};
 use crate::monitor::{CycleMonitor, Monitored};
+use crate::orbit_file::read_orbit;
 use crate::point_reference::PointReference;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
@@ -18,17 +21,22 @@ use arclength::equilibrium::SpecialPoint;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
-/// A branch of limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result.
+/// A branch of limit cycles along a parameter, from a Hopf point, a cycle or a time history of an earlier result, or from samples
+/// of an orbit.
 ///
 /// From a Hopf point (HB) the cycles that are born there are followed, from a period doubling (PD) the doubled ones, from a
-/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, and from the end (END) of a
-/// time history the cycle on which it has settled.
+/// branch point of cycles (BPC) the other branch, from any other cycle the branch through it, from the end (END) of a
+/// time history the cycle on which it has settled, and from samples of an orbit the cycle nearest to them, stable or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CyclesRequest {
-    /// The labelled point, with its model and parameters.
-    pub from: PointReference,
-    /// Values of parameters in place of those of the point.
+    /// The labelled point, with its model and parameters, or samples of an orbit.
+    pub from: CycleSource,
+    /// The model of which samples are an orbit; a labelled point has its own.
+    #[serde(default)]
+    pub model: Option<ModelSource>,
+    /// Values of parameters in place of those of the point or of the model.
     #[serde(default)]
     pub set: NamedNumbers,
     /// Parameter and its interval.
@@ -50,6 +58,14 @@ pub struct CyclesRequest {
     pub mesh: Mesh,
 }
 
+/// What a branch starts from, with its model.
+struct Opened {
+    chosen: ChosenModel,
+    start: CycleStart,
+    origin: Origin,
+    warnings: Vec<String>,
+}
+
 /// A request that makes sense, with what the branch starts from.
 #[derive(Clone, Debug)]
 pub struct CyclesAnalysis {
@@ -67,9 +83,10 @@ pub struct CyclesAnalysis {
 
 impl CyclesRequest {
     /// A request with the default of everything else.
-    pub fn new(from: PointReference, along: Interval) -> Self {
+    pub fn new(from: impl Into<CycleSource>, along: Interval) -> Self {
         Self {
-            from,
+            from: from.into(),
+            model: None,
             set: NamedNumbers::default(),
             along,
             at: Vec::new(),
@@ -80,20 +97,76 @@ impl CyclesRequest {
         }
     }
 
-    /// Reads the labelled point and checks every field.
+    /// Reads what the branch starts from and checks every field.
     ///
     /// # Errors
-    /// What is wrong with the point or a field; a time history that has not settled on a cycle.
+    /// What is wrong with the point, the samples, the model or a field; a time history that has not settled on a cycle.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
-        let point = LabelledPoint::read(&self.from)?;
-        let mut chosen = point.chosen.clone();
+        let Opened { chosen, start, origin, warnings } = match (&self.from, &self.model) {
+            (CycleSource::Point(reference), None) => self.open_point(reference)?,
+            (CycleSource::Samples { samples }, Some(model)) => self.open_samples(samples, model)?,
+            (CycleSource::Point(reference), Some(_)) => {
+                let given = format!("with {}:{}", reference.path.display(), reference.label);
+                let allowed =
+                    "a labelled point without a model, or a model with samples of an orbit, FILE.csv";
+                return Err(Error::invalid(
+                    &["model"],
+                    given,
+                    "the labelled point has its own model",
+                    allowed,
+                ));
+            }
+            (CycleSource::Samples { samples }, None) => {
+                let given = format!("missing beside {}", samples.display());
+                let allowed = "the file of the model to which the orbit belongs";
+                return Err(Error::invalid(&["model"], given, "samples of an orbit have no model", allowed));
+            }
+        };
+        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_cycles(&chosen)?)));
+        Ok(CyclesAnalysis {
+            monitors: monitors.collect::<Result<_, Error>>()?,
+            start,
+            origin,
+            warnings,
+            active: chosen.along(&["along"], &self.along)?,
+            chosen,
+            along: self.along.clone(),
+            at: self.at.clone(),
+            steps: self.steps,
+            mesh: self.mesh,
+        })
+    }
+
+    /// The model with the parameters that are set, which must suit the interval.
+    fn change(&self, mut chosen: ChosenModel, start: &str) -> Result<ChosenModel, Error> {
         chosen.set(&self.set)?;
-        let active = chosen.along(&["along"], &self.along)?;
-        chosen.starts_within(&["along"], &self.along, &point.label)?;
+        chosen.along(&["along"], &self.along)?;
+        chosen.starts_within(&["along"], &self.along, start)?;
         self.along.check_values(&self.at)?;
-        let (start, how) = self.start(&point, &chosen.parameters)?;
+        Ok(chosen)
+    }
+
+    /// Samples of an orbit of a model.
+    fn open_samples(&self, samples: &Path, model: &ModelSource) -> Result<Opened, Error> {
+        let opened = ModelRequest::new(model.clone()).open()?;
+        let name = samples.file_name().unwrap_or_default().to_string_lossy();
+        let chosen = self.change(opened.chosen, &name)?;
+        let orbit = read_orbit(samples, chosen.model.states())?;
+        Ok(Opened {
+            chosen,
+            start: CycleStart::Orbit(orbit),
+            origin: Origin { label: None, how: format!("the orbit in {name}") },
+            warnings: opened.warnings,
+        })
+    }
+
+    /// A labelled point with its model.
+    fn open_point(&self, reference: &PointReference) -> Result<Opened, Error> {
+        let point = LabelledPoint::read(reference)?;
+        let chosen = self.change(point.chosen.clone(), &point.label)?;
+        let (start, how) = self.start(reference, &point, &chosen.parameters)?;
         let itself =
             matches!(start, CycleStart::Orbit(_)) && matches!(point.solution, LabelledSolution::Cycle { .. });
         let warnings = (itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC")).then(|| {
@@ -102,23 +175,17 @@ impl CyclesRequest {
                 point.label
             )
         });
-        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_cycles(&chosen)?)));
-        Ok(CyclesAnalysis {
-            monitors: monitors.collect::<Result<_, Error>>()?,
-            start,
-            origin: Origin::labelled(&point.label, how),
-            warnings: warnings.into_iter().collect(),
-            chosen,
-            active,
-            along: self.along.clone(),
-            at: self.at.clone(),
-            steps: self.steps,
-            mesh: self.mesh,
-        })
+        let origin = Origin::labelled(&point.label, how);
+        Ok(Opened { chosen, start, origin, warnings: warnings.into_iter().collect() })
     }
 
-    /// What the branch starts from, in words too.
-    fn start(&self, point: &LabelledPoint, parameters: &[f64]) -> Result<(CycleStart, &'static str), Error> {
+    /// What the branch starts from at a labelled point, in words too.
+    fn start(
+        &self,
+        reference: &PointReference,
+        point: &LabelledPoint,
+        parameters: &[f64],
+    ) -> Result<(CycleStart, &'static str), Error> {
         match &point.solution {
             LabelledSolution::Cycle { orbit, branching } => Ok(match branching {
                 // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
@@ -145,14 +212,14 @@ impl CyclesRequest {
                 Ok((CycleStart::Orbit(orbit), "the cycle on which the time history has settled"))
             }
             LabelledSolution::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
-                Err(self.from.failure(format!(
+                Err(reference.failure(format!(
                     "no cycles can be started at {}: it is degenerate and only bracketed, either because several pairs of \
                      eigenvalues cross there together or because a pair does not cross with a speed other than zero; start \
                      at a regular Hopf point or from the end (END) of a time history on a cycle",
                     point.label
                 )))
             }
-            LabelledSolution::Equilibrium(_) => Err(self.from.failure(format!(
+            LabelledSolution::Equilibrium(_) => Err(reference.failure(format!(
                 "no cycles start at {}; allowed: Hopf points (HB), cycles, and the end (END) of a time history on a cycle",
                 point.label
             ))),

@@ -1,9 +1,11 @@
 //! A curve of special cycles in two parameters, of any model.
 
+use super::quantities::Quantities;
 use crate::branch::{Origin, pairs, parameters, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::labels::{self, is_bifurcation};
+use crate::monitor::{monitored, named as named_monitors};
 use crate::picture::{self, Curve};
 use crate::unlocated::UnlocatedChangeResult;
 use crate::varying_parameter::VaryingParameter;
@@ -50,6 +52,9 @@ pub struct CycleCurvePoint {
     pub location_error: Option<[f64; 2]>,
     /// Test functions by the label of the point at which each changes its sign.
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
     /// The cycle itself, where a computation can start from it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub orbit: Option<Orbit>,
@@ -79,22 +84,24 @@ pub struct CycleCurve {
 
 impl CycleCurve {
     /// The result of a curve, with why it ends at its first and at its last point; `named` gives a state by name.
-    pub fn new(
+    pub fn new<'a>(
         kind: Option<SpecialKind>,
-        plane: [VaryingParameter; 2],
+        quantities: impl Into<Quantities<'a>>,
         from: Origin,
         points: Vec<CycleLocusPoint>,
         stops: &[Option<Stop<CycleLocusEnd>>; 2],
         unlocated: &[Unlocated],
         named: impl Fn(&[f64]) -> NamedNumbers,
     ) -> Self {
+        let Quantities { plane, monitors } = quantities.into();
         let count = points.len();
         let points: Vec<CycleCurvePoint> = (0..)
             .zip(points)
             .map(|(index, point)| {
                 let label =
                     point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count));
-                CycleCurvePoint::new(point, label, &named)
+                let monitors = named_monitors(monitors, &point.monitors);
+                CycleCurvePoint { monitors, ..CycleCurvePoint::new(point, label, &named) }
             })
             .collect();
         let last = |point: Option<&CycleCurvePoint>| {
@@ -105,8 +112,8 @@ impl CycleCurve {
             NamedNumbers(values.unwrap_or_default())
         };
         let ends = [
-            End::of_either(stops[0].as_ref(), &plane, last(points.first())),
-            End::of_either(stops[1].as_ref(), &plane, last(points.last())),
+            End::monitored(stops[0].as_ref(), &plane, monitors, last(points.first())),
+            End::monitored(stops[1].as_ref(), &plane, monitors, last(points.last())),
         ];
         let unlocated = unlocated.iter().map(UnlocatedChangeResult::from).collect();
         Self { kind, held: NamedNumbers::default(), plane, from, ends, unlocated, points }
@@ -181,13 +188,17 @@ impl CycleCurve {
         let torus = self.kind == Some(SpecialKind::Torus);
         let argument = ["argument"].into_iter().filter(|_| torus);
         let headings = ["label", &one, &two, &period, "coefficient"].into_iter().chain(argument);
-        let mut table = Table::new(headings.chain(["error", ""]));
+        let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
+        let headings = headings.chain(["error"]).chain(monitors.iter().copied());
+        let mut table = Table::new(headings.chain([""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into()];
             cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
             cells.extend([Cell::Digits(point.period, DIGITS), point.coefficient.into()]);
             cells.extend(torus.then(|| Cell::from(point.argument)));
-            cells.extend([Cell::Digits(point.error_estimate, 2), point.remark().into()]);
+            cells.push(Cell::Digits(point.error_estimate, 2));
+            cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
+            cells.push(point.remark().into());
             table.row(cells);
         }
         table.write(out)
@@ -216,6 +227,7 @@ impl CycleCurve {
         columns
             .complex_numbers("multiplier", self.states().len(), points().map(|point| &point.multipliers))
             .named_numbers("test", points().map(|point| &point.tests))
+            .named_numbers("monitor", points().map(|point| &point.monitors))
     }
 
     /// Its picture, with the labels of both axes and how values are drawn on them.
@@ -270,6 +282,7 @@ impl CycleCurvePoint {
             coefficient: point.coefficient,
             location_error: point.location_error,
             tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            monitors: NamedNumbers::default(),
             orbit: label.as_ref().map(|_| point.orbit),
             label,
         }

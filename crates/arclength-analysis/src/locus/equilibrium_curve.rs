@@ -1,9 +1,11 @@
 //! A curve of special equilibria in two parameters, of any model.
 
+use super::quantities::Quantities;
 use crate::branch::{Origin, pairs, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::labels;
+use crate::monitor::{monitored, named as named_monitors};
 use crate::normal_form;
 use crate::picture::{self, Curve};
 use crate::unlocated::UnlocatedChangeResult;
@@ -40,6 +42,9 @@ pub struct EquilibriumCurvePoint {
     pub label: Option<String>,
     /// Test functions by the label of the point at which each changes its sign.
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
     /// What is known about a point of codimension two.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub special: Option<CodimensionTwoPoint>,
@@ -66,15 +71,16 @@ pub struct EquilibriumCurve {
 
 impl EquilibriumCurve {
     /// The result of a curve, with why it ends at its first and at its last point; `named` gives a state by name.
-    pub fn new(
+    pub fn new<'a>(
         kind: SpecialKind,
-        plane: [VaryingParameter; 2],
+        quantities: impl Into<Quantities<'a>>,
         from: Origin,
         points: &[LocusPoint],
         stops: &[Option<Stop<Infallible>>; 2],
         unlocated: &[Unlocated],
         named: impl Fn(&[f64]) -> NamedNumbers,
     ) -> Self {
+        let Quantities { plane, monitors } = quantities.into();
         let count = points.len();
         let point = |(index, point): (usize, &LocusPoint)| EquilibriumCurvePoint {
             values: point.values,
@@ -84,6 +90,7 @@ impl EquilibriumCurve {
             first_lyapunov: point.first_lyapunov,
             label: point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count)),
             tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
+            monitors: named_monitors(monitors, &point.monitors),
             special: point.special.as_deref().cloned(),
         };
         let points: Vec<EquilibriumCurvePoint> = points.iter().enumerate().map(point).collect();
@@ -95,8 +102,8 @@ impl EquilibriumCurve {
             NamedNumbers(values.unwrap_or_default())
         };
         let ends = [
-            End::of_either(stops[0].as_ref(), &plane, last(points.first())),
-            End::of_either(stops[1].as_ref(), &plane, last(points.last())),
+            End::monitored(stops[0].as_ref(), &plane, monitors, last(points.first())),
+            End::monitored(stops[1].as_ref(), &plane, monitors, last(points.last())),
         ];
         let unlocated = unlocated.iter().map(UnlocatedChangeResult::from).collect();
         Self { kind, plane, from, ends, unlocated, points }
@@ -158,8 +165,9 @@ impl EquilibriumCurve {
         let frequency = self.plane[0].heading_beside("frequency", "rad/s");
         let of_hopf = [frequency.as_str(), "l1"].into_iter().filter(|_| hopf);
         let states = self.states().into_iter().take(SHOWN_STATES);
-        let mut table =
-            Table::new(["label", &one, &two].into_iter().chain(states).chain(of_hopf).chain([""]));
+        let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
+        let headings = ["label", &one, &two].into_iter().chain(states).chain(of_hopf);
+        let mut table = Table::new(headings.chain(monitors.iter().copied()).chain([""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into()];
             cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
@@ -167,6 +175,7 @@ impl EquilibriumCurve {
             if hopf {
                 cells.extend([point.frequency, point.first_lyapunov].map(Cell::from));
             }
+            cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
             cells
                 .push(point.special.as_ref().map(normal_form::of_codimension_two).unwrap_or_default().into());
             table.row(cells);
@@ -193,6 +202,7 @@ impl EquilibriumCurve {
         columns
             .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))
             .named_numbers("test", points().map(|point| &point.tests))
+            .named_numbers("monitor", points().map(|point| &point.monitors))
     }
 
     /// Its picture, with the labels of both axes and how values are drawn on them.

@@ -1,6 +1,7 @@
 //! A curve of special cycles of a model as a result.
 
 use super::cycle_curve::CycleCurve;
+use super::quantities::Quantities;
 use crate::branch::{Origin, parameters};
 use crate::interval::Interval;
 use crate::model::ChosenModel;
@@ -29,14 +30,20 @@ impl CycleLocusResult {
     /// Schema of the result file.
     pub const SCHEMA: &'static str = "arclength.cycle_locus";
 
-    /// The result of a curve.
-    pub fn new(chosen: &ChosenModel, plane: [&Interval; 2], from: Origin, branch: CycleLocusBranch) -> Self {
+    /// The result of a curve, with the names of its monitors.
+    pub fn new(
+        chosen: &ChosenModel,
+        plane: [&Interval; 2],
+        from: Origin,
+        monitors: &[String],
+        branch: CycleLocusBranch,
+    ) -> Self {
         Self {
             parameters: chosen.named_parameters(&branch.active),
             model: chosen.stored.clone(),
             curve: CycleCurve::new(
                 branch.kind,
-                plane.map(VaryingParameter::from),
+                Quantities { plane: plane.map(VaryingParameter::from), monitors },
                 from,
                 branch.points,
                 &branch.stops,

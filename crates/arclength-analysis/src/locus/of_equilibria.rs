@@ -1,6 +1,7 @@
 //! A curve of special equilibria of a model as a result.
 
 use super::equilibrium_curve::EquilibriumCurve;
+use super::quantities::Quantities;
 use crate::branch::{Origin, parameters};
 use crate::interval::Interval;
 use crate::model::ChosenModel;
@@ -30,11 +31,12 @@ impl EquilibriumLocusResult {
     /// Schema of the result file.
     pub const SCHEMA: &'static str = "arclength.locus";
 
-    /// The result of a curve.
+    /// The result of a curve, with the names of its monitors.
     pub fn new(
         chosen: &ChosenModel,
         plane: [&Interval; 2],
         from: Origin,
+        monitors: &[String],
         branch: &EquilibriumLocusBranch,
     ) -> Self {
         Self {
@@ -42,7 +44,7 @@ impl EquilibriumLocusResult {
             model: chosen.stored.clone(),
             curve: EquilibriumCurve::new(
                 branch.kind.unwrap_or(SpecialKind::Fold),
-                plane.map(VaryingParameter::from),
+                Quantities { plane: plane.map(VaryingParameter::from), monitors },
                 from,
                 &branch.points,
                 &branch.stops,

@@ -7,16 +7,17 @@ use crate::branch::Origin;
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::labels::kind;
-use crate::monitor::Monitored;
+use crate::monitor::{CycleMonitor, Monitored};
 use crate::point_reference::PointReference;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
-use arclength::branch::SpecialKind;
+use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
 use arclength::control::Control;
 use arclength::cycle::Orbit;
 use arclength::equilibrium::{BranchPoint, FoldPoint, HopfPoint, SpecialPoint, equilibrium_settings};
-use arclength::locus::{CycleLocus, EquilibriumLocus, Held};
+use arclength::locus::{CycleLocus, CycleLocusPoint, EquilibriumLocus, Held, LocusPoint};
+use arclength_ode::Quantity;
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -38,6 +39,9 @@ pub struct LocusRequest {
     /// What keeps its value along a curve of any cycles: its first value, or the one where the curve starts.
     #[serde(default)]
     pub hold: Option<Monitored>,
+    /// What is recorded along the curve.
+    #[serde(default)]
+    pub monitors: Vec<Monitored>,
     /// How steps are taken.
     #[serde(flatten)]
     pub steps: Steps,
@@ -53,10 +57,19 @@ pub struct LocusAnalysis {
     start: Start,
     /// Names of the parameters as the model writes them.
     names: [String; 2],
+    active: [usize; 2],
     plane: [Interval; 2],
     at: Vec<f64>,
+    monitors: Monitors,
     steps: Steps,
     mesh: Mesh,
+}
+
+/// What is recorded along the curve; one of the lists is empty.
+#[derive(Clone, Debug, Default)]
+struct Monitors {
+    on_equilibria: Vec<(Monitored, Quantity)>,
+    on_cycles: Vec<(Monitored, CycleMonitor)>,
 }
 
 /// What the curve consists of, and the point at which it starts.
@@ -72,7 +85,15 @@ enum Start {
 impl LocusRequest {
     /// A request with the default of everything else.
     pub fn new(from: PointReference, plane: [Interval; 2]) -> Self {
-        Self { from, plane, at: Vec::new(), hold: None, steps: Steps::default(), mesh: Mesh::default() }
+        Self {
+            from,
+            plane,
+            at: Vec::new(),
+            hold: None,
+            monitors: Vec::new(),
+            steps: Steps::default(),
+            mesh: Mesh::default(),
+        }
     }
 
     /// Reads the labelled point and checks every field.
@@ -106,7 +127,17 @@ impl LocusRequest {
                 point.label
             ))
         })?;
+        let mut monitors = Monitors::default();
+        for asked in &self.monitors {
+            if let Start::Cycle(..) | Start::Held(..) = start {
+                monitors.on_cycles.push((asked.clone(), asked.on_cycles(chosen)?));
+            } else {
+                monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(chosen)?));
+            }
+        }
         Ok(LocusAnalysis {
+            monitors,
+            active,
             names: active.map(|index| chosen.model.parameters()[index].clone()),
             point,
             start,
@@ -209,7 +240,13 @@ impl LocusAnalysis {
             }
         };
         let [first, second] = &self.plane;
-        let branch = curve
+        let monitors = self.monitors.on_equilibria.iter().map(|(asked, quantity)| {
+            let value =
+                |point: &LocusPoint| Some(quantity.value(&point.state, &self.parameters(point.values), &[]));
+            Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
+        });
+        let branch = monitors
+            .fold(curve, EquilibriumLocus::monitor)
             .along(&self.names[0], first.start..=first.end)
             .and(&self.names[1], second.start..=second.end)
             .at(&self.at)
@@ -217,7 +254,13 @@ impl LocusAnalysis {
             .observer(|point| self.tell(control, point.values))
             .run()?;
         let origin = Origin::labelled(&self.point.label, how);
-        let curve = EquilibriumLocusResult::new(&self.point.chosen, [first, second], origin, &branch);
+        let curve = EquilibriumLocusResult::new(
+            &self.point.chosen,
+            [first, second],
+            origin,
+            &names(&self.monitors.on_equilibria),
+            &branch,
+        );
         Ok(LocusResult::Equilibria(curve))
     }
 
@@ -228,7 +271,13 @@ impl LocusAnalysis {
         control: &Control<'_>,
     ) -> Result<CycleLocusResult, Error> {
         let [first, second] = &self.plane;
-        let branch = curve
+        let monitors = self.monitors.on_cycles.iter().map(|(asked, monitor)| {
+            let value =
+                |point: &CycleLocusPoint| Some(monitor.value(&point.orbit, &self.parameters(point.values)));
+            Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
+        });
+        let branch = monitors
+            .fold(curve, CycleLocus::monitor)
             .along(&self.names[0], first.start..=first.end)
             .and(&self.names[1], second.start..=second.end)
             .at(&self.at)
@@ -237,7 +286,15 @@ impl LocusAnalysis {
             .observer(|point| self.tell(control, point.values))
             .run()?;
         let origin = Origin::labelled(&self.point.label, how);
-        Ok(CycleLocusResult::new(&self.point.chosen, [first, second], origin, branch))
+        let names = names(&self.monitors.on_cycles);
+        Ok(CycleLocusResult::new(&self.point.chosen, [first, second], origin, &names, branch))
+    }
+
+    /// All parameters at a point of the curve.
+    fn parameters(&self, values: [f64; 2]) -> Vec<f64> {
+        let mut parameters = self.point.chosen.parameters.clone();
+        self.active.iter().zip(values).for_each(|(index, value)| parameters[*index] = value);
+        parameters
     }
 
     fn tell(&self, control: &Control<'_>, values: [f64; 2]) -> ControlFlow<()> {
@@ -246,4 +303,8 @@ impl LocusAnalysis {
         control.at(&format!("curve, {} = {one}, {} = {two}", first.key, second.key));
         control.flow()
     }
+}
+
+fn names<M>(monitors: &[(Monitored, M)]) -> Vec<String> {
+    monitors.iter().map(|(asked, _)| asked.expression.clone()).collect()
 }

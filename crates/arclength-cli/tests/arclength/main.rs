@@ -3,6 +3,7 @@
 mod found_by_users;
 mod held;
 mod monitors;
+mod orbits;
 mod restarts;
 mod switching;
 
@@ -27,6 +28,17 @@ impl Folder {
         let gallery = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../gallery/models");
         std::fs::copy(gallery.join(model), folder.0.path().join(model)).unwrap();
         folder
+    }
+
+    /// A folder with a model of this text.
+    fn with_text(model: &str, text: &str) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        folder.write(model, text);
+        folder
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.0.path().join(name), text).unwrap();
     }
 
     fn run(&self, arguments: &str) -> Run {

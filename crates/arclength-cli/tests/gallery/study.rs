@@ -153,7 +153,8 @@ impl Study {
                 .unwrap()
         };
         let branch = run();
-        let report = CycleLocusResult::new(&self.chosen, [&first, &second], Origin::initial_state(), run());
+        let report =
+            CycleLocusResult::new(&self.chosen, [&first, &second], Origin::initial_state(), &[], run());
         self.curves.push(ResultFile::CycleLocus(report));
         branch
     }
@@ -180,8 +181,13 @@ impl Study {
             .settings(Settings { largest_parameter_change: FINE, ..equilibrium_settings() })
             .run()
             .unwrap();
-        let report =
-            EquilibriumLocusResult::new(&self.chosen, [&first, &second], Origin::initial_state(), &branch);
+        let report = EquilibriumLocusResult::new(
+            &self.chosen,
+            [&first, &second],
+            Origin::initial_state(),
+            &[],
+            &branch,
+        );
         self.curves.push(ResultFile::Locus(report));
         branch
     }

@@ -1,4 +1,4 @@
-//! Limit cycles from the Hopf points of an interval, or from a labelled point of an earlier result.
+//! Limit cycles from the Hopf points of an interval, from a labelled point of an earlier result or from samples of an orbit.
 
 mod followed;
 mod picture;

@@ -11,16 +11,18 @@ use arclength::continuation::Settings;
 use arclength::cycle::{Branching, CyclePoint, CycleStart, Orbit};
 use arclength::equilibrium::equilibrium_settings;
 use arclength_analysis::labels::kind;
-use arclength_analysis::{Control, Interval, Mesh, PointReference, Steps};
+use arclength_analysis::{Control, CycleSource, Interval, Mesh, PointReference, Steps, read_orbit};
 use kingpin::branches::{Along, CycleOptions};
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 
-/// Limit cycles along a parameter, from the Hopf points of the interval or from a labelled point of an earlier result.
+/// Limit cycles along a parameter, from the Hopf points of the interval, from a labelled point of an earlier result or from samples
+/// of an orbit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CyclesRequest {
-    /// Which wheel; with `from` the parameters that are set replace those of the point.
+    /// Which wheel; at a labelled point the parameters that are set replace those of the point.
     #[serde(flatten)]
     pub wheel: WheelRequest,
     /// Parameter and its interval; r may reach infinity.
@@ -28,9 +30,9 @@ pub struct CyclesRequest {
     /// Values of the parameter at which cycles are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
-    /// Labelled point of an earlier result, with its wheel.
+    /// Labelled point of an earlier result, with its wheel, or samples of an orbit of the wheel.
     #[serde(default)]
-    pub from: Option<PointReference>,
+    pub from: Option<CycleSource>,
     /// Whether at a period doubling or a branch point the branch of the point itself is followed, not the one that leaves
     /// there.
     #[serde(default)]
@@ -79,10 +81,10 @@ impl CyclesRequest {
         }
     }
 
-    /// Reads the wheel or the labelled point and checks every field.
+    /// Reads the wheel, the labelled point or the samples and checks every field.
     ///
     /// # Errors
-    /// What is wrong with the wheel, the point or a field.
+    /// What is wrong with the wheel, the point, the samples or a field.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
@@ -90,7 +92,8 @@ impl CyclesRequest {
         self.along.check_values(&self.at)?;
         let (wheel, start) = match &self.from {
             None => (self.wheel.read()?, Start::HopfPoints),
-            Some(reference) => self.start(reference, along)?,
+            Some(CycleSource::Point(reference)) => self.start(reference, along)?,
+            Some(CycleSource::Samples { samples }) => self.start_at_samples(samples, along)?,
         };
         let options = CycleOptions {
             at: self.at.clone(),
@@ -104,15 +107,12 @@ impl CyclesRequest {
     fn start(&self, reference: &PointReference, along: Along) -> Result<(Wheel, Start), Error> {
         if let Some(file) = &self.wheel.wheel {
             let given = file.display().to_string();
-            return Err(Error::invalid(&["wheel"], given, "the labelled point has a wheel", "wheel or from"));
+            let problem = "the labelled point has its own wheel";
+            return Err(Error::invalid(&["wheel", "from"], given, problem, "one of them"));
         }
         let LabelledPoint { wheel, solution } = LabelledPoint::read(reference)?;
         let wheel = self.wheel.change(wheel)?;
-        let value = wheel.get(along.key());
-        if !along.contains(value) {
-            let (start, end) = along.ends();
-            return Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into());
-        }
+        check_within(&wheel, along)?;
         let start = match solution {
             LabelledSolution::Hopf(_) => Start::HopfPoint { label: reference.label.clone() },
             LabelledSolution::Cycle { orbit, branching } => {
@@ -121,6 +121,15 @@ impl CyclesRequest {
             }
         };
         Ok((wheel, start))
+    }
+
+    /// What starts at samples of an orbit.
+    fn start_at_samples(&self, samples: &Path, along: Along) -> Result<(Wheel, Start), Error> {
+        let wheel = self.wheel.read()?;
+        check_within(&wheel, along)?;
+        let orbit = read_orbit(samples, wheel.free_states())?;
+        let name = samples.file_name().unwrap_or_default().to_string_lossy();
+        Ok((wheel, Start::Cycle { origin: format!("the orbit in {name}"), start: CycleStart::Orbit(orbit) }))
     }
 
     /// What starts at a cycle: the branch that bifurcates there, or the one through it.
@@ -145,6 +154,16 @@ impl CyclesRequest {
         };
         Start::Cycle { origin: format!("{label}, {how}"), start: CycleStart::Branching(branching) }
     }
+}
+
+/// That the interval contains the value of the wheel.
+fn check_within(wheel: &Wheel, along: Along) -> Result<(), Error> {
+    let value = wheel.get(along.key());
+    if along.contains(value) {
+        return Ok(());
+    }
+    let (start, end) = along.ends();
+    Err(KingpinError::OutsideInterval { key: along.key(), value, start, end }.into())
 }
 
 impl CyclesAnalysis {

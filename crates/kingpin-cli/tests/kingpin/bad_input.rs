@@ -171,6 +171,7 @@ fn labels_that_cannot_be_started_from() {
     fails_in(&folder, "cycles --from hopf.json:HB7 --along v=1:9", 2, &["`HB7`", "the labels are: HB1"]);
     fails_in(&folder, "cycles --from hopf.json:HB1 --along v=1:5", 2, &["outside 1:5"]);
     fails_in(&folder, "cycles --from hopf.json:HB1 --along v=1:9 --wheel w.toml", 2, &["--wheel", "--from"]);
+    fails_in(&folder, "cycles --from orbit.csv --along v=1:9", 2, &["orbit.csv", "cannot be read"]);
     fails_in(&folder, "cycles --from hopf.json:HB1 --along v=1:9 -s l=0.1", 1, &["HB1 is no Hopf point"]);
     folder.succeed("steady -q -o steady.json");
     fails_in(&folder, "cycles --from steady.json:HB1 --along v=1:9", 2, &["kingpin.hopf or kingpin.cycles"]);
