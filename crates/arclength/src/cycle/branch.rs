@@ -22,6 +22,8 @@ pub struct CyclePoint {
     pub min: Vec<f64>,
     /// Floquet multipliers, largest modulus first, the trivial one among them.
     pub multipliers: Vec<Complex64>,
+    /// Relative errors of the multipliers in the same order, measured on two meshes; empty where they were not.
+    pub multiplier_errors: Vec<f64>,
     /// Distance of the computed trivial multiplier from 1.
     pub trivial_multiplier_error: f64,
     /// Number of nontrivial multipliers outside the unit circle.
@@ -79,6 +81,7 @@ impl CyclePoint {
             max: inspection.ranges.iter().map(|range| range.largest).collect(),
             min: inspection.ranges.iter().map(|range| range.smallest).collect(),
             multipliers: inspection.floquet.multipliers(),
+            multiplier_errors: Vec::new(),
             trivial_multiplier_error: inspection.floquet.trivial_error,
             unstable_multipliers: outside,
             // At a bifurcation a multiplier is on the unit circle by definition.

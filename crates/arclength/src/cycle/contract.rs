@@ -17,6 +17,8 @@ use std::borrow::Cow;
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
 const MULTIPLIER_PART: f64 = 0.1;
+/// The two sides of Liouville's formula differ by this at most.
+const DEFECT: f64 = 1e-3;
 /// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time. Rounding sets an end
 /// to it, too.
 const FINEST: f64 = 1e-4;
@@ -40,6 +42,8 @@ const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
 /// Rate of change of the parameter, as part of its range, that may be rounding, and one below which a cycle may be a fold.
 const PARAMETER_ROUNDING: f64 = 1e-13;
 const NEARLY_FOLD: f64 = 1e-8;
+/// Logarithm of a multiplier beyond which it is far from one.
+const FAR_FROM_ONE: f64 = 10.0;
 /// Difference of the arguments of two pairs of multipliers.
 const DISTINCT: f64 = 1e-6;
 
@@ -93,12 +97,14 @@ impl Curve for CycleCurve<'_> {
     fn inspect(
         &mut self,
         unknown: &[f64],
-        _tangent: &[f64],
-        _orientation: f64,
+        tangent: &[f64],
+        orientation: f64,
     ) -> Result<CycleInspection, Error> {
         let floquet = floquet(&self.collocation, unknown, &self.collocation.problem.scales, &mut self.schur)?;
         let n = self.collocation.problem.dimension();
+        let turn_is_reversed = self.turn_is_reversed(tangent, orientation, &floquet);
         Ok(CycleInspection {
+            turn_is_reversed,
             error_estimate: self.error_estimate,
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
@@ -111,7 +117,11 @@ impl Curve for CycleCurve<'_> {
     fn resolves(&mut self, point: &CycleInspection) -> bool {
         let floquet = &point.floquet;
         let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
-        let error = if floquet.is_contradictory() { f64::INFINITY } else { floquet.trivial_error };
+        let error = if floquet.is_contradictory() {
+            f64::INFINITY
+        } else {
+            floquet.trivial_error.max(allowed * floquet.defect() / DEFECT)
+        };
         if error <= allowed {
             if error < MUCH_LESS * allowed {
                 self.refinement = (RELAXATION * self.refinement).min(1.0);
@@ -135,8 +145,11 @@ impl Curve for CycleCurve<'_> {
         let reading = match kind {
             // On the explosion of a canard the parameter may vary by its rounding only.
             SpecialKind::FoldOfCycles => {
-                return Some(Reading::exact(self.turn(&solution.tangent)).with_noise(PARAMETER_ROUNDING));
+                let turn = self.certain_turn(solution);
+                return Some(Reading::exact(turn).with_noise(PARAMETER_ROUNDING));
             }
+            // Where no multiplier is near one the sign of the determinant is rounding.
+            SpecialKind::BranchPointOfCycles if !floquet.comes_near_one(FAR_FROM_ONE) => return None,
             SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
             SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
             SpecialKind::Torus => {
@@ -199,8 +212,14 @@ impl Curve for CycleCurve<'_> {
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         let rate = after.tangent[end] / self.period_scale;
         let sensitivity = (rate / self.turn(&after.tangent)).abs();
-        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
-            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodUnbounded { period, parameter })));
+        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance)
+            && let Some(beside) = self.slow_passage(&after.unknown)
+        {
+            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodUnbounded {
+                period,
+                parameter,
+                beside,
+            })));
         }
         if self.doubled
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)

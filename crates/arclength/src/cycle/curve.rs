@@ -4,22 +4,29 @@ use super::extrema::Range;
 use super::floquet::Floquet;
 use super::limit_cycle::LimitCycle;
 use super::sizes::{StateSizes, vanishing_point};
+use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
 use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::error_profile;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
-use crate::continuation::Settings;
+use crate::continuation::{Settings, Solution};
 use crate::linear::periodic_schur::PeriodicSchur;
 
 /// Samples for the difference of the halves of a doubled cycle.
 const HALF_SAMPLES: usize = 64;
+
+/// Rate of change of the parameter, as part of its range, above which its sign is certain, and one below which it is rounding.
+const CERTAIN_TURN: f64 = 1e-6;
+const ROUNDING_TURN: f64 = 1e-12;
 
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
 pub struct CycleInspection {
     /// Error estimate relative to the amplitudes.
     pub error_estimate: f64,
+    /// Whether the multipliers say that the parameter changes the other way than the tangent, whose last digit that is.
+    pub(super) turn_is_reversed: bool,
     /// Multipliers.
     pub floquet: Floquet,
     /// Largest and smallest value of each state.
@@ -65,6 +72,9 @@ pub struct CycleCurve<'a> {
     /// Factor of the tolerance that the multipliers ask for.
     pub(super) refinement: f64,
     pub(super) schur: Option<(usize, PeriodicSchur)>,
+    /// Sign of the rate of change of the parameter, the orientation and the parity of the number of multipliers above one,
+    /// multiplied: the same all along the curve.
+    relation: Option<f64>,
 }
 
 impl<'a> CycleCurve<'a> {
@@ -90,6 +100,7 @@ impl<'a> CycleCurve<'a> {
             error_estimate: f64::INFINITY,
             refinement: 1.0,
             schur: None,
+            relation: None,
         };
         curve.rescale(start);
         curve.collocation.set_reference(start);
@@ -113,9 +124,45 @@ impl<'a> CycleCurve<'a> {
         }
     }
 
+    /// The equilibrium beside which a cycle is slowest, if it makes periods grow without bound.
+    pub(super) fn slow_passage(&self, unknown: &[f64]) -> Option<SlowPassage> {
+        let problem = &self.collocation.problem;
+        let (states, scalars) = unknown.split_at(unknown.len() - 2);
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = scalars[1];
+        let passing = Passing {
+            field: problem.field,
+            parameters: &parameters,
+            active: (problem.active, self.parameter_scale),
+            states,
+            scales: &problem.scales,
+        };
+        passing.slow_passage()
+    }
+
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
     pub fn turn(&self, tangent: &[f64]) -> f64 {
         tangent.last().map_or(0.0, |rate| rate / self.parameter_scale)
+    }
+
+    /// Whether the rate of change of the parameter has the wrong sign. On the explosion of a canard it may be nothing but
+    /// rounding; its sign, which changes where a multiplier passes one or the orientation changes, is known from these.
+    pub(super) fn turn_is_reversed(&mut self, tangent: &[f64], orientation: f64, floquet: &Floquet) -> bool {
+        let turn = self.turn(tangent);
+        let relation = turn.signum() * orientation * floquet.parity_above_one();
+        if relation == 0.0 || floquet.is_contradictory() {
+            return false;
+        }
+        if turn.abs() > CERTAIN_TURN {
+            self.relation = Some(relation);
+        }
+        turn.abs() < ROUNDING_TURN && self.relation.is_some_and(|known| known != relation)
+    }
+
+    /// The rate of change of the parameter with the right sign.
+    pub(super) fn certain_turn(&self, solution: &Solution<CycleInspection>) -> f64 {
+        let turn = self.turn(&solution.tangent);
+        if solution.point.turn_is_reversed { -turn } else { turn }
     }
 
     /// Estimates the error of a cycle on the mesh as it is.

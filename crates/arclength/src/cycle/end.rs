@@ -1,7 +1,9 @@
 //! Why a branch of cycles ends, apart from the reasons that all curves share.
 
+use super::slow_passage::SlowPassage;
 use crate::branch::WithParameters;
 use crate::continuation::{Explanation, Reason, Wording};
+use crate::numbers::readable;
 use serde::{Deserialize, Serialize};
 
 /// The reason of its own for which a branch of cycles ends.
@@ -25,21 +27,29 @@ pub enum CycleEnd {
         /// Period of the single cycle there.
         period: f64,
     },
-    /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit.
+    /// The period grows without bound: the cycles approach a homoclinic or heteroclinic orbit, or a saddle-node is born on them.
     PeriodUnbounded {
         /// Period of the last cycle.
         period: f64,
         /// Parameter value of the last cycle.
         parameter: f64,
+        /// The equilibrium beside which the time is spent.
+        beside: SlowPassage,
     },
 }
 
 impl WithParameters for CycleEnd {
     fn with_parameters(mut self, convert: impl Fn(usize, f64) -> f64) -> Self {
         match &mut self {
-            Self::HopfPoint { parameter, .. }
-            | Self::PeriodDoubling { parameter, .. }
-            | Self::PeriodUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
+            Self::HopfPoint { parameter, .. } | Self::PeriodDoubling { parameter, .. } => {
+                *parameter = convert(0, *parameter)
+            }
+            Self::PeriodUnbounded { parameter, beside, .. } => {
+                *parameter = convert(0, *parameter);
+                if let SlowPassage::SaddleNode { parameter, .. } = beside {
+                    *parameter = convert(0, *parameter);
+                }
+            }
         }
         self
     }
@@ -64,11 +74,27 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
-            Self::PeriodUnbounded { period, parameter } => Explanation::of(format!(
-                "the period grows without bound ({} at {}): a homoclinic or heteroclinic orbit is near",
-                wording.time(*period),
-                wording.at(0, *parameter)
-            )),
+            Self::PeriodUnbounded { period, parameter, beside } => {
+                let list = |state: &[f64]| {
+                    state.iter().map(|value| readable(*value)).collect::<Vec<_>>().join(", ")
+                };
+                let near = match beside {
+                    SlowPassage::Saddle { state } => format!(
+                        "a homoclinic or heteroclinic orbit is near, to the saddle ({})",
+                        list(state)
+                    ),
+                    SlowPassage::SaddleNode { state, parameter } => format!(
+                        "a saddle-node ({}) is born on the cycle at {}",
+                        list(state),
+                        wording.at(0, *parameter)
+                    ),
+                };
+                Explanation::of(format!(
+                    "the period grows without bound ({} at {}): {near}",
+                    wording.time(*period),
+                    wording.at(0, *parameter)
+                ))
+            }
         }
     }
 }

@@ -20,6 +20,11 @@ const SMALLEST_LOGARITHM: f64 = -700.0;
 /// Logarithm of the product of two multipliers above which the test of torus bifurcations saturates.
 const SATURATION: f64 = 0.1;
 
+/// Integral of the divergence below which directions die out within a period, which no affordable mesh resolves.
+const DEAD: f64 = -30.0;
+/// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
+const CONTRADICTION: f64 = 0.05;
+
 /// Floquet multipliers of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Floquet {
@@ -29,6 +34,9 @@ pub struct Floquet {
     pub trivial: f64,
     /// How far the computed trivial multiplier, and with it the split, is from exact.
     pub trivial_error: f64,
+    /// The integral of the divergence of the field over the period: by Liouville's formula the logarithm of the product of all
+    /// multipliers.
+    pub divergence: f64,
 }
 
 impl Floquet {
@@ -96,9 +104,35 @@ impl Floquet {
         self.trivial_error.max(f64::EPSILON)
     }
 
-    /// Whether all multipliers are larger than the error and an odd number of them is negative. The product of all multipliers
-    /// is the determinant of a flow and positive (Liouville), so the mesh does not resolve them.
+    /// Whether a positive multiplier, or a pair with a positive real part, has a logarithm of its modulus below this.
+    pub(crate) fn comes_near_one(&self, logarithm: f64) -> bool {
+        self.nontrivial
+            .iter()
+            .any(|multiplier| multiplier.log_modulus.abs() < logarithm && multiplier.argument.cos() > 0.0)
+    }
+
+    /// Minus one for every positive multiplier above one, multiplied.
+    pub(crate) fn parity_above_one(&self) -> f64 {
+        let above = self
+            .nontrivial
+            .iter()
+            .filter(|multiplier| multiplier.argument == 0.0 && multiplier.log_modulus > 0.0);
+        if above.count() % 2 == 0 { 1.0 } else { -1.0 }
+    }
+
+    /// Difference between the sum of the logarithms of the multipliers and the integral of the divergence, which are equal
+    /// (Liouville); zero where directions that die out within a period make both meaningless on any mesh.
+    pub fn defect(&self) -> f64 {
+        let sum: f64 = self.nontrivial.iter().map(|multiplier| multiplier.log_modulus).sum();
+        if self.divergence < DEAD { 0.0 } else { (sum - self.divergence).abs() }
+    }
+
+    /// Whether all multipliers are larger than the error and an odd number of them is negative, or their product is not what
+    /// Liouville's formula says: that of a flow is positive and known, so the mesh does not resolve them.
     pub fn is_contradictory(&self) -> bool {
+        if self.defect() > CONTRADICTION {
+            return true;
+        }
         let floor = self.margin().ln();
         let negative =
             self.nontrivial.iter().filter(|multiplier| multiplier.is_real() && multiplier.argument != 0.0);
@@ -172,8 +206,12 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
         }
     }
     let trivial_error = (trivial - 1.0).abs().max(coupling);
+    let divergence = divergence(collocation, n);
     let nontrivial = if n == 1 {
         Vec::new()
+    } else if n == 2 {
+        // The formula gives the only one, however far from one it is.
+        vec![Multiplier { log_modulus: divergence, argument: 0.0 }]
     } else {
         if workspace.as_ref().is_none_or(|(count, _)| *count != intervals) {
             *workspace = Some((intervals, PeriodicSchur::new(n - 1, intervals)));
@@ -183,7 +221,21 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
             _ => return Err(Error::Eigenvalues { quantity: "Floquet multipliers" }),
         }
     };
-    Ok(Floquet { nontrivial, trivial, trivial_error })
+    Ok(Floquet { nontrivial, trivial, trivial_error, divergence })
+}
+
+/// The integral of the trace of the Jacobian over one period, from the derivatives of the last factorisation.
+fn divergence<P: BoundaryValueEquations>(collocation: &Collocation<P>, n: usize) -> f64 {
+    let columns = n + collocation.problem.scalars();
+    let degree = collocation.gauss().degree();
+    let blocks = collocation.derivatives().chunks_exact(n * columns);
+    let places = collocation.mesh().windows(2).flat_map(|pair| {
+        collocation.gauss().weights[..degree].iter().map(move |weight| weight * (pair[1] - pair[0]))
+    });
+    blocks
+        .zip(places)
+        .map(|(block, weight)| weight * (0..n).map(|index| block[index * (n + 1)]).sum::<f64>())
+        .sum()
 }
 
 fn length(vector: &[f64]) -> f64 {

@@ -2,6 +2,7 @@
 
 mod along_orbit;
 mod branch;
+mod confirmation;
 mod contract;
 pub(crate) mod curve;
 pub(crate) mod defining;
@@ -15,6 +16,7 @@ pub(crate) mod locating;
 pub(crate) mod normal_form;
 mod orbit;
 pub(crate) mod sizes;
+pub(crate) mod slow_passage;
 mod special;
 mod start;
 mod switching;
@@ -23,5 +25,6 @@ pub use crate::collocation::resolution::Resolution;
 pub use branch::{CycleBranch, CyclePoint};
 pub use end::CycleEnd;
 pub use orbit::Orbit;
+pub use slow_passage::SlowPassage;
 pub use start::{CycleProblem, CycleStart, Cycles};
 pub use switching::{BranchDirection, Branching};

@@ -3,6 +3,7 @@
 
 use super::curve::{CycleCurve, CycleInspection};
 use super::defining::Kind;
+use super::floquet::Floquet;
 use super::locating::{Located, converge};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
@@ -12,6 +13,7 @@ use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Event, Location};
 use crate::continuation::{Bracket, Solution, along};
 use crate::error::Error;
+use std::f64::consts::PI;
 
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
 const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
@@ -37,6 +39,9 @@ fn defining(kind: SpecialKind) -> Option<Kind> {
     }
 }
 
+/// Distance of the logarithm of a multiplier from that of a special cycle beyond which it is another one.
+const CRITICAL: f64 = 0.05;
+
 /// The special cycle of a kind between two solutions.
 ///
 /// # Errors
@@ -55,6 +60,14 @@ pub(super) fn locate(
         return Ok(Location::Nothing);
     }
     match newton(curve, defining, [before, after], rank)? {
+        // The defining system may have a solution where the mesh does not resolve the multipliers: they have to agree.
+        Some(located)
+            if !is_critical(&located.solution.point.floquet, defining)
+                && !crosses([before, after].map(|node| &node.point.floquet), defining)
+                && !(defining == Kind::Fold && is_extreme(&located.solution, [before, after])) =>
+        {
+            Ok(Location::Missed)
+        }
         Some(located) => Ok(Location::At(describe(curve, located, defining)?)),
         None if defining == Kind::BranchPoint
             && along(curve, before, &after.unknown) > curve.settings.shortest_jump =>
@@ -63,6 +76,43 @@ pub(super) fn locate(
         }
         None => Ok(Location::Missed),
     }
+}
+
+/// Whether a multiplier is where a special cycle of the kind has one.
+fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
+    let (argument, real) = match kind {
+        Kind::Fold | Kind::BranchPoint => (Some(0.0), true),
+        Kind::Doubling => (Some(PI), true),
+        Kind::Torus => (None, false),
+        Kind::Cycle => return true,
+    };
+    floquet.nontrivial.iter().any(|multiplier| {
+        let away = argument.map_or(0.0, |argument| (multiplier.argument.abs() - argument).abs());
+        // Next to a resonance two real ones may be a pair by rounding.
+        (multiplier.is_real() == real || away < CRITICAL) && multiplier.log_modulus.abs().max(away) < CRITICAL
+    })
+}
+
+/// Whether the parameter has an extreme value at a solution between two others.
+fn is_extreme(solution: &Node, ends: [&Node; 2]) -> bool {
+    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
+    let [one, other] = ends.map(|end| value(solution) - value(end));
+    one * other >= 0.0
+}
+
+/// Whether the multipliers at both ends are resolved and one of the kind has crossed the circle between them. It may do so within
+/// the last digits of the parameter, next to homoclinic orbits for instance.
+fn crosses(ends: [&Floquet; 2], kind: Kind) -> bool {
+    let outside = |floquet: &Floquet| {
+        let outside = floquet.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0);
+        let counted = outside.filter(|multiplier| match kind {
+            Kind::Fold | Kind::BranchPoint | Kind::Cycle => multiplier.argument == 0.0,
+            Kind::Doubling => multiplier.argument == PI,
+            Kind::Torus => !multiplier.is_real(),
+        });
+        counted.count()
+    };
+    ends.iter().all(|floquet| !floquet.is_contradictory()) && outside(ends[0]) != outside(ends[1])
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.
@@ -120,7 +170,7 @@ fn newton(
     let test = |curve: &mut CycleCurve<'_>, solution: &Node| {
         let point = &solution.point;
         match kind {
-            Kind::Fold => Some(curve.turn(&solution.tangent)),
+            Kind::Fold => Some(curve.certain_turn(solution)),
             Kind::Doubling => Some(point.doubling_test()),
             Kind::Torus => torus_test(point, rank),
             Kind::BranchPoint => branch_point_test(solution, sign),

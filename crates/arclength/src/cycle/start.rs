@@ -169,6 +169,7 @@ impl<'a> Cycles<'a> {
                 point(&solution, label)
             });
         asked.refine_ends(&mut branch);
+        asked.confirm(&mut branch, at);
         Ok(branch)
     }
 }

@@ -15,7 +15,7 @@ mod fold;
 pub(crate) mod hopf;
 pub(crate) mod locating;
 pub(crate) mod multilinear;
-mod newton;
+pub(crate) mod newton;
 pub(crate) mod problem;
 mod run;
 mod second_lyapunov;

@@ -17,6 +17,7 @@ use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
 use crate::cycle::normal_form::CriticalCycle;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
+use crate::cycle::slow_passage::{Passing, SlowPassage};
 use crate::cycle::{CycleEnd, Resolution};
 use crate::error::{CorrectionFailure, Error};
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -241,6 +242,24 @@ impl<'a> CycleLocusCurve<'a> {
         [0, 1].map(|index| solution.tangent[last + index] / self.system.parameter_scales[index])
     }
 
+    /// The equilibrium beside which a cycle is slowest, if it makes periods grow without bound.
+    fn slow_passage(&self, unknown: &[f64]) -> Option<SlowPassage> {
+        let (cycle, _) = split(unknown, self.states, self.kind());
+        let problem = &self.base.problem;
+        let (states, scalars) = cycle.split_at(cycle.len() - 3);
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = scalars[1];
+        parameters[self.second] = scalars[2];
+        let passing = Passing {
+            field: problem.field,
+            parameters: &parameters,
+            active: (problem.active, self.system.parameter_scales[0]),
+            states,
+            scales: &problem.scales,
+        };
+        passing.slow_passage()
+    }
+
     /// Whether the curve turns back between two solutions.
     fn turns_back(&self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> bool {
         let [one, other] = [before, after].map(|solution| self.parameter_speeds(solution));
@@ -451,11 +470,14 @@ impl Curve for CycleLocusCurve<'_> {
         let [one, other] =
             [0, 1].map(|index| after.tangent[last + index] / self.system.parameter_scales[index]);
         let sensitivity = (after.tangent[end] / period).abs() / one.hypot(other);
-        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance) {
+        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance)
+            && let Some(beside) = self.slow_passage(&after.unknown)
+        {
             let parameter = after.unknown[last];
             return Some(Ending::After(Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodUnbounded {
                 period,
                 parameter,
+                beside,
             }))));
         }
         // Next to the end both parameters depend on the amplitude through its square.

@@ -1,0 +1,217 @@
+//! A second witness for the cycles that are shown: each is solved for once more on meshes that are twice as fine.
+//!
+//! The estimate that adapts the mesh along a branch is a local one: it knows neither how errors are multiplied by the cycle's own
+//! sensitivity nor what the mesh does to the multipliers. Here period, extremes and multipliers of one cycle are compared between
+//! meshes, the parameter being the same, until they agree; the finest solution is the one that is told, with an error that was
+//! measured. What rounding leaves is measured too, by one more step of Newton's method.
+
+use super::branch::{CycleBranch, CyclePoint};
+use super::curve::CycleCurve;
+use super::floquet::Floquet;
+use super::start::Asked;
+use crate::branch::SpecialKind;
+use crate::collocation::equations::Collocation;
+use crate::continuation::{Curve, Settings, Stop, correct};
+use crate::linear::multiplier::Multiplier;
+
+/// Times that the intervals are halved at most.
+const MOST_HALVINGS: usize = 6;
+/// Halving goes on until period and extremes change by less than this, relative to themselves and to the amplitudes,
+const CHANGE: f64 = 1e-6;
+/// and the multipliers, as far as their logarithms are above `LOGARITHM`, by less than this part of themselves.
+const MULTIPLIER_CHANGE: f64 = 1e-3;
+const LOGARITHM: f64 = -18.0;
+/// Part of the change that is left as the error on the finer mesh, where it is not measured: polynomials of degree 3 leave a
+/// sixteenth, others less.
+const LEFT: f64 = 1.0 / 16.0;
+/// Newton's method is at its end where its last step is rounding; its size counts this many times.
+const ROUNDING: f64 = 3.0;
+/// Nothing is told to be more exact than this.
+const LEAST_ERROR: f64 = 1e-13;
+/// Updates of Newton's method are to become this small.
+const TOLERANCE: f64 = 1e-12;
+
+/// Margin, in errors, within which a multiplier counts as on the unit circle.
+const MARGIN: f64 = 3.0;
+
+/// What is told of a cycle and compared between meshes.
+struct Told {
+    period: f64,
+    /// Largest and smallest value of every state.
+    extremes: Vec<[f64; 2]>,
+    /// The multipliers other than the trivial one, the largest modulus first.
+    multipliers: Vec<Multiplier>,
+}
+
+/// A cycle on one of the meshes.
+struct Level {
+    mesh: Vec<f64>,
+    unknown: Vec<f64>,
+    told: Told,
+    floquet: Floquet,
+    /// What extremes count against.
+    sizes: Vec<f64>,
+    /// Part of period and extremes that is rounding.
+    rounding: f64,
+}
+
+impl Asked<'_> {
+    /// Confirms the cycles at the parameter values that were asked for, and those at the ends, as far as they can be. (Where a
+    /// monitor has a value the parameter may be more sensitive than the cycle.)
+    pub(super) fn confirm(&self, branch: &mut CycleBranch, at: &[f64]) {
+        if branch.stops.iter().flatten().any(|stop| matches!(stop, Stop::Interrupted)) {
+            return;
+        }
+        let last = branch.points.len().saturating_sub(1);
+        for (index, point) in branch.points.iter_mut().enumerate() {
+            let is_shown = match point.label {
+                None => index == 0 || index == last,
+                Some(label) => label.kind == SpecialKind::Requested && at.contains(&point.value),
+            };
+            if is_shown && point.orbit.mesh.len() > 1 {
+                self.confirm_cycle(point);
+            }
+        }
+    }
+
+    /// Replaces a cycle by the finest solution and its errors by those that were measured; one for which a finer mesh has no
+    /// solution at the same parameter value, next to a fold for instance, stays what it was.
+    fn confirm_cycle(&self, point: &mut CyclePoint) {
+        let degree = point.orbit.degree;
+        let mut unknown = point.orbit.states.clone();
+        unknown.extend([point.period, point.value]);
+        let mut mesh = point.orbit.mesh.clone();
+        let mut before = Told::of(point);
+        let mut last_change = None;
+        for _ in 0..MOST_HALVINGS {
+            if 2 * (mesh.len() - 1) > self.resolution.most_intervals {
+                break;
+            }
+            let Some(level) = self.solve_on_halves(&mesh, &unknown, degree) else { break };
+            let change = level.change_from(&before);
+            let errors = level.multiplier_changes(&before.multipliers);
+            let left = last_change.map_or(LEFT, |last: f64| (change / last).clamp(LEFT, 1.0));
+            let error = (change * left).max(ROUNDING * level.rounding).max(LEAST_ERROR);
+            level.tell(point, error, &errors, &before.multipliers);
+            let counted = errors.iter().zip(&level.told.multipliers);
+            let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
+            if change < CHANGE && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
+                break;
+            }
+            last_change = Some(change);
+            Level { mesh, unknown, told: before, .. } = level;
+        }
+    }
+
+    /// The cycle at the same parameter value with every interval of the mesh halved.
+    fn solve_on_halves(&self, mesh: &[f64], unknown: &[f64], degree: usize) -> Option<Level> {
+        let halves: Vec<f64> = mesh
+            .windows(2)
+            .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
+            .chain(mesh.last().copied())
+            .collect();
+        let coarse = Collocation::new(self.problem(), mesh.to_vec(), degree);
+        let mut unknown = coarse.carry(unknown, &halves);
+        let fine = Collocation::new(self.problem(), halves.clone(), degree);
+        let mut curve = CycleCurve::new(fine, self.resolution, self.bound.width(), &unknown);
+        let mut border = vec![0.0; unknown.len()];
+        *border.last_mut()? = 1.0;
+        let settings = Settings { corrector_tolerance: TOLERANCE, ..self.settings };
+        correct(&mut curve, &mut unknown, &border, &settings).ok()?;
+        let mut update = vec![0.0; unknown.len()];
+        if curve.factorize(&unknown, &border, &mut update) == 0.0 {
+            return None;
+        }
+        *update.last_mut()? = 0.0;
+        curve.solve(&mut update);
+        let inspection = curve.inspect(&unknown, &border, 0.0).ok()?;
+        let extremes: Vec<[f64; 2]> =
+            inspection.ranges.iter().map(|range| [range.largest, range.smallest]).collect();
+        // A state counts as what it is, or as its amplitude where that is more.
+        let sizes: Vec<f64> = extremes
+            .iter()
+            .zip(&curve.amplitudes)
+            .map(|([max, min], amplitude)| (max - min).max(max.abs()).max(min.abs()).max(*amplitude))
+            .collect();
+        let (states, scalars) = update.split_at(update.len() - 2);
+        let period = unknown[unknown.len() - 2];
+        let noise = states.iter().zip(sizes.iter().cycle()).map(|(value, size)| (value / size).abs());
+        let rounding = noise.fold((scalars[0] / period).abs(), f64::max);
+        rounding.is_finite().then_some(())?;
+        let multipliers = inspection.floquet.nontrivial.clone();
+        Some(Level {
+            mesh: halves,
+            told: Told { period, extremes, multipliers },
+            unknown,
+            floquet: inspection.floquet,
+            sizes,
+            rounding,
+        })
+    }
+}
+
+impl Told {
+    fn of(point: &CyclePoint) -> Self {
+        let mut multipliers: Vec<Multiplier> =
+            point.multipliers.iter().copied().map(Multiplier::from).collect();
+        let from_one = |multiplier: &Multiplier| (multiplier.to_complex() - 1.0).norm();
+        let trivial = (0..multipliers.len())
+            .min_by(|&a, &b| from_one(&multipliers[a]).total_cmp(&from_one(&multipliers[b])));
+        if let Some(trivial) = trivial {
+            multipliers.remove(trivial);
+        }
+        Self {
+            period: point.period,
+            extremes: point.max.iter().zip(&point.min).map(|(max, min)| [*max, *min]).collect(),
+            multipliers,
+        }
+    }
+}
+
+impl Level {
+    /// Largest change of period and extremes, relative to the period and to the sizes of the states.
+    fn change_from(&self, before: &Told) -> f64 {
+        let states = self.told.extremes.iter().zip(&before.extremes).zip(&self.sizes);
+        let extremes =
+            states.flat_map(|((now, then), size)| [0, 1].map(|end| ((now[end] - then[end]) / size).abs()));
+        extremes.fold((self.told.period / before.period - 1.0).abs(), f64::max)
+    }
+
+    /// Changes of the multipliers, the largest moduli first, relative to themselves.
+    fn multiplier_changes(&self, before: &[Multiplier]) -> Vec<f64> {
+        let pairs = self.told.multipliers.iter().zip(before);
+        pairs
+            .map(|(now, then)| {
+                let turn = (now.argument.abs() - then.argument.abs()).abs();
+                (now.log_modulus - then.log_modulus).abs().max(turn)
+            })
+            .map(|change| if change.is_nan() { 0.0 } else { change })
+            .collect()
+    }
+
+    /// Tells the point what was found on this mesh, with the errors that were measured.
+    fn tell(&self, point: &mut CyclePoint, error: f64, errors: &[f64], before: &[Multiplier]) {
+        point.period = self.told.period;
+        point.max = self.told.extremes.iter().map(|[max, _]| *max).collect();
+        point.min = self.told.extremes.iter().map(|[_, min]| *min).collect();
+        point.error_estimate = error;
+        point.multipliers = self.floquet.multipliers();
+        point.trivial_multiplier_error = self.floquet.trivial_error;
+        let (outside, certain) = self.floquet.unstable();
+        point.unstable_multipliers = outside;
+        let mut decided = self.told.multipliers.iter().zip(before).zip(errors).map(|((now, then), error)| {
+            let [now, then] = [now.log_modulus, then.log_modulus];
+            // One that moves away from the circle as the mesh gets finer is on its side of it.
+            now.abs() > MARGIN * error || (now * then > 0.0 && now.abs() >= then.abs())
+        });
+        point.stable = (certain && decided.all(|decided| decided)).then_some(outside == 0);
+        let mut all = errors.to_vec();
+        let trivial =
+            self.told.multipliers.partition_point(|one| one.log_modulus > self.floquet.trivial.abs().ln());
+        all.insert(trivial.min(all.len()), self.floquet.trivial_error);
+        point.multiplier_errors = all;
+        point.orbit.mesh = self.mesh.clone();
+        point.orbit.states = self.unknown[..self.unknown.len() - 2].to_vec();
+        point.orbit.period = self.told.period;
+    }
+}
