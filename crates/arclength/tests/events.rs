@@ -84,7 +84,6 @@ fn folds_of_a_homoclinic_snake_alternate() {
     let resolution = Resolution::with_tolerance(1e-10);
     let branch = cycles.along("alpha", -1.0..=12.0).resolution(resolution).run().unwrap();
     let folds: Vec<_> = branch.of_kind(SpecialKind::FoldOfCycles).collect();
-    for f in &folds {}
     // Minima between the maxima at the periods 10.70, 13.12 and 15.54.
     for (period, value) in [(11.9112, 11.07835363), (14.3329, 11.078398422)] {
         let found =

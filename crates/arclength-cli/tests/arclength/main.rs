@@ -6,6 +6,7 @@ mod monitors;
 mod orbits;
 mod restarts;
 mod switching;
+mod witnesses;
 
 use serde_json::Value;
 use std::path::PathBuf;

@@ -114,7 +114,7 @@ pub(super) fn advance<C: Curve>(
                 if *step < settings.smallest_step {
                     return Err(Stop::StepTooSmall { cause });
                 }
-                return_to(curve, current, previous, settings).map_err(Stop::Failed)?;
+                return_to(curve, current, previous, settings).map_err(stopped)?;
                 continue;
             }
             Err(error) => return Err(Stop::Failed(error)),
@@ -129,7 +129,7 @@ pub(super) fn advance<C: Curve>(
         if turns && length > TURNING_LIMIT * settings.smallest_step {
             *previous = old_previous;
             *step = length * STEP_HALVING;
-            return_to(curve, current, previous, settings).map_err(Stop::Failed)?;
+            return_to(curve, current, previous, settings).map_err(stopped)?;
             continue;
         }
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
@@ -157,6 +157,14 @@ pub(super) fn return_to<C: Curve>(
     carried.extend(previous.as_mut().map(|(tangent, _)| tangent));
     curve.adapt(&mut solution.unknown, &mut carried)?;
     renormalise(curve, solution, settings)
+}
+
+/// The end of a run whose last solution cannot be found again.
+pub(super) fn stopped<R>(error: Error) -> Stop<R> {
+    match error {
+        Error::NotFound { cause, .. } => Stop::StepTooSmall { cause },
+        error => Stop::Failed(error),
+    }
 }
 
 /// Angle between the tangents at two solutions in the plane of two bounded parameters; zero if there are not two or the curve

@@ -1,6 +1,6 @@
 //! The run itself: step, search for special points, locate what was asked for, recognise the end, repeat.
 
-use super::advance::{STEP_REDUCTION, advance, converge, return_to};
+use super::advance::{STEP_REDUCTION, advance, converge, return_to, stopped};
 use super::closure::Closure;
 use super::corrector::between;
 use super::curve::{Curve, Ending};
@@ -150,7 +150,7 @@ impl<C: Curve> Run<'_, '_, C> {
                     length = shorter;
                     previous = None;
                     if let Err(error) = return_to(self.curve, &mut current, &mut previous, settings) {
-                        return Stop::Failed(error);
+                        return stopped(error);
                     }
                 }
                 Step::End(stop) => return stop,

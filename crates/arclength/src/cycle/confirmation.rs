@@ -18,6 +18,8 @@ use crate::linear::multiplier::Multiplier;
 const MOST_HALVINGS: usize = 6;
 /// Halving goes on until period and extremes change by less than this, relative to themselves and to the amplitudes,
 const CHANGE: f64 = 1e-6;
+/// or than this many times the tolerance asked for,
+const ACCEPTED: f64 = 100.0;
 /// and the multipliers, as far as their logarithms are above `LOGARITHM`, by less than this part of themselves.
 const MULTIPLIER_CHANGE: f64 = 1e-3;
 const LOGARITHM: f64 = -18.0;
@@ -95,7 +97,8 @@ impl Asked<'_> {
             level.tell(point, error, &errors, &before.multipliers);
             let counted = errors.iter().zip(&level.told.multipliers);
             let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
-            if change < CHANGE && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
+            let enough = CHANGE.max(ACCEPTED * self.resolution.tolerance);
+            if change < enough && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
                 break;
             }
             last_change = Some(change);

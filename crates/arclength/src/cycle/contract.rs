@@ -42,8 +42,6 @@ const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
 /// Rate of change of the parameter, as part of its range, that may be rounding, and one below which a cycle may be a fold.
 const PARAMETER_ROUNDING: f64 = 1e-13;
 const NEARLY_FOLD: f64 = 1e-8;
-/// Logarithm of a multiplier beyond which it is far from one.
-const FAR_FROM_ONE: f64 = 10.0;
 /// Difference of the arguments of two pairs of multipliers.
 const DISTINCT: f64 = 1e-6;
 
@@ -149,7 +147,7 @@ impl Curve for CycleCurve<'_> {
                 return Some(Reading::exact(turn).with_noise(PARAMETER_ROUNDING));
             }
             // Where no multiplier is near one the sign of the determinant is rounding.
-            SpecialKind::BranchPointOfCycles if !floquet.comes_near_one(FAR_FROM_ONE) => return None,
+            SpecialKind::BranchPointOfCycles if !floquet.comes_near_one() => return None,
             SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
             SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
             SpecialKind::Torus => {

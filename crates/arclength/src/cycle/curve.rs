@@ -156,7 +156,9 @@ impl<'a> CycleCurve<'a> {
         if turn.abs() > CERTAIN_TURN {
             self.relation = Some(relation);
         }
-        turn.abs() < ROUNDING_TURN && self.relation.is_some_and(|known| known != relation)
+        // In the plane the multiplier is known better than the parameter, whatever the mesh.
+        let uncertain = if floquet.nontrivial.len() == 1 { CERTAIN_TURN } else { ROUNDING_TURN };
+        turn.abs() < uncertain && self.relation.is_some_and(|known| known != relation)
     }
 
     /// The rate of change of the parameter with the right sign.

@@ -20,6 +20,9 @@ const SMALLEST_LOGARITHM: f64 = -700.0;
 /// Logarithm of the product of two multipliers above which the test of torus bifurcations saturates.
 const SATURATION: f64 = 0.1;
 
+/// Logarithms of multipliers near one, and of those that discretisation may have kept from it.
+const NEAR_ONE: f64 = 1.0;
+const NOT_FAR_FROM_ONE: f64 = 10.0;
 /// Integral of the divergence below which directions die out within a period, which no affordable mesh resolves.
 const DEAD: f64 = -30.0;
 /// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
@@ -104,11 +107,13 @@ impl Floquet {
         self.trivial_error.max(f64::EPSILON)
     }
 
-    /// Whether a positive multiplier, or a pair with a positive real part, has a logarithm of its modulus below this.
-    pub(crate) fn comes_near_one(&self, logarithm: f64) -> bool {
+    /// Whether a positive multiplier, or a pair with a positive real part, may be one next to this cycle. In the plane the only one
+    /// is known for certain.
+    pub(crate) fn comes_near_one(&self) -> bool {
+        let near = if self.nontrivial.len() == 1 { NEAR_ONE } else { NOT_FAR_FROM_ONE };
         self.nontrivial
             .iter()
-            .any(|multiplier| multiplier.log_modulus.abs() < logarithm && multiplier.argument.cos() > 0.0)
+            .any(|multiplier| multiplier.log_modulus.abs() < near && multiplier.argument.cos() > 0.0)
     }
 
     /// Minus one for every positive multiplier above one, multiplied.

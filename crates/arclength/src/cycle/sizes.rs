@@ -25,6 +25,9 @@ const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
 const RESOLVED_SENSITIVITY: f64 = 10.0;
 const LEAST_SENSITIVITY: f64 = 1e5;
 
+/// A state below this is zero, in any unit.
+const EXTINCT: f64 = 1e-60;
+
 /// Sizes of the states met on a curve.
 #[derive(Debug)]
 pub(crate) struct StateSizes {
@@ -53,7 +56,10 @@ impl StateSizes {
         let n = problem.dimension();
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = start[start.len() - 1];
-        let natural = natural_scales(&problem.field, &start[..n], &parameters, &vec![0.0; n]);
+        // What is left of a state that dies out is no size.
+        let state: Vec<f64> =
+            start[..n].iter().map(|value| if value.abs() < EXTINCT { 0.0 } else { *value }).collect();
+        let natural = natural_scales(&problem.field, &state, &parameters, &vec![0.0; n]);
         Self {
             largest: vec![0.0; n],
             visited: vec![Range { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],

@@ -64,7 +64,7 @@ pub(super) fn locate(
         Some(located)
             if !is_critical(&located.solution.point.floquet, defining)
                 && !crosses([before, after].map(|node| &node.point.floquet), defining)
-                && !(defining == Kind::Fold && is_extreme(&located.solution, [before, after])) =>
+                && (defining != Kind::Fold || !is_extreme(&located.solution, [before, after])) =>
         {
             Ok(Location::Missed)
         }
@@ -93,11 +93,12 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
     })
 }
 
-/// Whether the parameter has an extreme value at a solution between two others.
+/// Whether the parameter has an extreme value at a solution between two others. In the plane that is no witness, since the
+/// multiplier is known better than the parameter.
 fn is_extreme(solution: &Node, ends: [&Node; 2]) -> bool {
     let value = |node: &Node| node.unknown[node.unknown.len() - 1];
     let [one, other] = ends.map(|end| value(solution) - value(end));
-    one * other >= 0.0
+    one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1
 }
 
 /// Whether the multipliers at both ends are resolved and one of the kind has crossed the circle between them. It may do so within

@@ -6,8 +6,11 @@ use super::end::CycleEnd;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::switching::{Branching, Departure, HopfStart};
+use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
-use crate::branch::{Branch, Continuation, Label, Problem, SpecialKind, invalid, observer, request};
+use crate::branch::{
+    Branch, Continuation, Criticality, Label, Problem, SpecialKind, invalid, observer, request,
+};
 use crate::collocation::equations::Collocation;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::events::around_start;
@@ -16,9 +19,12 @@ use crate::continuation::{
     exact_start, follow,
 };
 use crate::equilibrium::HopfPoint;
+use crate::equilibrium::problem::EquilibriumProblem;
+use crate::equilibrium::spectrum::without;
 use crate::erased::ErasedField;
 use crate::error::{CorrectionFailure, Error};
 use crate::field::VectorField;
+use crate::linear::eigenvalues::eigenvalues;
 use num_complex::Complex64;
 
 /// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there.
@@ -28,6 +34,9 @@ const MOST_REDUCTIONS: usize = 6;
 /// Reductions of the first amplitude next to a Hopf point, and of that distance.
 const AMPLITUDE_REDUCTION: f64 = 0.25;
 const DISTANCE_REDUCTION: f64 = 0.5;
+
+/// Growth rate beside the frequency of a Hopf point above which it is certain that the cycles are born with its sign.
+const CERTAIN_RATE: f64 = 1e-6;
 
 /// What a branch of cycles starts from.
 #[derive(Clone, Debug)]
@@ -57,9 +66,12 @@ impl From<&HopfPoint> for CycleStart {
             state: point.state.clone(),
             frequency: point.frequency,
             eigenvector: point.eigenvector.clone(),
-            // They only set the size of the first cycle.
+            // They set the size of the first cycle, and what its stability has to be.
             crossing_speed: point.crossing_speed.unwrap_or(0.0),
-            cubic_coefficient: point.c1_real.unwrap_or(0.0),
+            cubic_coefficient: point
+                .c1_real
+                .filter(|_| point.criticality != Criticality::Degenerate)
+                .unwrap_or(0.0),
         }
     }
 }
@@ -301,11 +313,45 @@ impl<'a> Asked<'a> {
         let share = (self.settings.initial_step / Settings::default().initial_step).min(1.0);
         let standing = vec![0.0; hopf.state.len()];
         let scales = natural_scales(&self.field, hopf.state, &self.parameters, &standing);
-        let amplitude = share * hopf.first_amplitude(self.bound.width(), &scales);
+        let mut amplitude = share * hopf.first_amplitude(self.bound.width(), &scales);
+        // A first cycle of another stability than the normal form gives lies behind a fold, or behind another bifurcation.
+        if let Some(expected) = self.unstable_at_birth(hopf) {
+            let reduced = std::iter::successors(Some(amplitude), |last| Some(last * AMPLITUDE_REDUCTION));
+            let fits = |amplitude: &f64| self.unstable_at(hopf, *amplitude, request) == Some(expected);
+            amplitude = reduced.take(MOST_REDUCTIONS).find(fits).unwrap_or(amplitude);
+        }
         self.first_of(amplitude, AMPLITUDE_REDUCTION, |amplitude| {
             let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
             self.follow(&start, false, request, observer)
         })
+    }
+
+    /// Number of multipliers outside the unit circle with which the cycles are born; `None` where it is not certain.
+    fn unstable_at_birth(&self, hopf: &HopfStart<'_>) -> Option<usize> {
+        let n = hopf.state.len();
+        let problem = EquilibriumProblem::new(self.field, &self.parameters, &[]);
+        let (mut residual, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
+        Differentiator::default().jacobian(&problem, hopf.state, &mut residual, &mut matrix, n);
+        let pair = Complex64::new(0.0, hopf.frequency);
+        let rest = without(&eigenvalues(&matrix, n).ok()?, &[pair, pair.conj()]);
+        let certain = hopf.cubic_coefficient.is_normal()
+            && rest.iter().all(|value| value.re.abs() > CERTAIN_RATE * hopf.frequency);
+        let unstable = rest.iter().filter(|value| value.re > 0.0).count();
+        certain.then_some(unstable + usize::from(hopf.cubic_coefficient > 0.0))
+    }
+
+    /// Number of multipliers outside the unit circle of the cycle near a Hopf point that has an amplitude.
+    fn unstable_at(
+        &self,
+        hopf: &HopfStart<'_>,
+        amplitude: f64,
+        request: &Request<'_, CycleInspection>,
+    ) -> Option<usize> {
+        let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
+        let mut curve = self.curve(&start);
+        let found = exact_start(&mut curve, start.unknown, start.tangent, request).ok()?;
+        let (unstable, certain) = found.point.floquet.unstable();
+        certain.then_some(unstable)
     }
 
     /// The first run that finds a cycle, at ever smaller distances.

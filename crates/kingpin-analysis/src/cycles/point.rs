@@ -73,6 +73,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
             max: named_state(&hopf.state),
             min: named_state(&hopf.state),
             multipliers: pairs(&multipliers),
+            multiplier_errors: Vec::new(),
             trivial_multiplier_error: nearest,
             stable: None,
             error_estimate: 0.0,

@@ -28,6 +28,9 @@ const VANISHING: f64 = 1e-3;
 const BETWEEN: f64 = 1.2;
 const LEAST_DISTANCE: f64 = 2e-6;
 
+/// Changes in one step that are tried in vain before the others are only told.
+const MOST_FAILURES: usize = 10;
+
 /// The search in one step.
 pub(super) struct Scan<'s, C: Curve> {
     pub curve: &'s mut C,
@@ -37,12 +40,23 @@ pub(super) struct Scan<'s, C: Curve> {
     pub unlocated: Vec<Unlocated<C::Kind>>,
     /// Solutions that may still be computed.
     pub trials: usize,
+    /// Changes in this step behind which nothing was located.
+    failures: usize,
     pub found: Vec<Event<C::Kind, C::Point>>,
 }
 
 impl<'s, C: Curve> Scan<'s, C> {
     pub fn new(curve: &'s mut C, memory: &'s Memory, bounds: &'s [Bound], settings: &'s Settings) -> Self {
-        Self { curve, memory, bounds, settings, unlocated: Vec::new(), trials: 0, found: Vec::new() }
+        Self {
+            curve,
+            memory,
+            bounds,
+            settings,
+            unlocated: Vec::new(),
+            trials: 0,
+            failures: 0,
+            found: Vec::new(),
+        }
     }
 
     /// Places in the list of test functions of those that change their signs.
@@ -177,7 +191,8 @@ impl<'s, C: Curve> Scan<'s, C> {
         let (Some(here), Some(there)) = (before.readings[index], after.readings[index]) else {
             return Ok(());
         };
-        if !here.resolved || !there.resolved {
+        // Where signs are rounding there is no end to what changes.
+        if !here.resolved || !there.resolved || self.failures > MOST_FAILURES {
             self.miss(Some(test.kind), &before.solution, &after.solution);
             return Ok(());
         }
@@ -215,7 +230,10 @@ impl<'s, C: Curve> Scan<'s, C> {
             }
             Location::Nothing => {}
             Location::Missed if absorbing.is_some() => {}
-            Location::Missed => self.miss(Some(test.kind), &before.solution, &after.solution),
+            Location::Missed => {
+                self.failures += 1;
+                self.miss(Some(test.kind), &before.solution, &after.solution);
+            }
         }
         Ok(())
     }
