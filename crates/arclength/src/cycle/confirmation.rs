@@ -28,6 +28,8 @@ const LOGARITHM: f64 = -18.0;
 const LEFT: f64 = 1.0 / 16.0;
 /// Newton's method is at its end where its last step is rounding; its size counts this many times.
 const ROUNDING: f64 = 3.0;
+/// Relative error of a cycle that no finer mesh confirms.
+const UNCONFIRMED: f64 = 1.0;
 /// Nothing is told to be more exact than this.
 const LEAST_ERROR: f64 = 1e-13;
 /// Updates of Newton's method are to become this small.
@@ -76,8 +78,8 @@ impl Asked<'_> {
         }
     }
 
-    /// Replaces a cycle by the finest solution and its errors by those that were measured; one for which a finer mesh has no
-    /// solution at the same parameter value, next to a fold for instance, stays what it was.
+    /// Replaces a cycle by the finest solution and its errors by those that were measured. Of one for which a finer mesh has no
+    /// solution at the same parameter value nothing is certain: its error is told to be the whole.
     fn confirm_cycle(&self, point: &mut CyclePoint) {
         let degree = point.orbit.degree;
         let mut unknown = point.orbit.states.clone();
@@ -89,7 +91,12 @@ impl Asked<'_> {
             if 2 * (mesh.len() - 1) > self.resolution.most_intervals {
                 break;
             }
-            let Some(level) = self.solve_on_halves(&mesh, &unknown, degree) else { break };
+            let Some(level) = self.solve_on_halves(&mesh, &unknown, degree) else {
+                if last_change.is_none() {
+                    (point.error_estimate, point.stable) = (UNCONFIRMED, None);
+                }
+                break;
+            };
             let change = level.change_from(&before);
             let errors = level.multiplier_changes(&before.multipliers);
             let left = last_change.map_or(LEFT, |last: f64| (change / last).clamp(LEFT, 1.0));
