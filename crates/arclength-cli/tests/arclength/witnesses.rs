@@ -70,6 +70,17 @@ init x=2,y=0
 done
 ";
 
+/// A slow cycle of radius sqrt(mu) beside a fast linear oscillator that it does not touch.
+const BESIDE: &str = "\
+par mu=-0.5, w=20, s=0.01
+r2 = x^2 + y^2
+x' = mu*x - y - x*r2
+y' = x + mu*y - y*r2
+u' = s*u + w*v
+v' = -w*u + s*v
+done
+";
+
 fn cycles(folder: &Folder, along: &str, start: &str, rest: &str) -> serde_json::Value {
     folder.succeed(&format!("equilibria model.ode --along {along} -q -o equilibria.json"));
     folder.json(&format!("cycles --from equilibria.json:{start} --along {along} {rest}"))
@@ -140,4 +151,16 @@ fn the_same_mesh_is_not_the_same_error() {
     let cycle = labelled(&found, "AT2");
     let error = (number(&cycle["min"]["y"]) + 2.2665403058).abs() / 4.3;
     assert!(error < (3.0 * number(&cycle["error_estimate"])).max(1e-9), "{error:e}");
+}
+
+/// What rounding leaves of the states of the fast oscillator is no size for the steps.
+#[test]
+fn states_that_stay_zero_do_not_stop_the_branch() {
+    for fast in ["-s w=0.3 -s s=0.01", "-s w=10.3 -s s=-0.01", "-s w=20.3 -s s=-0.1"] {
+        let folder = folder(BESIDE);
+        folder.succeed(&format!("equilibria model.ode {fast} --along mu=-0.5:1 -q -o equilibria.json"));
+        let found = folder.json("cycles --from equilibria.json:HB1 --along mu=-0.5:1 --at 0.25");
+        assert!(found["ends"][1]["cause"].as_str().unwrap().contains("end of the interval"), "{fast}");
+        assert!((number(&labelled(&found, "AT1")["max"]["x"]) - 0.5).abs() < 1e-9);
+    }
 }

@@ -25,8 +25,8 @@ const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
 const RESOLVED_SENSITIVITY: f64 = 10.0;
 const LEAST_SENSITIVITY: f64 = 1e5;
 
-/// A state below this is zero, in any unit.
-const EXTINCT: f64 = 1e-60;
+/// A state below this part of the largest one all along the first cycle is zero but for rounding.
+const ROUNDING_SIZE: f64 = 1e-15;
 
 /// Sizes of the states met on a curve.
 #[derive(Debug)]
@@ -56,9 +56,20 @@ impl StateSizes {
         let n = problem.dimension();
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = start[start.len() - 1];
-        // What is left of a state that dies out is no size.
-        let state: Vec<f64> =
-            start[..n].iter().map(|value| if value.abs() < EXTINCT { 0.0 } else { *value }).collect();
+        // What rounding leaves of a state that is zero, or that dies out, is no size.
+        let states = &start[..start.len() - 2];
+        let sizes: Vec<f64> = (0..n)
+            .map(|component| {
+                let (smallest, largest) = extent(states, n, component);
+                smallest.abs().max(largest.abs())
+            })
+            .collect();
+        let rounding = ROUNDING_SIZE * sizes.iter().copied().fold(0.0, f64::max);
+        let state: Vec<f64> = start[..n]
+            .iter()
+            .zip(&sizes)
+            .map(|(value, size)| if *size < rounding { 0.0 } else { *value })
+            .collect();
         let natural = natural_scales(&problem.field, &state, &parameters, &vec![0.0; n]);
         Self {
             largest: vec![0.0; n],
