@@ -22,7 +22,7 @@ pub struct CycleResult {
     pub multipliers: Vec<[Option<f64>; 2]>,
     /// Relative errors of the multipliers, measured on two meshes at cycles that were asked for and at the ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub multiplier_errors: Vec<f64>,
+    pub multiplier_errors: Vec<Option<f64>>,
     /// How far the computed trivial multiplier is from 1.
     pub trivial_multiplier_error: f64,
     /// Nothing where that is not decided.
@@ -62,11 +62,11 @@ impl CycleResult {
             max: named(&point.max),
             min: named(&point.min),
             multipliers: pairs(&point.multipliers),
+            // One without a finite error keeps its place.
             multiplier_errors: point
                 .multiplier_errors
                 .iter()
-                .copied()
-                .filter(|error| error.is_finite())
+                .map(|error| Some(*error).filter(|error| error.is_finite()))
                 .collect(),
             trivial_multiplier_error: point.trivial_multiplier_error,
             stable: point.stable,

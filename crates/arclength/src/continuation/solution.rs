@@ -45,6 +45,12 @@ impl Bound {
         unknown[unknown.len() - self.from_end]
     }
 
+    /// Whether a value lies in the range, or outside by no more than this part of its width.
+    pub(crate) fn holds(&self, value: f64, margin: f64) -> bool {
+        let margin = margin * self.width();
+        (self.lower - margin..=self.upper + margin).contains(&value)
+    }
+
     /// Length of the range.
     pub fn width(&self) -> f64 {
         self.upper - self.lower

@@ -40,16 +40,12 @@ pub(crate) fn around_start<C: Curve>(
     let mut right = Node::new(curve, ahead);
     let mut events = search(curve, [&mut left, &mut right], &Memory::default(), bounds, settings)?;
     // The neighbourhood of a start at the end of a range lies outside in part.
-    let inside = |value: f64, bound: &Bound| {
-        let margin = ROUNDING * bound.width();
-        (bound.lower - margin..=bound.upper + margin).contains(&value)
-    };
-    events
-        .found
-        .retain(|event| bounds.iter().all(|bound| inside(bound.value(&event.solution.unknown), bound)));
+    events.found.retain(|event| {
+        bounds.iter().all(|bound| bound.holds(bound.value(&event.solution.unknown), ROUNDING))
+    });
     events.unlocated.retain(|change| {
         let ends = change.between.iter();
-        ends.flat_map(|values| values.iter().zip(bounds)).any(|(value, bound)| inside(*value, bound))
+        ends.flat_map(|values| values.iter().zip(bounds)).any(|(value, bound)| bound.holds(*value, ROUNDING))
     });
     Ok(events)
 }
