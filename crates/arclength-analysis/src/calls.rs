@@ -5,7 +5,7 @@
 
 /// A function of an expression along a cycle, as it is called.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Call {
+pub(crate) enum Call {
     /// `max`.
     Largest,
     /// `min`.
@@ -18,7 +18,7 @@ pub enum Call {
 
 /// A call in an expression.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub(crate) struct Part {
     /// The function.
     pub call: Call,
     /// What stands between its parentheses.
@@ -26,7 +26,7 @@ pub struct Part {
 }
 
 /// The name that stands in the place of a call, counted from 1.
-pub fn part_name(index: usize) -> String {
+pub(crate) fn part_name(index: usize) -> String {
     format!("along_cycle_{index}")
 }
 
@@ -48,14 +48,14 @@ fn names(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Whether one of the names in an expression is meant; they are given in small letters.
-pub fn mentions(text: &str, is_meant: impl Fn(&str) -> bool) -> bool {
+pub(crate) fn mentions(text: &str, is_meant: impl Fn(&str) -> bool) -> bool {
     names(text).any(|(_, name)| is_meant(&name.to_ascii_lowercase()))
 }
 
 /// Takes calls of `max`, `min` and `mean` with one argument, and those of `at` where they mean `phases`, out of an expression:
 /// the expression with names in their place, and what each stands for. (With two arguments `max` and `min` are functions of
 /// numbers.)
-pub fn divide(text: &str, phases: bool) -> (String, Vec<Part>) {
+pub(crate) fn divide(text: &str, phases: bool) -> (String, Vec<Part>) {
     let (mut outer, mut parts, mut copied) = (String::new(), Vec::new(), 0);
     for (start, name) in names(text) {
         let call = match name.to_ascii_lowercase().as_str() {
@@ -104,7 +104,7 @@ fn argument_list(text: &str, after: usize) -> Option<(usize, usize)> {
 }
 
 /// Arguments, divided at the commas that stand in no parentheses.
-pub fn arguments_of(list: &str) -> Vec<&str> {
+pub(crate) fn arguments_of(list: &str) -> Vec<&str> {
     let mut depth = 0;
     list.split(|character| {
         match character {

@@ -212,7 +212,7 @@ pub(crate) struct CycleMonitor {
 
 impl CycleMonitor {
     /// Its value on a cycle.
-    pub fn value(&self, orbit: &Orbit, parameters: &[f64]) -> f64 {
+    pub(crate) fn value(&self, orbit: &Orbit, parameters: &[f64]) -> f64 {
         let mut others: Vec<f64> = self
             .parts
             .iter()

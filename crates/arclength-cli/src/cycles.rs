@@ -18,7 +18,7 @@ use std::path::PathBuf;
     after_help = "Example: arclength cycles --from equilibria.json:HB1 --along p=0:1 --at 0.5 -o cycles.json\n         \
                   arclength cycles model.ode --from orbit.csv -s p=0.5 --along p=0:1"
 )]
-pub struct Cycles {
+pub(crate) struct Cycles {
     /// File of the model, with samples of an orbit only: a labelled point has its own
     #[arg(value_name = "MODEL.ode", help_heading = "Model")]
     model: Option<PathBuf>,
@@ -63,7 +63,7 @@ impl Cycles {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let request = CyclesRequest {
             from: self.from.clone(),

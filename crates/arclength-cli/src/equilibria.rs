@@ -14,7 +14,7 @@ use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions, req
 #[derive(Args, Debug)]
 #[command(after_help = "Example: arclength equilibria model.ode --along p=0:1 -o equilibria.json\n         \
                         arclength equilibria --from equilibria.json:BP1 --along p=0:1 -o other.json")]
-pub struct Equilibria {
+pub(crate) struct Equilibria {
     #[command(flatten)]
     model: ModelOptions,
 
@@ -44,7 +44,7 @@ impl Equilibria {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let request = EquilibriaRequest {
             model: self.model.request()?,

@@ -17,7 +17,7 @@ use kingpin_terminal::{
 #[command(
     after_help = "Example: arclength locus --from equilibria.json:HB1 --in p=0:1,q=2:5 -o hopf.json -o hopf.svg"
 )]
-pub struct Locus {
+pub(crate) struct Locus {
     /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS; any with --hold) wrote, with its
     /// model
     #[arg(long, value_name = "FILE.json:LABEL")]
@@ -55,7 +55,7 @@ impl Locus {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let plane = self.plane.intervals()?;
         let request = LocusRequest {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 /// Which model, with which parameters, from which state.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Model")]
-pub struct ModelOptions {
+pub(crate) struct ModelOptions {
     /// File of the model
     #[arg(value_name = "MODEL.ode", required_unless_present = "from")]
     model: Option<PathBuf>,
@@ -33,7 +33,7 @@ pub struct ModelOptions {
 /// Values of parameters.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Model")]
-pub struct ParameterOptions {
+pub(crate) struct ParameterOptions {
     /// Set a parameter; repeatable
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<Assignment>,
@@ -44,7 +44,7 @@ impl ModelOptions {
     ///
     /// # Errors
     /// A value that is no number.
-    pub fn request(&self) -> Result<ModelRequest, Failure> {
+    pub(crate) fn request(&self) -> Result<ModelRequest, Failure> {
         let source = match (&self.from, &self.model) {
             (Some(point), _) => ModelSource::Point(point.clone()),
             (None, Some(path)) => ModelSource::File(path.clone()),
@@ -71,7 +71,7 @@ impl ParameterOptions {
     ///
     /// # Errors
     /// One that is no number.
-    pub fn values(&self) -> Result<NamedNumbers, Failure> {
+    pub(crate) fn values(&self) -> Result<NamedNumbers, Failure> {
         Ok(numbers(&self.set, &["set"])?)
     }
 }

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "Example: arclength show cycles.json\n         \
                         arclength show equilibria.json cycles.json -o diagram.svg")]
-pub struct Show {
+pub(crate) struct Show {
     /// Files that the other commands wrote
     #[arg(value_name = "FILE.json", required = true)]
     files: Vec<PathBuf>,
@@ -37,7 +37,7 @@ impl Show {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let mut results = Vec::new();
         for (index, path) in self.files.iter().enumerate() {
             results.push(ResultFile::read(path).map_err(|problem| self.failure(index, problem))?);

@@ -8,7 +8,7 @@ use kingpin_terminal::{Failure, OutputOptions};
 /// Time history from the initial state of the model
 #[derive(Args, Debug)]
 #[command(after_help = "Example: arclength simulate model.ode --duration 100 --start x=1 -o history.svg")]
-pub struct Simulate {
+pub(crate) struct Simulate {
     #[command(flatten)]
     model: ModelOptions,
 
@@ -30,7 +30,7 @@ impl Simulate {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
         let request =
             SimulateRequest { model: self.model.request()?, duration: self.duration, points: self.points };

@@ -7,7 +7,7 @@ use arclength::{Error, Scalar};
 use std::ops::ControlFlow;
 
 /// The problem.
-pub struct Bratu;
+pub(crate) struct Bratu;
 
 impl BoundaryValueProblem for Bratu {
     fn dimension(&self) -> usize {
@@ -27,7 +27,7 @@ impl BoundaryValueProblem for Bratu {
 }
 
 /// The branch, with solutions at some values of `lambda`.
-pub fn branch(values: &[f64]) -> Result<FollowedCurve<BoundaryValueCurve<Bratu>>, Error> {
+pub(crate) fn branch(values: &[f64]) -> Result<FollowedCurve<BoundaryValueCurve<Bratu>>, Error> {
     let sizes = [1.0, 1.0, 4.0];
     let mut curve = BoundaryValueCurve::new(Bratu, &sizes, Resolution::with_tolerance(1e-10))?;
     let start = curve.start(|_| vec![0.0, 0.0], &[0.1]);

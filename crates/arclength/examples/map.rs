@@ -45,7 +45,7 @@ impl AlgebraicProblem for PeriodDoubling {
 }
 
 /// The points `[x, a]` at which the period doubles, on the branch of points of a period through `start`, up to `a = 3.6`.
-pub fn period_doublings(period: usize, start: [f64; 2]) -> Result<Vec<[f64; 2]>, Error> {
+pub(crate) fn period_doublings(period: usize, start: [f64; 2]) -> Result<Vec<[f64; 2]>, Error> {
     let scales = [1.0, 1.0];
     let mut curve = AlgebraicCurve::new(PeriodicPoints(period), &scales)?.test_function(
         TestFunction::new(SpecialKind::PeriodDoubling),

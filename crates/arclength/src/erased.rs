@@ -128,28 +128,28 @@ pub(crate) struct ErasedField<'a>(&'a dyn Table);
 
 impl<'a> ErasedField<'a> {
     /// The field without its type.
-    pub fn of<F: VectorField>(field: &'a F) -> Self {
+    pub(crate) fn of<F: VectorField>(field: &'a F) -> Self {
         Self(field)
     }
 
     /// As [`VectorField::state_names`].
-    pub fn state_names(&self) -> Vec<String> {
+    pub(crate) fn state_names(&self) -> Vec<String> {
         self.0.state_names()
     }
 
     /// As [`VectorField::parameter_names`].
-    pub fn parameter_names(&self) -> Vec<String> {
+    pub(crate) fn parameter_names(&self) -> Vec<String> {
         self.0.parameter_names()
     }
 
     /// As [`VectorField::dimension`].
-    pub fn dimension(&self) -> usize {
+    pub(crate) fn dimension(&self) -> usize {
         self.0.dimension()
     }
 
     /// As [`VectorField::evaluate`], for the scalars of the list.
     #[inline(always)]
-    pub fn evaluate<T: FieldScalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+    pub(crate) fn evaluate<T: FieldScalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
         T::evaluate(self.0, state, parameters, derivative);
     }
 }

@@ -9,19 +9,19 @@ use kingpin::{Key, KingpinError};
 ///
 /// # Errors
 /// An unknown key, or ends that the parameter may not take.
-pub fn along(interval: &Interval) -> Result<Along, KingpinError> {
+pub(crate) fn along(interval: &Interval) -> Result<Along, KingpinError> {
     Along::new(interval.key.parse()?, interval.start, interval.end)
 }
 
 /// The parameter and its interval, in results.
-pub fn varying(along: &Along) -> VaryingParameter {
+pub(crate) fn varying(along: &Along) -> VaryingParameter {
     let (start, end) = along.ends();
     let (key, unit) = (along.key().name().to_owned(), along.key().unit().to_owned());
     VaryingParameter { key, unit: Some(unit), start, end }
 }
 
 /// Where a value is drawn: an `r` that reaches infinity is drawn as a curvature.
-pub fn drawn_as(along: &Along) -> (Key, fn(f64) -> f64) {
+pub(crate) fn drawn_as(along: &Along) -> (Key, fn(f64) -> f64) {
     if along.key() == Key::TurningRadius && along.ends().1.is_infinite() {
         (Key::Curvature, f64::recip)
     } else {

@@ -3,7 +3,7 @@
 use kingpin::Key;
 
 /// Symbol and unit of a parameter, `$J_{w\xi}$ (kg m$^2$)`.
-pub fn of(key: Key) -> String {
+pub(crate) fn of(key: Key) -> String {
     let symbol = match key.symbol().split_once('_') {
         Some((letter, index)) => {
             // Greek indices are variables, letters name things.

@@ -106,7 +106,7 @@ impl<'de> Deserialize<'de> for NamedFate {
 }
 
 /// The colour of a fate, told apart with any colour vision.
-pub fn color(fate: Fate) -> Color {
+pub(crate) fn color(fate: Fate) -> Color {
     match fate {
         Fate::UniformMotion => palette::BLUE,
         Fate::Shimmy => palette::YELLOW,

@@ -4,7 +4,7 @@ use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Speed, caster length and radius, and every other parameter that is not the paper's; without those that vary.
-pub fn of(wheel: &Wheel, varying: &[Key]) -> String {
+pub(crate) fn of(wheel: &Wheel, varying: &[Key]) -> String {
     let always = [Key::V, Key::L, Key::TurningRadius];
     let varies = |key: Key| varying.iter().any(|active| active.sets().contains(&key));
     let worth_saying =
@@ -15,7 +15,7 @@ pub fn of(wheel: &Wheel, varying: &[Key]) -> String {
 }
 
 /// `v = 4 m/s`.
-pub fn quantity(key: Key, value: f64) -> String {
+pub(crate) fn quantity(key: Key, value: f64) -> String {
     let unit = if key.unit() == "1" || value.is_infinite() { "" } else { key.unit() };
     format!("{key} = {} {unit}", readable(value)).trim_end().to_owned()
 }

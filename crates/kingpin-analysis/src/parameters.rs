@@ -4,7 +4,7 @@ use kingpin::{Key, KingpinError, Wheel};
 use kingpin_report::NamedNumbers;
 
 /// Every parameter that a wheel stores, without those that vary.
-pub fn parameters_of(wheel: &Wheel, varying: &[Key]) -> NamedNumbers {
+pub(crate) fn parameters_of(wheel: &Wheel, varying: &[Key]) -> NamedNumbers {
     let fixed =
         wheel.parameters().filter(|(key, _)| !varying.iter().any(|active| active.sets().contains(key)));
     NamedNumbers(fixed.map(|(key, value)| (key.name().to_owned(), value)).collect())
@@ -14,7 +14,7 @@ pub fn parameters_of(wheel: &Wheel, varying: &[Key]) -> NamedNumbers {
 ///
 /// # Errors
 /// An unknown key, or a value that a parameter may not take.
-pub fn wheel_of(parameters: &[(String, f64)]) -> Result<Wheel, KingpinError> {
+pub(crate) fn wheel_of(parameters: &[(String, f64)]) -> Result<Wheel, KingpinError> {
     let mut wheel = Wheel::default();
     for (name, value) in parameters {
         wheel.set_value(name.parse()?, *value)?;

@@ -9,7 +9,7 @@ use kingpin::{Key, Wheel};
 
 /// A labelled point with its wheel.
 #[derive(Clone, Debug)]
-pub struct LabelledPoint {
+pub(crate) struct LabelledPoint {
     /// The wheel there.
     pub wheel: Wheel,
     /// What it is.
@@ -18,7 +18,7 @@ pub struct LabelledPoint {
 
 /// What a labelled point is.
 #[derive(Clone, Debug)]
-pub enum LabelledSolution {
+pub(crate) enum LabelledSolution {
     /// A Hopf point, with a parameter along which it was found.
     Hopf(Along),
     /// A cycle.
@@ -36,7 +36,7 @@ impl LabelledPoint {
     /// # Errors
     /// [`Error::Start`]: no such file, not a result that can be started from, no such label, or a point that does not fit its
     /// wheel.
-    pub fn read(reference: &PointReference) -> Result<Self, Error> {
+    pub(crate) fn read(reference: &PointReference) -> Result<Self, Error> {
         let file = ResultFile::read(&reference.path).map_err(|problem| reference.failure(problem))?;
         let labels = file.labels();
         let missing = || reference.no_such_label(&labels);
@@ -100,7 +100,7 @@ impl LabelledPoint {
     ///
     /// # Errors
     /// [`Error::Start`].
-    pub fn check_orbit(reference: &PointReference, wheel: &Wheel, orbit: &Orbit) -> Result<(), Error> {
+    pub(crate) fn check_orbit(reference: &PointReference, wheel: &Wheel, orbit: &Orbit) -> Result<(), Error> {
         let states = wheel.free_states();
         if orbit.dimension != states.len() {
             let problem = format!(

@@ -20,7 +20,7 @@ const EXAMPLE: &str = "kingpin basin --x psi=-1:1:161 --y Omega=-60:60:121 -s v=
 /// run can be resumed.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Basin {
+pub(crate) struct Basin {
     /// State across (u, q, psi, V, Omega), from A to B at N points
     #[arg(long, value_name = "STATE=A:B:N", default_value_t = BasinRequest::default().x, allow_hyphen_values = true)]
     x: SampledInterval,
@@ -56,7 +56,7 @@ impl Basin {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let request = BasinRequest {
             wheel: self.wheel.request(),
             x: self.x.clone(),

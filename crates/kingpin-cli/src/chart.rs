@@ -11,7 +11,7 @@ const EXAMPLE: &str = "kingpin chart --x v=0.1:12:600 --y l=0.02:0.3:400 -o char
 /// Stability chart over any two parameters
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Chart {
+pub(crate) struct Chart {
     /// Parameter across, from A to B at N points
     #[arg(long, value_name = "KEY=A:B:N", default_value_t = ChartRequest::default().x)]
     x: SampledInterval,
@@ -31,7 +31,7 @@ impl Chart {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let request = ChartRequest { wheel: self.wheel.request(), x: self.x.clone(), y: self.y.clone() };
         let analysis = request.validate()?;
         let output = self.output.prepare()?;

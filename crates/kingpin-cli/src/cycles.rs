@@ -12,7 +12,7 @@ const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json 
 /// Limit cycles along a parameter, from Hopf points, a labelled point of an earlier result or samples of an orbit
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Cycles {
+pub(crate) struct Cycles {
     /// Parameter and its interval; r may reach inf
     #[arg(long, value_name = "KEY=A:B")]
     along: Interval,
@@ -50,7 +50,7 @@ impl Cycles {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let request = CyclesRequest {
             wheel: self.wheel.request(),

@@ -11,7 +11,7 @@ const EXAMPLE: &str = "kingpin hopf --along v=0.5:12 -s l=0.1";
 /// Hopf points of the uniform motion along a parameter: where shimmy is born
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Hopf {
+pub(crate) struct Hopf {
     /// Parameter and its interval; r may reach inf
     #[arg(long, value_name = "KEY=A:B")]
     along: Interval,
@@ -33,7 +33,7 @@ impl Hopf {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare_without_picture()?.explain(self.explain);
         let request =
             HopfRequest { wheel: self.wheel.request(), along: self.along.clone(), steps: self.steps.into() };

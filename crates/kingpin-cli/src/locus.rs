@@ -16,7 +16,7 @@ const EXAMPLE: &str =
 /// Hopf points (HB) of the uniform motion; folds (LPC), period doublings (PD) and torus bifurcations (NS) of cycles.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Locus {
+pub(crate) struct Locus {
     /// Labelled point of a file that `hopf` (HB), `cycles` (HB, LPC, PD, NS) or `locus` wrote, with its wheel
     #[arg(long, value_name = "FILE.json:LABEL")]
     from: PointReference,
@@ -45,7 +45,7 @@ impl Locus {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let plane = self.plane.intervals()?;
         let request = LocusRequest {

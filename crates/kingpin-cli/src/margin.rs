@@ -18,7 +18,7 @@ const EXAMPLE: &str = "kingpin margin --along v=1:8:15 --kind release-angle -o m
 /// resumed.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Margin {
+pub(crate) struct Margin {
     /// Parameter, from A to B at N values
     #[arg(long, value_name = "KEY=A:B:N", default_value_t = MarginRequest::default().along)]
     along: SampledInterval,
@@ -43,7 +43,7 @@ impl Margin {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let request = MarginRequest {
             wheel: self.wheel.request(),
             along: self.along.clone(),

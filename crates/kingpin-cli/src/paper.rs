@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Figures 2 to 6 of the paper with their data, and a report on what the paper says
 #[derive(Args, Debug)]
 #[command(after_help = "Example: kingpin paper --out paper")]
-pub struct Paper {
+pub(crate) struct Paper {
     /// One figure only, 2 to 6
     #[arg(long, value_name = "N")]
     figure: Option<u8>,
@@ -35,7 +35,7 @@ impl Paper {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         start_threads(self.threads)?;
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = PaperRequest { figure: self.figure, out: self.out.clone() };

@@ -18,7 +18,7 @@ const EXAMPLE: &str = "kingpin safe-kick -s v=6 -o edge.svg
 /// edge.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct SafeKick {
+pub(crate) struct SafeKick {
     #[command(flatten)]
     disturbance: DisturbanceOptions,
     #[command(flatten)]
@@ -34,7 +34,7 @@ impl SafeKick {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
         let request = SafeKickRequest {
             wheel: self.wheel.request(),

@@ -13,7 +13,7 @@ const EXAMPLE: &str = "kingpin simulate --duration 5 --perturb psi=0.1 -s v=8 -o
 /// Time history from the perturbed uniform motion
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Simulate {
+pub(crate) struct Simulate {
     /// Time in s
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: f64,
@@ -42,7 +42,7 @@ impl Simulate {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
         let request = SimulateRequest {
             wheel: self.wheel.request(),

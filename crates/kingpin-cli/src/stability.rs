@@ -10,7 +10,7 @@ const EXAMPLE: &str = "kingpin stability -s v=9 -s l=0.08";
 /// Linear stability of the uniform motion: eigenvalues and critical speed
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Stability {
+pub(crate) struct Stability {
     #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
@@ -22,7 +22,7 @@ impl Stability {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare_without_picture()?;
         output.deliver(&StabilityRequest { wheel: self.wheel.request() }.run()?)
     }

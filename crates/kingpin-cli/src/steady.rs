@@ -10,7 +10,7 @@ const EXAMPLE: &str = "kingpin steady -s v=6 -s l=0.1 --format json";
 /// Uniform motion of the wheel
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
-pub struct Steady {
+pub(crate) struct Steady {
     #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
@@ -22,7 +22,7 @@ impl Steady {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare_without_picture()?;
         output.deliver(&SteadyRequest { wheel: self.wheel.request() }.run()?)
     }

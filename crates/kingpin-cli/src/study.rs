@@ -8,7 +8,7 @@ use std::path::PathBuf;
 /// Studies beyond the paper: damping, isola, sliding, basin, step-steer
 #[derive(Args, Debug)]
 #[command(after_help = "Example: kingpin study isola --out studies")]
-pub struct StudyCommand {
+pub(crate) struct StudyCommand {
     /// Which study; all writes the figures of all of them
     #[arg(value_enum, value_name = "NAME")]
     name: Selection,
@@ -65,7 +65,7 @@ impl StudyCommand {
     ///
     /// # Errors
     /// Why it failed.
-    pub fn run(&self) -> Result<(), Failure> {
+    pub(crate) fn run(&self) -> Result<(), Failure> {
         start_threads(self.threads)?;
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };

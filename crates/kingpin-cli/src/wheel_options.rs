@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Which wheel.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Wheel")]
-pub struct WheelOptions {
+pub(crate) struct WheelOptions {
     /// Read the wheel from a file of `key = value` lines [default: the paper's wheel]
     #[arg(long, value_name = "FILE.toml")]
     pub wheel: Option<PathBuf>,
@@ -23,13 +23,13 @@ pub struct WheelOptions {
 
 impl WheelOptions {
     /// The wheel that is asked for.
-    pub fn request(&self) -> WheelRequest {
+    pub(crate) fn request(&self) -> WheelRequest {
         WheelRequest { wheel: self.wheel.clone(), set: self.set.clone() }
     }
 }
 
 /// The parameters of the wheel with symbol, unit, default, allowed range and meaning, for the long help.
-pub fn parameter_help(example: &str) -> String {
+pub(crate) fn parameter_help(example: &str) -> String {
     let mut table = Table::new(["key", "symbol", "unit", "default", "allowed", "meaning"]);
     for key in Key::ALL {
         table.row([

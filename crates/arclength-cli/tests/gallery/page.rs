@@ -6,7 +6,7 @@ use kingpin_report::numbers::significant;
 use std::fmt::Write;
 
 /// Where a reference value comes from.
-pub enum Source {
+pub(crate) enum Source {
     /// A publication or another program.
     Published(&'static str),
     /// A formula, or another method than continuation.
@@ -17,7 +17,7 @@ pub enum Source {
 
 /// How close the computed value must be.
 #[derive(Clone, Copy)]
-pub enum Tolerance {
+pub(crate) enum Tolerance {
     /// Relative to the reference.
     Relative(f64),
     /// For references that are zero.
@@ -25,11 +25,11 @@ pub enum Tolerance {
 }
 
 /// As exact as special equilibria are located.
-pub const LOCATED: Tolerance = Tolerance::Relative(1e-10);
+pub(crate) const LOCATED: Tolerance = Tolerance::Relative(1e-10);
 /// As exact as the digits of values that were printed with twelve of them, or periods of cycles by default.
-pub const CYCLE: Tolerance = Tolerance::Relative(1e-9);
+pub(crate) const CYCLE: Tolerance = Tolerance::Relative(1e-9);
 /// As exact as coefficients of normal forms are.
-pub const COEFFICIENT: Tolerance = Tolerance::Relative(1e-8);
+pub(crate) const COEFFICIENT: Tolerance = Tolerance::Relative(1e-8);
 
 struct Row {
     quantity: String,
@@ -40,7 +40,7 @@ struct Row {
 }
 
 /// A page that is being written.
-pub struct Page {
+pub(crate) struct Page {
     name: &'static str,
     title: &'static str,
     text: &'static str,
@@ -51,23 +51,23 @@ pub struct Page {
 
 impl Page {
     /// The page of a model.
-    pub fn new(name: &'static str, title: &'static str, text: &'static str) -> Self {
+    pub(crate) fn new(name: &'static str, title: &'static str, text: &'static str) -> Self {
         Self { name, title, text, commands: Vec::new(), rows: Vec::new(), figures: Vec::new() }
     }
 
     /// A command that shows what the page is about.
-    pub fn command(&mut self, command: &'static str) {
+    pub(crate) fn command(&mut self, command: &'static str) {
         self.commands.push(command);
     }
 
     /// A diagram.
-    pub fn figure(&mut self, suffix: &str, caption: &'static str, figure: Figure) {
+    pub(crate) fn figure(&mut self, suffix: &str, caption: &'static str, figure: Figure) {
         self.figures.push((format!("{}{suffix}", self.name), caption, figure));
     }
 
     /// Compares a computed value with its reference.
     #[track_caller]
-    pub fn row(
+    pub(crate) fn row(
         &mut self,
         quantity: impl Into<String>,
         reference: f64,
@@ -118,7 +118,7 @@ impl Page {
     }
 
     /// Compares the page with the one in the gallery, or writes it.
-    pub fn finish(self) {
+    pub(crate) fn finish(self) {
         let path = gallery().join(format!("{}.md", self.name));
         let text = self.markdown();
         if std::env::var_os("UPDATE_GALLERY").is_some() {

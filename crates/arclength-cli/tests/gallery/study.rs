@@ -21,7 +21,7 @@ use kingpin_figure::Figure;
 const FINE: f64 = 0.015;
 
 /// A model and what is known of it.
-pub struct Study {
+pub(crate) struct Study {
     pub chosen: ChosenModel,
     branches: Vec<ResultFile>,
     curves: Vec<ResultFile>,
@@ -29,7 +29,7 @@ pub struct Study {
 
 impl Study {
     /// Opens a model with some parameters set.
-    pub fn open(name: &str, set: &[(&str, f64)]) -> Self {
+    pub(crate) fn open(name: &str, set: &[(&str, f64)]) -> Self {
         let source = std::fs::read_to_string(gallery().join(format!("models/{name}.ode"))).unwrap();
         let model = Model::parse(&source).unwrap_or_else(|error| panic!("{name}: {}", error.snippet()));
         assert!(model.warnings().is_empty(), "{:?}", model.warnings());
@@ -44,7 +44,7 @@ impl Study {
     }
 
     /// The same model with another parameter and nothing computed yet.
-    pub fn with(&self, key: &str, value: f64) -> Self {
+    pub(crate) fn with(&self, key: &str, value: f64) -> Self {
         let mut chosen = self.chosen.clone();
         let index = chosen.model.parameter_index(key).expect("a parameter");
         chosen.parameters[index] = value;
@@ -53,7 +53,7 @@ impl Study {
     }
 
     /// With another initial state.
-    pub fn starting_at(mut self, state: &[f64]) -> Self {
+    pub(crate) fn starting_at(mut self, state: &[f64]) -> Self {
         self.chosen.start = state.to_vec();
         self
     }
@@ -64,7 +64,7 @@ impl Study {
     }
 
     /// Equilibria from the initial state.
-    pub fn equilibria(&mut self, along: &str) -> EquilibriumBranch {
+    pub(crate) fn equilibria(&mut self, along: &str) -> EquilibriumBranch {
         let range: Interval = along.parse().unwrap();
         let branch = Equilibria::of(&self.chosen.model)
             .start(&self.chosen.start)
@@ -77,7 +77,7 @@ impl Study {
     }
 
     /// The other branch through a branch point.
-    pub fn other_branch(
+    pub(crate) fn other_branch(
         &mut self,
         branch: &EquilibriumBranch,
         number: usize,
@@ -95,7 +95,7 @@ impl Study {
     }
 
     /// Cycles from a Hopf point of a branch.
-    pub fn cycles_from(
+    pub(crate) fn cycles_from(
         &mut self,
         branch: &EquilibriumBranch,
         hopf: usize,
@@ -107,7 +107,13 @@ impl Study {
     }
 
     /// Cycles from any start.
-    pub fn cycles(&mut self, start: CycleStart, parameters: &[f64], along: &str, at: &[f64]) -> CycleBranch {
+    pub(crate) fn cycles(
+        &mut self,
+        start: CycleStart,
+        parameters: &[f64],
+        along: &str,
+        at: &[f64],
+    ) -> CycleBranch {
         let range: Interval = along.parse().unwrap();
         let active = self.chosen.model.parameter_index(&range.key).expect("a parameter");
         let branch = Cycles::of(&self.chosen.model, start)
@@ -124,7 +130,7 @@ impl Study {
     }
 
     /// The doubled cycles that leave at a period doubling.
-    pub fn doubled_from(&mut self, cycle: &CyclePoint, along: &str, at: &[f64]) -> CycleBranch {
+    pub(crate) fn doubled_from(&mut self, cycle: &CyclePoint, along: &str, at: &[f64]) -> CycleBranch {
         let range: Interval = along.parse().unwrap();
         let mut parameters = self.chosen.parameters.clone();
         parameters[self.chosen.model.parameter_index(&range.key).expect("a parameter")] = cycle.value;
@@ -134,7 +140,7 @@ impl Study {
     }
 
     /// A curve of special cycles in two parameters, from one that was found along the first of them.
-    pub fn cycle_locus(
+    pub(crate) fn cycle_locus(
         &mut self,
         kind: SpecialKind,
         cycle: &CyclePoint,
@@ -160,7 +166,7 @@ impl Study {
     }
 
     /// The cycle on which the motion settles from the initial state.
-    pub fn settled(&self, duration: f64, longest_period: f64) -> Orbit {
+    pub(crate) fn settled(&self, duration: f64, longest_period: f64) -> Orbit {
         let (model, parameters) = (&self.chosen.model, &self.chosen.parameters);
         let field = autonomous(model, parameters);
         let end =
@@ -169,7 +175,7 @@ impl Study {
     }
 
     /// A curve of special equilibria in two parameters.
-    pub fn locus(
+    pub(crate) fn locus(
         &mut self,
         start: impl FnOnce(EquilibriumLocus<'_>) -> EquilibriumLocus<'_>,
         plane: [&str; 2],
@@ -193,28 +199,28 @@ impl Study {
     }
 
     /// The bifurcation diagram of all branches.
-    pub fn diagram(&self) -> Figure {
+    pub(crate) fn diagram(&self) -> Figure {
         diagram(&self.branches).expect("branches over one parameter")
     }
 
     /// The curves in the plane of two parameters.
-    pub fn plane(&self) -> Figure {
+    pub(crate) fn plane(&self) -> Figure {
         diagram(&self.curves).expect("curves in one plane")
     }
 }
 
 /// The special cycles of a kind, in the order of the branch.
-pub fn special(branch: &CycleBranch, wanted: impl Fn(SpecialKind) -> bool) -> Vec<&CyclePoint> {
+pub(crate) fn special(branch: &CycleBranch, wanted: impl Fn(SpecialKind) -> bool) -> Vec<&CyclePoint> {
     branch.special().filter(|(special, _)| wanted(*special)).map(|(_, point)| point).collect()
 }
 
 /// The cycle at a value that was asked for.
-pub fn at(branch: &CycleBranch, value: f64) -> &CyclePoint {
+pub(crate) fn at(branch: &CycleBranch, value: f64) -> &CyclePoint {
     branch.points.iter().find(|point| point.value == value).expect("asked for")
 }
 
 /// The point of codimension two of a kind.
-pub fn codimension_two(
+pub(crate) fn codimension_two(
     branch: &EquilibriumLocusBranch,
     kind: SpecialKind,
     number: usize,
@@ -223,6 +229,6 @@ pub fn codimension_two(
 }
 
 /// A coefficient of a normal form by name.
-pub fn coefficient(point: &CodimensionTwoPoint, name: &str) -> f64 {
+pub(crate) fn coefficient(point: &CodimensionTwoPoint, name: &str) -> f64 {
     point.coefficients.iter().find(|(candidate, _)| candidate == name).expect("the coefficient").1
 }

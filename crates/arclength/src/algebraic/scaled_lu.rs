@@ -19,7 +19,7 @@ impl ScaledLu {
     /// Factorises the column-major `n`-by-`n` `matrix`; `columns` are positive.
     ///
     /// Returns the sign of the determinant, zero if the matrix is singular or not finite.
-    pub fn factorize(&mut self, n: usize, matrix: &[f64], columns: &[f64]) -> f64 {
+    pub(crate) fn factorize(&mut self, n: usize, matrix: &[f64], columns: &[f64]) -> f64 {
         self.n = n;
         self.factors.clear();
         self.factors.extend_from_slice(matrix);
@@ -46,7 +46,7 @@ impl ScaledLu {
     }
 
     /// Solves with the matrix, in place.
-    pub fn solve(&self, vector: &mut [f64]) {
+    pub(crate) fn solve(&self, vector: &mut [f64]) {
         for (entry, factor) in vector.iter_mut().zip(&self.rows) {
             *entry *= factor;
         }
@@ -57,7 +57,7 @@ impl ScaledLu {
     }
 
     /// Modulus of the determinant of the scaled matrix.
-    pub fn determinant_size(&self) -> f64 {
+    pub(crate) fn determinant_size(&self) -> f64 {
         (0..self.n).map(|index| self.factors[index * (self.n + 1)].abs()).product()
     }
 }

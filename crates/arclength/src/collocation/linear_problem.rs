@@ -33,12 +33,12 @@ pub(crate) struct Nodes<'a> {
 
 impl Nodes<'_> {
     /// Number of nodes, left ends included.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         (self.mesh.len() - 1) * (self.gauss.degree() + 1)
     }
 
     /// For every Gauss point its interval, its index among all nodes and its quadrature weight.
-    pub fn gauss_points(self) -> impl Iterator<Item = (usize, usize, f64)> {
+    pub(crate) fn gauss_points(self) -> impl Iterator<Item = (usize, usize, f64)> {
         let degree = self.gauss.degree();
         self.mesh.windows(2).enumerate().flat_map(move |(interval, pair)| {
             (0..degree).map(move |point| {
@@ -49,7 +49,7 @@ impl Nodes<'_> {
     }
 
     /// Integral over the unit interval of the product of two functions.
-    pub fn product(self, one: &[f64], other: &[f64]) -> f64 {
+    pub(crate) fn product(self, one: &[f64], other: &[f64]) -> f64 {
         let n = one.len() / self.count();
         self.gauss_points()
             .map(|(_, node, weight)| {
@@ -64,7 +64,7 @@ impl LinearProblem {
     /// Factorises the problem with the `signs` of `y(1) = +-y(0)`. `matrices` holds `M` at every Gauss point (`n` by `n`,
     /// column-major); `columns` and `rows` are the functions `c_k` and `r_k`. `None` if the problem is
     /// singular.
-    pub fn new(
+    pub(crate) fn new(
         nodes: Nodes<'_>,
         signs: Vec<f64>,
         matrices: &[f64],
@@ -109,7 +109,11 @@ impl LinearProblem {
     }
 
     /// The solution for the inhomogeneity `g` (on all nodes) and the values `d_k` of the conditions: function and scalars.
-    pub fn solve(&mut self, inhomogeneity: &[f64], values: &[f64]) -> Option<(NodeFunction, Vec<f64>)> {
+    pub(crate) fn solve(
+        &mut self,
+        inhomogeneity: &[f64],
+        values: &[f64],
+    ) -> Option<(NodeFunction, Vec<f64>)> {
         let n = self.components;
         let degree = self.condensation.gauss.degree();
         let size = (degree + 1) * n;

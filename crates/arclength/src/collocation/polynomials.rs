@@ -21,7 +21,7 @@ pub(crate) struct Polynomials<'a> {
 
 impl Polynomials<'_> {
     /// Times of the nodes.
-    pub fn node_times(&self) -> Vec<f64> {
+    pub(crate) fn node_times(&self) -> Vec<f64> {
         let mut times = Vec::with_capacity((self.mesh.len() - 1) * (self.gauss.degree() + 1));
         for pair in self.mesh.windows(2) {
             times.push(pair[0]);
@@ -31,7 +31,7 @@ impl Polynomials<'_> {
     }
 
     /// Slope of a component at a node.
-    pub fn slope_at_node(&self, index: usize, component: usize) -> f64 {
+    pub(crate) fn slope_at_node(&self, index: usize, component: usize) -> f64 {
         let count = self.gauss.degree() + 1;
         let (interval, node) = (index / count, index % count);
         let width = self.mesh[interval + 1] - self.mesh[interval];
@@ -48,7 +48,7 @@ impl Polynomials<'_> {
     }
 
     /// Writes the state at a time in `[0, 1]`.
-    pub fn state(&self, time: f64, state: &mut [f64]) {
+    pub(crate) fn state(&self, time: f64, state: &mut [f64]) {
         let (interval, position, _) = self.place(time);
         let mut basis = [0.0; MOST_NODES];
         let basis = &mut basis[..self.gauss.degree() + 1];
@@ -58,7 +58,7 @@ impl Polynomials<'_> {
     }
 
     /// Value and slope of a component at a time in `[0, 1]`.
-    pub fn component(&self, time: f64, component: usize) -> (f64, f64) {
+    pub(crate) fn component(&self, time: f64, component: usize) -> (f64, f64) {
         let (interval, position, width) = self.place(time);
         let nodes = self.gauss.degree() + 1;
         let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);

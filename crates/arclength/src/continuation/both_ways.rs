@@ -45,7 +45,7 @@ pub(crate) fn both_ways<P: Clone, K, R: Clone>(
 impl<P: Clone, K: Copy + PartialEq, R> BothWays<P, K, R> {
     /// Joins what was found backward and forward from the same start, with a special point `middle` from which both leave, where
     /// there is one.
-    pub fn join(
+    pub(crate) fn join(
         [backward, forward]: [Followed<P, K, R>; 2],
         middle: Option<(Solution<P>, Origin<K>)>,
     ) -> Self {
@@ -72,13 +72,13 @@ impl<P: Clone, K: Copy + PartialEq, R> BothWays<P, K, R> {
     }
 
     /// A curve that was followed one way only, from a start that is a point of another one.
-    pub fn one_way(forward: Followed<P, K, R>, first: Option<(Solution<P>, Origin<K>)>) -> Self {
+    pub(crate) fn one_way(forward: Followed<P, K, R>, first: Option<(Solution<P>, Origin<K>)>) -> Self {
         let solutions = first.into_iter().chain(forward.solutions).collect();
         Self { solutions, start: 0, stops: [None, Some(forward.stop)], unlocated: forward.unlocated }
     }
 
     /// Puts special points where they belong at the start; one that is the start takes its place.
-    pub fn insert_at_start<C: Curve<Point = P, Kind = K>>(&mut self, curve: &C, events: Events<C>) {
+    pub(crate) fn insert_at_start<C: Curve<Point = P, Kind = K>>(&mut self, curve: &C, events: Events<C>) {
         let Some((origin, start_origin)) = self.solutions.get(self.start).cloned() else { return };
         let (mut before, mut after) = (Vec::new(), Vec::new());
         let mut at = None;
@@ -114,7 +114,7 @@ impl<P: Clone, K: Copy + PartialEq, R> BothWays<P, K, R> {
 
     /// Marks solutions at values of the first bounded parameter that were asked for as such: the start or an end of the range may
     /// have one. `value` is the value of a solution.
-    pub fn mark_requested(&mut self, requested: &[f64], value: impl Fn(&Solution<P>) -> f64) {
+    pub(crate) fn mark_requested(&mut self, requested: &[f64], value: impl Fn(&Solution<P>) -> f64) {
         for (solution, origin) in &mut self.solutions {
             if !matches!(origin, Origin::Special(_)) && requested.contains(&value(solution)) {
                 *origin = Origin::Requested;

@@ -15,7 +15,7 @@ const MOST_TRIALS: usize = 60;
 const DISTANCE_FROM_ENDS: f64 = 0.01;
 
 /// A change of the sign of a test function, bracketed ever more closely.
-pub struct Bracket<'a, P> {
+pub(crate) struct Bracket<'a, P> {
     ends: [&'a Solution<P>; 2],
     border: Vec<f64>,
     /// Length of the way.
@@ -44,7 +44,7 @@ impl<P: Clone> Side<P> {
 
 impl<'a, P: Clone> Bracket<'a, P> {
     /// Between two neighbouring solutions; `None` where `test` does not exist or has the same sign at both.
-    pub fn new<C: Curve<Point = P>>(
+    pub(crate) fn new<C: Curve<Point = P>>(
         curve: &mut C,
         before: &'a Solution<P>,
         after: &'a Solution<P>,
@@ -67,7 +67,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
     ///
     /// # Errors
     /// When a trial point cannot be corrected.
-    pub fn narrow<C: Curve<Point = P>>(
+    pub(crate) fn narrow<C: Curve<Point = P>>(
         &mut self,
         curve: &mut C,
         settings: &Settings,

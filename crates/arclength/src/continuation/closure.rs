@@ -30,7 +30,7 @@ pub(super) struct Closure {
 }
 
 impl Closure {
-    pub fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bound: Bound) -> Self {
+    pub(super) fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bound: Bound) -> Self {
         let parameter = start.unknown[start.unknown.len() - bound.from_end];
         let mut signature: Vec<f64> =
             curve.signature(&start.unknown).into_iter().map(|(value, _)| value).collect();
@@ -50,7 +50,7 @@ impl Closure {
     }
 
     /// The solution at which the curve comes back between two consecutive solutions, which are not the first two.
-    pub fn reached<C: Curve>(
+    pub(super) fn reached<C: Curve>(
         &self,
         curve: &mut C,
         current: &Solution<C::Point>,

@@ -22,7 +22,7 @@ const ROUNDING_TURN: f64 = 1e-12;
 
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
-pub struct CycleInspection {
+pub(crate) struct CycleInspection {
     /// Error estimate relative to the amplitudes.
     pub error_estimate: f64,
     /// Whether the multipliers say that the parameter changes the other way than the tangent, whose last digit that is.
@@ -41,7 +41,7 @@ pub struct CycleInspection {
 
 impl CycleInspection {
     /// Product of `1 + mu` over the real nontrivial multipliers, scaled: zero at a period doubling.
-    pub fn doubling_test(&self) -> f64 {
+    pub(crate) fn doubling_test(&self) -> f64 {
         let real = self.floquet.nontrivial.iter().filter(|multiplier| multiplier.is_real());
         real.map(|multiplier| {
             let value = multiplier.to_complex().re;
@@ -53,7 +53,7 @@ impl CycleInspection {
 
 /// Limit cycles `u' = T f(u, p)` along one parameter.
 #[derive(Debug)]
-pub struct CycleCurve<'a> {
+pub(crate) struct CycleCurve<'a> {
     /// The discretised problem.
     pub collocation: Collocation<LimitCycle<'a>>,
     /// Resolution asked for.
@@ -79,7 +79,7 @@ pub struct CycleCurve<'a> {
 
 impl<'a> CycleCurve<'a> {
     /// The curve through a start that is given on the mesh of the collocation.
-    pub fn new(
+    pub(crate) fn new(
         mut collocation: Collocation<LimitCycle<'a>>,
         resolution: Resolution,
         parameter_scale: f64,
@@ -141,7 +141,7 @@ impl<'a> CycleCurve<'a> {
     }
 
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
-    pub fn turn(&self, tangent: &[f64]) -> f64 {
+    pub(crate) fn turn(&self, tangent: &[f64]) -> f64 {
         tangent.last().map_or(0.0, |rate| rate / self.parameter_scale)
     }
 
@@ -168,7 +168,7 @@ impl<'a> CycleCurve<'a> {
     }
 
     /// Estimates the error of a cycle on the mesh as it is.
-    pub fn estimate_error(&mut self, unknown: &[f64]) {
+    pub(crate) fn estimate_error(&mut self, unknown: &[f64]) {
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
         self.error_estimate = errors.into_iter().fold(0.0, f64::max);

@@ -14,7 +14,7 @@ use crate::parameters::with_parameters;
 
 /// Which special cycle a defining system is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// Fold: `v' = T f_x v + beta f`, `v` periodic; own scalar `beta`.
     Fold,
     /// Period doubling: `v' = T f_x v`, `v` antiperiodic; no own scalar.
@@ -32,7 +32,7 @@ pub enum Kind {
 
 impl Kind {
     /// Number of own scalars.
-    pub fn own_scalars(self) -> usize {
+    pub(crate) fn own_scalars(self) -> usize {
         match self {
             Self::Doubling | Self::Cycle => 0,
             Self::Fold => 1,
@@ -42,7 +42,7 @@ impl Kind {
     }
 
     /// Number of real eigenfunctions.
-    pub fn eigenfunctions(self) -> usize {
+    pub(crate) fn eigenfunctions(self) -> usize {
         match self {
             Self::Fold | Self::Doubling | Self::BranchPoint => 1,
             Self::Torus => 2,
@@ -53,7 +53,7 @@ impl Kind {
 
 /// The defining system of a special cycle.
 #[derive(Debug)]
-pub struct Defining<'a> {
+pub(crate) struct Defining<'a> {
     /// The vector field.
     pub field: ErasedField<'a>,
     /// Which special cycle.

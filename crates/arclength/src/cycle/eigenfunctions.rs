@@ -25,7 +25,7 @@ pub(crate) struct Linearization<'a> {
 
 impl<'a> Linearization<'a> {
     /// From the last factorisation of `collocation`, which has to be that at `unknown`.
-    pub fn of(collocation: &'a Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Self {
+    pub(crate) fn of(collocation: &'a Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Self {
         let n = collocation.problem.dimension();
         let nodes = Nodes { mesh: collocation.mesh(), gauss: collocation.gauss() };
         let scalars = &unknown[unknown.len() - 2..];
@@ -46,7 +46,7 @@ impl<'a> Linearization<'a> {
     }
 
     /// A function with every component divided by the square of its size: the covector that measures its direction.
-    pub fn dual(&self, function: &[f64]) -> NodeFunction {
+    pub(crate) fn dual(&self, function: &[f64]) -> NodeFunction {
         function
             .chunks_exact(self.scales.len())
             .flat_map(|state| state.iter().zip(self.scales).map(|(value, scale)| value / (scale * scale)))
@@ -54,7 +54,7 @@ impl<'a> Linearization<'a> {
     }
 
     /// `T f_x y` at every Gauss point; zero at left ends.
-    pub fn image(&self, function: &[f64]) -> NodeFunction {
+    pub(crate) fn image(&self, function: &[f64]) -> NodeFunction {
         let n = self.scales.len();
         let mut image = vec![0.0; function.len()];
         for (matrix, (_, node, _)) in self.matrices.chunks_exact(n * n).zip(self.nodes.gauss_points()) {
@@ -86,7 +86,7 @@ impl<'a> Linearization<'a> {
 
     /// Null function of a cycle with a nontrivial multiplier one: `v' = T f_x v + beta f`, orthogonal to the flow and of unit
     /// size, with `beta`.
-    pub fn null_function(&self) -> Option<(NodeFunction, f64)> {
+    pub(crate) fn null_function(&self) -> Option<(NodeFunction, f64)> {
         let n = self.scales.len();
         let flow_row = self.dual(&self.flow);
         let mut guess = self.generic();
@@ -107,7 +107,7 @@ impl<'a> Linearization<'a> {
 
     /// Covector function of a cycle with a nontrivial multiplier one: `psi' = -T f_x^T psi`, orthogonal to the flow and of
     /// unit size. `null` is the null function.
-    pub fn adjoint_null_function(&self, null: &[f64]) -> Option<NodeFunction> {
+    pub(crate) fn adjoint_null_function(&self, null: &[f64]) -> Option<NodeFunction> {
         let n = self.scales.len();
         let mut adjoint = vec![0.0; self.matrices.len()];
         for (source, target) in self.matrices.chunks_exact(n * n).zip(adjoint.chunks_exact_mut(n * n)) {

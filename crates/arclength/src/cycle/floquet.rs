@@ -30,7 +30,7 @@ const CONTRADICTION: f64 = 0.05;
 
 /// Floquet multipliers of a cycle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Floquet {
+pub(crate) struct Floquet {
     /// The multipliers other than the trivial one, largest modulus first.
     pub nontrivial: Vec<Multiplier>,
     /// The trivial multiplier as computed.
@@ -44,7 +44,7 @@ pub struct Floquet {
 
 impl Floquet {
     /// All multipliers as complex numbers, the trivial one among them, largest modulus first.
-    pub fn multipliers(&self) -> Vec<Complex64> {
+    pub(crate) fn multipliers(&self) -> Vec<Complex64> {
         let mut all: Vec<Complex64> =
             self.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
         let place = all.partition_point(|multiplier| multiplier.norm() > self.trivial.abs());
@@ -54,7 +54,7 @@ impl Floquet {
 
     /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
     /// closer to the circle than the error of the trivial one, and they do not contradict each other.
-    pub fn unstable(&self) -> (usize, bool) {
+    pub(crate) fn unstable(&self) -> (usize, bool) {
         let margin = self.margin();
         let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
         let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
@@ -127,14 +127,14 @@ impl Floquet {
 
     /// Difference between the sum of the logarithms of the multipliers and the integral of the divergence, which are equal
     /// (Liouville); zero where directions that die out within a period make both meaningless on any mesh.
-    pub fn defect(&self) -> f64 {
+    pub(crate) fn defect(&self) -> f64 {
         let sum: f64 = self.nontrivial.iter().map(|multiplier| multiplier.log_modulus).sum();
         if self.divergence < DEAD { 0.0 } else { (sum - self.divergence).abs() }
     }
 
     /// Whether all multipliers are larger than the error and an odd number of them is negative, or their product is not what
     /// Liouville's formula says: that of a flow is positive and known, so the mesh does not resolve them.
-    pub fn is_contradictory(&self) -> bool {
+    pub(crate) fn is_contradictory(&self) -> bool {
         if self.defect() > CONTRADICTION {
             return true;
         }

@@ -8,7 +8,7 @@ use crate::parameters::with_parameters;
 
 /// A limit cycle with scalars `(T, p)`: period and active parameter.
 #[derive(Debug, Clone)]
-pub struct LimitCycle<'a> {
+pub(crate) struct LimitCycle<'a> {
     /// The vector field.
     pub field: ErasedField<'a>,
     /// All parameters; the active one is replaced by the unknown.

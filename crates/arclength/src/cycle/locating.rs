@@ -25,7 +25,7 @@ pub(crate) struct DefiningCurve<'a> {
 impl<'a> DefiningCurve<'a> {
     /// The defining system of a special cycle `kind` on a mesh with Gauss polynomials of `degree`, with `unknown`, which
     /// [`join`] put together, as the reference. Where `second` is `None` the second parameter has no effect.
-    pub fn new(
+    pub(crate) fn new(
         problem: &LimitCycle<'a>,
         kind: Kind,
         (mesh, degree): (Vec<f64>, usize),

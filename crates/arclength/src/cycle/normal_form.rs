@@ -29,7 +29,7 @@ const SMALLEST_SHIFT: f64 = 1e-6;
 
 impl<'a> CriticalCycle<'a> {
     /// The cycle `unknown` of states, period and parameter; `collocation` has just been factorised there.
-    pub fn of(collocation: &'a Collocation<LimitCycle<'a>>, unknown: &'a [f64]) -> Self {
+    pub(crate) fn of(collocation: &'a Collocation<LimitCycle<'a>>, unknown: &'a [f64]) -> Self {
         let problem = &collocation.problem;
         let (states, scalars) = unknown.split_at(unknown.len() - 2);
         let mut parameters = problem.parameters.clone();
@@ -78,7 +78,7 @@ impl<'a> CriticalCycle<'a> {
     /// integral of `<v, v>` over the unit interval equal to one and that of `<v, f>` zero (`kappa = -beta / T`), and
     /// `b / kappa`, its value when `v` is scaled to `kappa = 1`; the latter is what MatCont prints. The sign of `b` is that of
     /// the function.
-    pub fn fold(&self, (functions, own): &Eigenfunctions) -> Option<(f64, Option<f64>)> {
+    pub(crate) fn fold(&self, (functions, own): &Eigenfunctions) -> Option<(f64, Option<f64>)> {
         let linear = &self.linearization;
         let (null, beta) = (functions.first()?, *own.first()?);
         let scaled_size = linear.nodes.product(null, &linear.dual(null)).sqrt();
@@ -105,7 +105,12 @@ impl<'a> CriticalCycle<'a> {
 
     /// What a coefficient of the normal form would be if the slow motion had the rate of one in a period where its amplitude is
     /// `sizes`; coefficients are counted against it.
-    pub fn natural_coefficient(&self, kind: Kind, (functions, _): &Eigenfunctions, sizes: &[f64]) -> f64 {
+    pub(crate) fn natural_coefficient(
+        &self,
+        kind: Kind,
+        (functions, _): &Eigenfunctions,
+        sizes: &[f64],
+    ) -> f64 {
         let linear = &self.linearization;
         let sized = |function: &NodeFunction| {
             let dual: NodeFunction = function
@@ -143,7 +148,7 @@ impl<'a> CriticalCycle<'a> {
 
     /// Period doubling: `c` of `d xi/dt = c xi^3` for the eigenfunction with the integral of `<v, v>` over the period of the
     /// cycle equal to one.
-    pub fn doubling(&self, (functions, _): &Eigenfunctions) -> Option<f64> {
+    pub(crate) fn doubling(&self, (functions, _): &Eigenfunctions) -> Option<f64> {
         let linear = &self.linearization;
         let function = functions.first()?;
         let size = linear.nodes.product(function, function).sqrt();
@@ -163,7 +168,7 @@ impl<'a> CriticalCycle<'a> {
 
     /// Torus bifurcation: real and imaginary part of `d` of `d xi/dt = i omega xi + d xi |xi|^2` for the eigenfunction with
     /// the integral of `<v, v>` over the unit interval equal to one.
-    pub fn torus(&self, (functions, own): &Eigenfunctions) -> Option<[f64; 2]> {
+    pub(crate) fn torus(&self, (functions, own): &Eigenfunctions) -> Option<[f64; 2]> {
         let linear = &self.linearization;
         let n = linear.scales.len();
         let [first, second] = &functions[..] else { return None };

@@ -52,7 +52,7 @@ pub(crate) struct StateSize {
 
 impl StateSizes {
     /// `start` holds the unknowns of the first cycle.
-    pub fn new(problem: &LimitCycle<'_>, start: &[f64]) -> Self {
+    pub(crate) fn new(problem: &LimitCycle<'_>, start: &[f64]) -> Self {
         let n = problem.dimension();
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = start[start.len() - 1];
@@ -80,7 +80,7 @@ impl StateSizes {
     }
 
     /// Sizes of the states of a cycle, given on its nodes.
-    pub fn measure(&mut self, states: &[f64]) -> Vec<StateSize> {
+    pub(crate) fn measure(&mut self, states: &[f64]) -> Vec<StateSize> {
         let n = self.largest.len();
         (0..n)
             .map(|component| {
@@ -104,7 +104,7 @@ impl StateSizes {
     }
 
     /// Whether the states, given on nodes, all rest: an equilibrium, which solves the equations of a cycle with any period.
-    pub fn is_equilibrium(&self, states: &[f64]) -> bool {
+    pub(crate) fn is_equilibrium(&self, states: &[f64]) -> bool {
         let n = self.largest.len();
         (0..n).all(|component| {
             let (smallest, largest) = extent(states, n, component);
@@ -114,7 +114,7 @@ impl StateSizes {
     }
 
     /// Sizes that the nonlinearity of the field gives the states.
-    pub fn natural(&self) -> impl Iterator<Item = f64> + '_ {
+    pub(crate) fn natural(&self) -> impl Iterator<Item = f64> + '_ {
         self.resting.iter().map(|resting| resting / RESTING_PART)
     }
 
@@ -124,7 +124,11 @@ impl StateSizes {
 
     /// Parameter value at which the amplitude passes zero between two cycles on the same nodes with the parameter values `a`
     /// and `b`: behind it a curve goes on to the same cycles half a period later.
-    pub fn amplitude_passes_zero(&self, (one, a): (&[f64], f64), (other, b): (&[f64], f64)) -> Option<f64> {
+    pub(crate) fn amplitude_passes_zero(
+        &self,
+        (one, a): (&[f64], f64),
+        (other, b): (&[f64], f64),
+    ) -> Option<f64> {
         let n = self.largest.len();
         let nodes = (one.len() / n) as f64;
         let (mut first, mut second, mut mixed) = (0.0, 0.0, 0.0);
@@ -143,7 +147,7 @@ impl StateSizes {
 
     /// Extreme values with the sizes of the states, to tell whether two cycles are the same. A state that rests on every cycle
     /// may move along the curve.
-    pub fn signature(&self, ranges: &[Range]) -> Vec<(f64, f64)> {
+    pub(crate) fn signature(&self, ranges: &[Range]) -> Vec<(f64, f64)> {
         let moved = self.visited.iter().map(|visited| 0.5 * (visited.largest - visited.smallest));
         let sized = ranges.iter().zip(self.met().zip(moved).map(|(met, moved)| met.max(moved)));
         sized.flat_map(|(range, size)| [(range.largest, size), (range.smallest, size)]).collect()
@@ -151,7 +155,7 @@ impl StateSizes {
 
     /// Whether the period grows without bound; `sensitivity` is the rate of its logarithm over that of the parameters in parts of
     /// their ranges, `tolerance` that of the cycles.
-    pub fn period_is_unbounded(&mut self, period: f64, sensitivity: f64, tolerance: f64) -> bool {
+    pub(crate) fn period_is_unbounded(&mut self, period: f64, sensitivity: f64, tolerance: f64) -> bool {
         let first = *self.first_period.get_or_insert(period);
         let limit = (RESOLVED_SENSITIVITY / tolerance).clamp(LEAST_SENSITIVITY, HOMOCLINIC_SENSITIVITY);
         period > HOMOCLINIC_GROWTH * first && sensitivity > limit

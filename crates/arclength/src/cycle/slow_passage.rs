@@ -55,7 +55,7 @@ pub(crate) struct Passing<'a> {
 
 impl Passing<'_> {
     /// The equilibrium beside which the cycle is slowest, if it is one that makes periods grow without bound.
-    pub fn slow_passage(&self) -> Option<SlowPassage> {
+    pub(crate) fn slow_passage(&self) -> Option<SlowPassage> {
         let slowest = self.slowest()?;
         self.saddle(slowest).or_else(|| self.saddle_node(slowest))
     }

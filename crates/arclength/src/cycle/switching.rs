@@ -227,7 +227,7 @@ pub(super) struct HopfStart<'a> {
 impl HopfStart<'_> {
     /// Amplitude to start with, so that the first cycle is some part of the parameter's range `width` away; `scales` are the
     /// sizes of the states.
-    pub fn first_amplitude(&self, width: f64, scales: &[f64]) -> f64 {
+    pub(super) fn first_amplitude(&self, width: f64, scales: &[f64]) -> f64 {
         // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
         let natural = (width * self.crossing_speed / self.cubic_coefficient).abs().sqrt();
         let sizes = scales.iter().zip(self.eigenvector);
@@ -239,7 +239,7 @@ impl HopfStart<'_> {
     }
 
     /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
-    pub fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Departure {
+    pub(super) fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Departure {
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
         let gauss = Gauss::new(degree);

@@ -38,7 +38,12 @@ pub(crate) struct EquilibriumCurve<'a> {
 
 impl<'a> EquilibriumCurve<'a> {
     /// `scales` are the sizes of the states and the length of the parameter's range.
-    pub fn new(problem: EquilibriumProblem<'a>, scales: Vec<f64>, bound: Bound, settings: Settings) -> Self {
+    pub(super) fn new(
+        problem: EquilibriumProblem<'a>,
+        scales: Vec<f64>,
+        bound: Bound,
+        settings: Settings,
+    ) -> Self {
         let workspace = EigenvalueWorkspace::new(problem.dimension);
         Self {
             system: DenseSystem::new(problem, scales.clone()),
@@ -53,7 +58,7 @@ impl<'a> EquilibriumCurve<'a> {
     }
 
     /// Forgets the direction followed before.
-    pub fn restart(&mut self) {
+    pub(super) fn restart(&mut self) {
         self.idle_way = 0.0;
         self.has_moved = false;
     }
@@ -72,12 +77,12 @@ impl<'a> EquilibriumCurve<'a> {
         (parameter + left).clamp(self.bound.lower, self.bound.upper)
     }
 
-    pub fn dimension(&self) -> usize {
+    pub(super) fn dimension(&self) -> usize {
         self.system.problem.dimension
     }
 
     /// The Jacobian with respect to the state, column-major.
-    pub fn jacobian(&mut self, unknown: &[f64]) -> Vec<f64> {
+    pub(super) fn jacobian(&mut self, unknown: &[f64]) -> Vec<f64> {
         let n = self.dimension();
         let mut residual = vec![0.0; n + 1];
         self.system.linearize(unknown, &mut residual);
@@ -86,7 +91,7 @@ impl<'a> EquilibriumCurve<'a> {
 
     /// A branch point as a solution of the curve: the bordered Jacobian is singular there, the tangent that of the normal
     /// form.
-    pub fn at_branch_point(
+    pub(super) fn at_branch_point(
         &mut self,
         unknown: Vec<f64>,
         point: BranchPoint,
@@ -101,12 +106,12 @@ impl<'a> EquilibriumCurve<'a> {
     }
 
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
-    pub fn turn(&self, tangent: &[f64]) -> f64 {
+    pub(super) fn turn(&self, tangent: &[f64]) -> f64 {
         Self::turn_of(tangent, self.system.scales[self.dimension()])
     }
 
     /// The same for a range of this length.
-    pub fn turn_of(tangent: &[f64], range: f64) -> f64 {
+    pub(super) fn turn_of(tangent: &[f64], range: f64) -> f64 {
         tangent.last().map_or(0.0, |rate| rate / range)
     }
 

@@ -100,7 +100,7 @@ pub(crate) fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
 }
 
 impl<'a> CriticalPair<'a> {
-    pub fn at(
+    pub(crate) fn at(
         field: ErasedField<'a>,
         state: &[f64],
         parameters: &[f64],
@@ -131,17 +131,21 @@ impl<'a> CriticalPair<'a> {
         })
     }
 
-    pub fn forms(&self) -> MultilinearForms<'_> {
+    pub(crate) fn forms(&self) -> MultilinearForms<'_> {
         MultilinearForms { field: self.field, state: &self.state, parameters: &self.parameters }
     }
 
     /// Solves `(shift - A) y = right_hand_side`; `None` if singular.
-    pub fn resolvent(&self, shift: Complex64, right_hand_side: &[Complex64]) -> Option<Vec<Complex64>> {
+    pub(crate) fn resolvent(
+        &self,
+        shift: Complex64,
+        right_hand_side: &[Complex64],
+    ) -> Option<Vec<Complex64>> {
         self.bordered_resolvent(shift, right_hand_side, false)
     }
 
     /// Solves `(i frequency - A) y = right_hand_side`, `<p, y> = 0`, where `<p, right_hand_side> = 0`.
-    pub fn critical_resolvent(&self, right_hand_side: &[Complex64]) -> Option<Vec<Complex64>> {
+    pub(crate) fn critical_resolvent(&self, right_hand_side: &[Complex64]) -> Option<Vec<Complex64>> {
         self.bordered_resolvent(Complex64::new(0.0, self.frequency), right_hand_side, true)
     }
 
@@ -192,7 +196,7 @@ impl<'a> CriticalPair<'a> {
 
     /// First Lyapunov coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, equation 5.34) and the sum of
     /// the moduli of its terms.
-    pub fn first_lyapunov(&self) -> Option<(f64, f64)> {
+    pub(crate) fn first_lyapunov(&self) -> Option<(f64, f64)> {
         let forms = self.forms();
         let q = &self.right;
         let conjugate: Vec<Complex64> = q.iter().map(Complex64::conj).collect();

@@ -47,7 +47,7 @@ pub(crate) struct MultilinearForms<'a> {
 impl MultilinearForms<'_> {
     /// The derivative of order `directions.len()` (one to five) along real directions in the space of states followed
     /// by parameters; a direction may stop after the states.
-    pub fn real(&self, directions: &[&[f64]]) -> Vec<f64> {
+    pub(crate) fn real(&self, directions: &[&[f64]]) -> Vec<f64> {
         match directions.len() {
             1 => self.nested::<First>(directions),
             2 => self.nested::<Second>(directions),
@@ -75,7 +75,7 @@ impl MultilinearForms<'_> {
     }
 
     /// The derivative of order `directions.len()` (one to five) along complex directions.
-    pub fn complex(&self, directions: &[&[Complex64]]) -> Vec<Complex64> {
+    pub(crate) fn complex(&self, directions: &[&[Complex64]]) -> Vec<Complex64> {
         let order = directions.len();
         let parts: Vec<[Vec<f64>; 2]> = directions
             .iter()

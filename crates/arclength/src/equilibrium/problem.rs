@@ -15,12 +15,12 @@ pub(crate) struct EquilibriumProblem<'a> {
 }
 
 impl<'a> EquilibriumProblem<'a> {
-    pub fn new(field: ErasedField<'a>, parameters: &[f64], active: &[usize]) -> Self {
+    pub(crate) fn new(field: ErasedField<'a>, parameters: &[f64], active: &[usize]) -> Self {
         Self { field, parameters: parameters.to_vec(), active: active.to_vec(), dimension: field.dimension() }
     }
 
     /// The full list of parameters at `values` of the active ones.
-    pub fn parameters_at(&self, values: &[f64]) -> Vec<f64> {
+    pub(crate) fn parameters_at(&self, values: &[f64]) -> Vec<f64> {
         let mut parameters = self.parameters.clone();
         for (&index, &value) in self.active.iter().zip(values) {
             parameters[index] = value;
@@ -37,7 +37,7 @@ impl<'a> EquilibriumProblem<'a> {
 
     /// Writes `f` into `value` and its derivative along `direction` into `image`; `direction` lies in the space of
     /// the unknowns and may stop after the states.
-    pub fn derivative_along<T: FieldScalar>(
+    pub(crate) fn derivative_along<T: FieldScalar>(
         &self,
         unknown: &[T],
         direction: &[T],

@@ -21,7 +21,7 @@ fn conjugate(vector: &[Complex64]) -> Vector {
 impl CriticalPair<'_> {
     /// `Re(c2)/omega` with `c2` the coefficient of `z |z|^4` and `<q, q> = <p, q> = 1`, valid where the first Lyapunov
     /// coefficient vanishes; `None` if an eigenvalue is zero or a resonant multiple of the critical one.
-    pub fn second_lyapunov(&self) -> Option<f64> {
+    pub(crate) fn second_lyapunov(&self) -> Option<f64> {
         let forms = self.forms();
         let form = |directions: &[&Vector]| {
             let directions: Vec<&[Complex64]> =

@@ -35,7 +35,7 @@ pub(crate) struct Spectrum {
 
 impl Spectrum {
     /// Of the column-major Jacobian `matrix`.
-    pub fn of(matrix: &[f64], workspace: &mut EigenvalueWorkspace) -> Result<Self, Error> {
+    pub(crate) fn of(matrix: &[f64], workspace: &mut EigenvalueWorkspace) -> Result<Self, Error> {
         let eigenvalues = workspace
             .eigenvalues(matrix)
             .map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?
@@ -55,7 +55,7 @@ impl Spectrum {
     }
 
     /// What the search for special points compares from solution to solution.
-    pub fn growth(&self) -> events::Spectrum {
+    pub(crate) fn growth(&self) -> events::Spectrum {
         let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
         events::Spectrum {
             exponents: self.eigenvalues.clone(),
@@ -68,7 +68,7 @@ impl Spectrum {
 
     /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has
     /// solutions that consist of one eigenvector only.
-    pub fn has_pair(&self, modulus: f64, imaginary: bool) -> bool {
+    pub(crate) fn has_pair(&self, modulus: f64, imaginary: bool) -> bool {
         let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
         let target = if imaginary { Complex64::new(0.0, modulus) } else { Complex64::new(modulus, 0.0) };
         let near = |target: Complex64| {
@@ -88,7 +88,7 @@ pub(crate) struct HopfTest {
 }
 
 impl HopfTest {
-    pub fn of(eigenvalues: &[Complex64]) -> Self {
+    pub(crate) fn of(eigenvalues: &[Complex64]) -> Self {
         let mut test = Self { product: 1.0, closest: 1.0, undecided: 0 };
         let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
         for_each_pair(eigenvalues, |one, other| {

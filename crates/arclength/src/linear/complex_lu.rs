@@ -20,7 +20,7 @@ fn size(z: Complex64) -> f64 {
 
 impl ComplexLu {
     /// Factorises `matrix`; pivots smaller than `smallest_pivot`, which must be positive, are replaced by it.
-    pub fn of(n: usize, mut matrix: Vec<Complex64>, smallest_pivot: f64) -> Self {
+    pub(super) fn of(n: usize, mut matrix: Vec<Complex64>, smallest_pivot: f64) -> Self {
         let mut pivots = vec![0; n];
         for k in 0..n {
             let mut pivot = k;
@@ -53,7 +53,7 @@ impl ComplexLu {
     }
 
     /// Solves `A x = b` in place of `b`.
-    pub fn solve(&self, vector: &mut [Complex64]) {
+    pub(super) fn solve(&self, vector: &mut [Complex64]) {
         let n = self.n;
         for (k, pivot) in self.pivots.iter().enumerate() {
             vector.swap(k, *pivot);

@@ -26,7 +26,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    pub const ZERO: Block =
+    pub(super) const ZERO: Block =
         Block { a: Complex64::ZERO, b: Complex64::ZERO, c: Complex64::ZERO, d: Complex64::ZERO };
 }
 

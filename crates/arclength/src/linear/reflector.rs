@@ -23,7 +23,7 @@ pub(super) struct SmallReflector {
 impl SmallReflector {
     /// The reflector that maps `(x, y, z)` onto `(beta, 0, 0)`. Components must not exceed about 1e150.
     #[inline]
-    pub fn annihilating(x: f64, y: f64, z: f64) -> Self {
+    pub(super) fn annihilating(x: f64, y: f64, z: f64) -> Self {
         let tail = y * y + z * z;
         let square = x * x + tail;
         if square < TINY_SQUARE {
@@ -55,14 +55,14 @@ impl SmallReflector {
 
     /// Applies the reflector to `(x, y, z)`.
     #[inline(always)]
-    pub fn apply(&self, x: f64, y: f64, z: f64) -> (f64, f64, f64) {
+    pub(super) fn apply(&self, x: f64, y: f64, z: f64) -> (f64, f64, f64) {
         let sum = self.tau * (x + self.first * y + self.second * z);
         (x - sum, y - sum * self.first, z - sum * self.second)
     }
 
     /// Applies the reflector to `(x, y)`; `second` must be zero.
     #[inline(always)]
-    pub fn apply_to_pair(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(super) fn apply_to_pair(&self, x: f64, y: f64) -> (f64, f64) {
         let sum = self.tau * (x + self.first * y);
         (x - sum, y - sum * self.first)
     }

@@ -53,7 +53,7 @@ pub(super) struct WideRange<S> {
 
 impl<S: Significand> WideRange<S> {
     #[inline]
-    pub fn new(significand: S) -> Self {
+    pub(super) fn new(significand: S) -> Self {
         WideRange { significand, exponent: 0 }.normalized()
     }
 
@@ -76,12 +76,12 @@ impl<S: Significand> WideRange<S> {
         self
     }
 
-    pub fn is_zero(self) -> bool {
+    pub(super) fn is_zero(self) -> bool {
         self.significand.size() == 0.0
     }
 
     /// The significand relative to `2^(512 exponent)`; zero or infinite where that leaves the range of `f64`.
-    pub fn relative_to(self, exponent: i64) -> S {
+    pub(super) fn relative_to(self, exponent: i64) -> S {
         match self.exponent - exponent {
             0 => self.significand,
             -1 => self.significand * DOWN,
@@ -93,12 +93,12 @@ impl<S: Significand> WideRange<S> {
     }
 
     /// The exponent that makes [`relative_to`](Self::relative_to) moderate for all of `numbers`.
-    pub fn common_exponent(numbers: &[Self]) -> i64 {
+    pub(super) fn common_exponent(numbers: &[Self]) -> i64 {
         numbers.iter().filter(|x| !x.is_zero()).map(|x| x.exponent).max().unwrap_or(0)
     }
 
     /// `(s, e)` with the value `s * 2^e` and `1 <= size of s < 2`; zero gives `(0, 0)`.
-    pub fn split(self) -> (S, i64) {
+    pub(super) fn split(self) -> (S, i64) {
         if self.is_zero() {
             return (self.significand, 0);
         }
@@ -109,13 +109,13 @@ impl<S: Significand> WideRange<S> {
 }
 
 impl WideRange<f64> {
-    pub fn abs(self) -> Self {
+    pub(super) fn abs(self) -> Self {
         WideRange { significand: self.significand.abs(), ..self }
     }
 }
 
 impl WideRange<Complex64> {
-    pub fn sqrt(self) -> Self {
+    pub(super) fn sqrt(self) -> Self {
         let even = self.exponent.rem_euclid(2) == 0;
         let significand = if even { self.significand } else { self.significand * UP };
         let exponent = self.exponent.div_euclid(2);
@@ -123,20 +123,20 @@ impl WideRange<Complex64> {
     }
 
     /// `2^exponent`.
-    pub fn power_of_two(exponent: i64) -> Self {
+    pub(super) fn power_of_two(exponent: i64) -> Self {
         let step = i64::from(STEP);
         let significand = f64::powi(2.0, exponent.rem_euclid(step) as i32);
         WideRange { significand: significand.into(), exponent: exponent.div_euclid(step) }.normalized()
     }
 
     /// Whether the modulus is at most that of `other`.
-    pub fn is_not_larger_than(self, other: Self) -> bool {
+    pub(super) fn is_not_larger_than(self, other: Self) -> bool {
         let exponent = Self::common_exponent(&[self, other]);
         self.relative_to(exponent).norm() <= other.relative_to(exponent).norm()
     }
 
     /// The nearest number of ordinary range; infinite or zero outside.
-    pub fn to_complex(self) -> Complex64 {
+    pub(super) fn to_complex(self) -> Complex64 {
         let (significand, exponent) = self.split();
         let (a, b) = power_of_two(exponent.clamp(-2040, 2040) as i32);
         significand * a * b

@@ -33,7 +33,7 @@ pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
 }
 
 impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
-    pub fn new(kind: K, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
+    pub(super) fn new(kind: K, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
         let n = states.len();
         let sizes = kind.sizes(&states, ranges);
         Self {
@@ -51,12 +51,12 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
     }
 
     /// State and parameters out of the unknowns.
-    pub fn equilibrium(&self, unknown: &[f64]) -> Vec<f64> {
+    pub(super) fn equilibrium(&self, unknown: &[f64]) -> Vec<f64> {
         [&unknown[..self.states.len()], &unknown[unknown.len() - 2..]].concat()
     }
 
     /// The column-major Jacobian with respect to the state.
-    pub fn jacobian(&mut self, unknown: &[f64]) -> &[f64] {
+    pub(super) fn jacobian(&mut self, unknown: &[f64]) -> &[f64] {
         let n = self.states.len();
         let point = self.equilibrium(unknown);
         let problem = self.system.problem.equilibria();
@@ -65,14 +65,18 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
         &self.matrix[..n * n]
     }
 
-    pub fn spectrum(&mut self, unknown: &[f64]) -> Result<Spectrum, Error> {
+    pub(super) fn spectrum(&mut self, unknown: &[f64]) -> Result<Spectrum, Error> {
         let n = self.states.len();
         self.jacobian(unknown);
         Spectrum::of(&self.matrix[..n * n], &mut self.workspace)
     }
 
     /// Suits scales and normalisations to `unknown`.
-    pub fn renormalize(&mut self, unknown: &mut [f64], vectors: &mut [&mut Vec<f64>]) -> Result<(), Error> {
+    pub(super) fn renormalize(
+        &mut self,
+        unknown: &mut [f64],
+        vectors: &mut [&mut Vec<f64>],
+    ) -> Result<(), Error> {
         for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.states) {
             *range = [range[0].min(*value), range[1].max(*value)];
             *scale = scale.max(range[1] - range[0]);

@@ -69,7 +69,7 @@ impl PlaneGauge {
     }
 
     /// Rewrites a solution and `vectors`, solutions or tangents at the solution before them; `old` is the normal so far.
-    pub fn rewrite(&self, n: usize, old: &[f64], unknown: &mut [f64], vectors: &mut [&mut Vec<f64>]) {
+    pub(super) fn rewrite(&self, n: usize, old: &[f64], unknown: &mut [f64], vectors: &mut [&mut Vec<f64>]) {
         let mut base = self.rewrite_solution(n, unknown);
         for vector in vectors {
             if is_solution(vector, n..2 * n, old) {

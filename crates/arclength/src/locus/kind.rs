@@ -43,7 +43,7 @@ pub(super) struct Monitor {
 
 impl Monitor {
     /// The value of a test function, where it is defined.
-    pub fn test(&self, kind: SpecialKind) -> Option<f64> {
+    pub(super) fn test(&self, kind: SpecialKind) -> Option<f64> {
         self.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
     }
 }

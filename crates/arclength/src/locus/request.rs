@@ -22,7 +22,7 @@ impl TwoParameters {
     ///
     /// # Errors
     /// [`Error::Invalid`]
-    pub fn checked(
+    pub(super) fn checked(
         active: &[usize],
         bounds: &[Bound],
         names: &[String],
@@ -42,14 +42,14 @@ impl TwoParameters {
     }
 
     /// The same with the other parameter first among the unknowns.
-    pub fn swapped(self) -> Self {
+    pub(super) fn swapped(self) -> Self {
         let Self { active: [first, second], bounds: [one, other], swapped } = self;
         let bounds = [Bound { from_end: other.from_end, ..one }, Bound { from_end: one.from_end, ..other }];
         Self { active: [second, first], bounds, swapped: !swapped }
     }
 
     /// Lengths of the ranges in the order of the unknowns.
-    pub fn ranges(&self) -> [f64; 2] {
+    pub(super) fn ranges(&self) -> [f64; 2] {
         let mut ranges = [0.0; 2];
         for bound in self.bounds {
             ranges[2 - bound.from_end] = bound.width();

@@ -6,7 +6,7 @@ use arclength::linear::{eigenvalues::eigenvalues, eigenvectors::right_eigenvecto
 use arclength::{Dual, Scalar, VectorField};
 
 /// Start at a known Hopf point; the normal form is given only roughly, as it sets the first amplitude alone.
-pub fn hopf_start<F: VectorField>(field: &F, state: &[f64], parameters: &[f64]) -> CycleStart {
+pub(crate) fn hopf_start<F: VectorField>(field: &F, state: &[f64], parameters: &[f64]) -> CycleStart {
     let n = state.len();
     let mut jacobian = vec![0.0; n * n];
     for column in 0..n {
@@ -38,7 +38,7 @@ pub fn hopf_start<F: VectorField>(field: &F, state: &[f64], parameters: &[f64]) 
 
 macro_rules! model {
     ($name:ident, [$($state:ident),*], [$($parameter:ident),*], [$($equation:expr),*]) => {
-        pub struct $name;
+        pub(crate) struct $name;
         impl VectorField for $name {
             fn state_names(&self) -> Vec<String> {
                 vec![$(stringify!($state).into()),*]

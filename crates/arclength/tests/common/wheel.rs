@@ -5,7 +5,7 @@ use arclength::cycle::CycleStart;
 use arclength::{Scalar, VectorField};
 
 /// The towed wheel of the project's theory, l = 0.08 m, r = 1 m, towing speed active.
-pub struct Wheel;
+pub(crate) struct Wheel;
 
 impl VectorField for Wheel {
     fn state_names(&self) -> Vec<String> {
@@ -39,7 +39,7 @@ impl VectorField for Wheel {
 }
 
 /// Its Hopf point from the closed forms, and the towing speed there.
-pub fn wheel_start() -> (CycleStart, f64) {
+pub(crate) fn wheel_start() -> (CycleStart, f64) {
     let v = 8.43103697014;
     let (d, l, k, m_c) = (0.068, 0.08, 100.0, 0.0668);
     let m = m_c * d;

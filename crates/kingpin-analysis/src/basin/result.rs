@@ -54,7 +54,7 @@ impl StateValues {
 
 /// The initial conditions: the axes of a grid, or the states of a sample.
 #[derive(Debug)]
-pub struct Starts {
+pub(super) struct Starts {
     x: Vec<f64>,
     y: Vec<f64>,
     seed: Option<u64>,
@@ -62,12 +62,12 @@ pub struct Starts {
 
 impl Starts {
     /// A grid.
-    pub fn grid(axes: &[Axis; 2], counts: [usize; 2]) -> Self {
+    pub(super) fn grid(axes: &[Axis; 2], counts: [usize; 2]) -> Self {
         Self { x: axes[0].values(counts[0]), y: axes[1].values(counts[1]), seed: None }
     }
 
     /// A sample.
-    pub fn sample(axes: &[Axis; 2], states: &[[f64; 5]], seed: u64) -> Self {
+    pub(super) fn sample(axes: &[Axis; 2], states: &[[f64; 5]], seed: u64) -> Self {
         let values = |axis: &Axis| {
             let place = STATE_NAMES.iter().position(|name| *name == axis.name()).unwrap_or(0);
             states.iter().map(|state| state[place]).collect()

@@ -15,7 +15,7 @@ use kingpin_figure::{
 const UNIFORM_MOTIONS: usize = 400;
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
-pub fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointResult]) -> Figure {
+pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointResult]) -> Figure {
     let (key, abscissa) = drawn_as(along);
     let (start, end) = along.ends();
     let ends = [abscissa(start), abscissa(end)];

@@ -16,7 +16,7 @@ const SAME_HOPF_POINT: f64 = 1e-6;
 ///
 /// # Errors
 /// [`Error::NothingFound`] with the stability at both ends, and those of the search.
-pub fn search(
+pub(crate) fn search(
     wheel: &Wheel,
     along: Along,
     settings: Settings,
@@ -73,11 +73,11 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
 }
 
 /// Label of the Hopf point with an index.
-pub fn label(index: usize) -> String {
+pub(crate) fn label(index: usize) -> String {
     format!("HB{}", index + 1)
 }
 
 /// Whether two values of the parameter are those of one Hopf point.
-pub fn same_value(first: f64, second: f64) -> bool {
+pub(crate) fn same_value(first: f64, second: f64) -> bool {
     first == second || (first - second).abs() <= SAME_HOPF_POINT * first.abs().max(second.abs())
 }

@@ -14,7 +14,7 @@ const SEARCHED: [f64; 4] = [2.0, 4.0, 8.0, 16.0];
 
 /// The unstable limit cycles beside the safe disturbances.
 #[derive(Clone, Debug, Default)]
-pub struct UnstableCycles {
+pub(super) struct UnstableCycles {
     /// Half the range of the caster angle of the smallest one at each value, where there is one.
     pub amplitudes: Vec<Option<f64>>,
     /// Why there is none at some values.
@@ -25,7 +25,7 @@ pub struct UnstableCycles {
 ///
 /// # Errors
 /// A value that the parameter may not take.
-pub fn unstable_cycles(
+pub(super) fn unstable_cycles(
     wheel: &Wheel,
     along: Along,
     values: &[f64],

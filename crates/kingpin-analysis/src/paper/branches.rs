@@ -51,7 +51,7 @@ pub(super) struct Branches {
 }
 
 impl Branches {
-    pub fn compute(tasks: &Tasks<'_>) -> Result<Self, Error> {
+    pub(super) fn compute(tasks: &Tasks<'_>) -> Result<Self, Error> {
         let lengths = FIGURE_5_LENGTHS.map(|length| (length, FIGURE_5_RADIUS));
         // The longest task comes first, so that no core waits for it in the end.
         let mut places: Vec<(f64, f64)> = RADII
@@ -77,44 +77,44 @@ impl Branches {
     }
 
     /// The branches of figure 5, in the order of the caster length.
-    pub fn of_figure_5(&self) -> impl Iterator<Item = &Branch> {
+    pub(super) fn of_figure_5(&self) -> impl Iterator<Item = &Branch> {
         FIGURE_5_LENGTHS.into_iter().filter_map(|length| self.branch(length, FIGURE_5_RADIUS))
     }
 
     /// The branches of figure 6, in the order of the radius.
-    pub fn of_figure_6(&self) -> impl Iterator<Item = &Branch> {
+    pub(super) fn of_figure_6(&self) -> impl Iterator<Item = &Branch> {
         RADII.into_iter().filter_map(|radius| self.branch(FIGURE_6_LENGTH, radius))
     }
 
     /// Every branch once.
-    pub fn iter(&self) -> impl Iterator<Item = &Branch> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Branch> {
         self.all.iter()
     }
 
     /// The branch at a caster length and a radius.
-    pub fn branch(&self, caster_length: f64, radius: f64) -> Option<&Branch> {
+    pub(super) fn branch(&self, caster_length: f64, radius: f64) -> Option<&Branch> {
         self.all.iter().find(|branch| branch.caster_length == caster_length && branch.radius == radius)
     }
 }
 
 impl Branch {
     /// The wheel at a speed.
-    pub fn wheel(&self, speed: f64) -> Result<Wheel, Error> {
+    pub(super) fn wheel(&self, speed: f64) -> Result<Wheel, Error> {
         Ok(paper_wheel(speed, self.caster_length, self.radius)?)
     }
 
     /// Caster angle of the uniform motion at a speed.
-    pub fn uniform_angle(&self, speed: f64) -> Result<f64, Error> {
+    pub(super) fn uniform_angle(&self, speed: f64) -> Result<f64, Error> {
         Ok(self.wheel(speed)?.uniform_motion()?.psi())
     }
 
     /// The cycle that was asked for at a speed.
-    pub fn cycle_at(&self, speed: f64) -> Option<&CyclePoint> {
+    pub(super) fn cycle_at(&self, speed: f64) -> Option<&CyclePoint> {
         self.cycles.iter().find(|cycle| cycle.value == speed)
     }
 
     /// Speed, largest and smallest caster angle along the branch, from its Hopf point on.
-    pub fn extremes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+    pub(super) fn extremes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         let start = self.hopf.iter().map(|hopf| (hopf.value, hopf.state[2], hopf.state[2]));
         start.chain(self.cycles.iter().map(|cycle| (cycle.value, cycle.max[2], cycle.min[2])))
     }

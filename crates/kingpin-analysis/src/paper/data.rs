@@ -36,17 +36,17 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 
 impl Data {
     /// A table of columns `(name, unit)` without rows; an empty unit stands for a column of words.
-    pub fn new(columns: &[(&'static str, &'static str)]) -> Self {
+    pub(super) fn new(columns: &[(&'static str, &'static str)]) -> Self {
         Self { columns: columns.to_vec(), rows: Vec::new() }
     }
 
-    pub fn push<const COLUMNS: usize>(&mut self, row: [Cell; COLUMNS]) {
+    pub(super) fn push<const COLUMNS: usize>(&mut self, row: [Cell; COLUMNS]) {
         debug_assert_eq!(COLUMNS, self.columns.len());
         self.rows.push(row.into());
     }
 
     /// One line with names and units, then a line for each row. Numbers keep all their digits.
-    pub fn to_csv(&self) -> String {
+    pub(super) fn to_csv(&self) -> String {
         let heading = self.columns.iter().map(|(name, unit)| match *unit {
             "" => (*name).to_owned(),
             unit => format!("{name} [{unit}]"),

@@ -22,7 +22,7 @@ pub(super) struct Pictures {
 }
 
 impl Drawing {
-    pub fn pictures(&self) -> Result<Pictures, Error> {
+    pub(super) fn pictures(&self) -> Result<Pictures, Error> {
         let (svg, png) = rayon::join(|| self.figure.to_svg(), || self.figure.to_png(DPI));
         Ok(Pictures { svg: svg?, png: png? })
     }

@@ -28,7 +28,7 @@ pub(super) struct RollingLimit {
 
 impl RollingLimit {
     /// The speed of the limit at a caster length, between the two points of the curve next to it.
-    pub fn speed_at(&self, caster_length: f64) -> Option<f64> {
+    pub(super) fn speed_at(&self, caster_length: f64) -> Option<f64> {
         let segments = self.curves.iter().flat_map(|curve| curve.windows(2));
         segments
             .map(|ends| (ends[0], ends[1]))
@@ -44,7 +44,7 @@ pub(super) struct RollingLimits {
 }
 
 impl RollingLimits {
-    pub fn compute() -> Result<Self, Error> {
+    pub(super) fn compute() -> Result<Self, Error> {
         let plane =
             Plane::new(Interval::new(Key::V, 0.0..=FASTEST)?, Interval::new(Key::L, SHORTEST..=LENGTHS[1])?)?;
         let limit = |load: f64| {
@@ -63,7 +63,7 @@ impl RollingLimits {
         })
     }
 
-    pub fn drawing(&self) -> Drawing {
+    pub(super) fn drawing(&self) -> Drawing {
         let shade = palette::SKY_BLUE.lightened(0.65);
         let colors = [palette::BLUE, palette::GREEN, palette::ORANGE, palette::VERMILION];
         let stability: Vec<(f64, f64)> =

@@ -58,7 +58,7 @@ pub(super) struct StabilityChart {
 }
 
 impl StabilityChart {
-    pub fn compute() -> Result<Self, Error> {
+    pub(super) fn compute() -> Result<Self, Error> {
         let finite = || RADII.into_par_iter().filter(|radius| radius.is_finite());
         let boundaries = finite().map(boundary).collect::<Result<_, _>>()?;
         let crossings = finite()
@@ -67,7 +67,7 @@ impl StabilityChart {
         Ok(Self { boundaries, crossings, critical_caster_length: critical_caster_length()? })
     }
 
-    pub fn drawing(&self) -> Result<Drawing, Error> {
+    pub(super) fn drawing(&self) -> Result<Drawing, Error> {
         let lengths = || Axis::new("$l$ (m)").limits(0.0, LENGTHS[1]);
         let shade = palette::SKY_BLUE.lightened(0.65);
         let mut chart = Panel::new(Axis::new("$v$ (m/s)").limits(0.0, FASTEST), lengths())
@@ -124,7 +124,7 @@ impl StabilityChart {
     }
 
     /// Largest relative deviation of a crossing from the closed form.
-    pub fn largest_deviation(&self) -> f64 {
+    pub(super) fn largest_deviation(&self) -> f64 {
         self.crossings.iter().map(|crossing| crossing.deviation.abs()).fold(0.0, f64::max)
     }
 

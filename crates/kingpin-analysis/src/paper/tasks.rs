@@ -13,7 +13,7 @@ pub(super) struct Tasks<'a> {
 
 impl<'a> Tasks<'a> {
     /// So many tasks.
-    pub fn new(control: &'a Control<'a>, total: usize) -> Self {
+    pub(super) fn new(control: &'a Control<'a>, total: usize) -> Self {
         Self { control, done: AtomicUsize::new(0), total }
     }
 
@@ -21,7 +21,7 @@ impl<'a> Tasks<'a> {
     ///
     /// # Errors
     /// [`Error::Stopped`] where the control says so.
-    pub fn step(&self) -> Result<(), Error> {
+    pub(super) fn step(&self) -> Result<(), Error> {
         let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
         self.control.done(done as f64 / self.total as f64);
         unless_stopped(self.control)

@@ -32,7 +32,7 @@ pub(super) struct UniformMotions {
 }
 
 impl UniformMotions {
-    pub fn compute() -> Result<Self, Error> {
+    pub(super) fn compute() -> Result<Self, Error> {
         let mut closed_form = Vec::with_capacity(SPEEDS);
         let mut newton = Vec::with_capacity(SPEEDS);
         for index in 1..=SPEEDS {
@@ -56,7 +56,7 @@ impl UniformMotions {
         Ok(Self { closed_form, newton, critical_speed: critical.speed })
     }
 
-    pub fn drawing(&self) -> Drawing {
+    pub(super) fn drawing(&self) -> Drawing {
         let speed = || Axis::new("$v$ (m/s)").limits(0.0, FASTEST);
         let newton = self.newton.iter().step_by(3).map(|motion| (speed_of(motion), 1e18 * motion.u()));
         let figure = Figure::single_column()
@@ -119,7 +119,7 @@ impl UniformMotions {
     }
 
     /// Largest absolute value of `u0` that Newton's method finds, in m.
-    pub fn largest_longitudinal_displacement(&self) -> f64 {
+    pub(super) fn largest_longitudinal_displacement(&self) -> f64 {
         self.newton.iter().map(|motion| motion.u().abs()).fold(0.0, f64::max)
     }
 

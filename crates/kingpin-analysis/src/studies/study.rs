@@ -8,7 +8,7 @@ const DIGITS: usize = 9;
 
 /// What a study gives.
 #[derive(Debug)]
-pub struct Study {
+pub(super) struct Study {
     /// The numbers that matter, in the order in which they are told.
     pub findings: Vec<Finding>,
     /// Its figures.
@@ -41,7 +41,7 @@ impl Finding {
 
 /// A figure with its number and its data.
 #[derive(Debug)]
-pub struct Drawing {
+pub(super) struct Drawing {
     /// Its number; those up to 6 are the paper's.
     pub number: u8,
     /// The figure.

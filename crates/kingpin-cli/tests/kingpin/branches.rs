@@ -5,17 +5,17 @@ use serde_json::Value;
 
 const CYCLES: &str = "cycles --along v=2:9 --at v=4,2.5";
 
-pub fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
 #[track_caller]
-pub fn close(value: &Value, expected: f64, tolerance: f64) {
+pub(crate) fn close(value: &Value, expected: f64, tolerance: f64) {
     let relative = (number(value) - expected).abs() / expected.abs();
     assert!(relative < tolerance, "{value}, not {expected}");
 }
 
-pub fn labelled<'a>(result: &'a Value, label: &str) -> &'a Value {
+pub(crate) fn labelled<'a>(result: &'a Value, label: &str) -> &'a Value {
     let points = result["points"].as_array().unwrap();
     points.iter().find(|point| point["label"] == label).unwrap_or_else(|| panic!("no {label}"))
 }

@@ -25,7 +25,7 @@ use reflections::{dot, reflect, solve_triangle_from_left, triangularize};
 
 /// Factorisation of a block-bidiagonal system; memory is kept from one factorisation to the next.
 #[derive(Clone, Debug, Default)]
-pub struct Bidiagonal {
+pub(crate) struct Bidiagonal {
     sizes: Sizes,
     /// For every eliminated block: the 2n-by-n reflectors and triangle, column-major.
     reflectors: Vec<f64>,
@@ -49,7 +49,7 @@ pub struct Bidiagonal {
 
 /// The numbers of unknowns and equations.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sizes {
+pub(crate) struct Sizes {
     /// `n`.
     pub components: usize,
     /// `E`.
@@ -62,14 +62,14 @@ pub struct Sizes {
 
 impl Sizes {
     /// Number of dense rows.
-    pub fn dense_rows(&self) -> usize {
+    pub(crate) fn dense_rows(&self) -> usize {
         self.components + self.scalars - self.boundary_conditions
     }
 }
 
 /// The blocks of the system, borrowed.
 #[derive(Clone, Copy, Debug)]
-pub struct Blocks<'a> {
+pub(crate) struct Blocks<'a> {
     /// `R_j`, n-by-n column-major, one after the other.
     pub transfer: &'a [f64],
     /// `Q_j`, n-by-E column-major, one after the other.
@@ -85,7 +85,7 @@ pub struct Blocks<'a> {
 impl Bidiagonal {
     /// Factorises. Returns the sign of the determinant of the system reduced to `(u_N, u_0, s)`, which does not
     /// depend on the number of intervals; zero if the system is singular.
-    pub fn factorize(&mut self, blocks: Blocks<'_>, sizes: Sizes) -> f64 {
+    pub(crate) fn factorize(&mut self, blocks: Blocks<'_>, sizes: Sizes) -> f64 {
         self.sizes = sizes;
         run(Factorization(self, blocks))
     }
@@ -232,7 +232,7 @@ impl Bidiagonal {
 
     /// Solves in place: `states` holds the `rho_j` and receives `u_0, ..., u_(N-1)`; `conditions` holds `c` and `d`, one
     /// after the other, and receives `u_N` and `s`.
-    pub fn solve(&mut self, states: &mut [f64], conditions: &mut [f64]) {
+    pub(crate) fn solve(&mut self, states: &mut [f64], conditions: &mut [f64]) {
         match self.sizes.components {
             1 => self.solve_kernel(1, states, conditions),
             2 => self.solve_kernel(2, states, conditions),

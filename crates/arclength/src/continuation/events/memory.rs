@@ -11,14 +11,14 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    pub fn of<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> Self {
+    pub(super) fn of<C: Curve>(curve: &C, solution: &Solution<C::Point>) -> Self {
         let tests = curve.test_functions();
         let readings = tests.iter().map(|test| Some(curve.test(test.kind, solution)?.value));
         Self { readings: readings.collect(), spectrum: Some(curve.spectrum(solution)) }
     }
 
     /// Change of the real part of an exponent; infinite where there is nothing to compare with.
-    pub fn change_of_exponent(&self, spectrum: &Spectrum, index: usize) -> f64 {
+    pub(super) fn change_of_exponent(&self, spectrum: &Spectrum, index: usize) -> f64 {
         let Some(previous) = &self.spectrum else { return f64::INFINITY };
         let here = spectrum.exponents[index];
         let nearest = previous.exponents.iter().min_by(|one, other| {
@@ -28,7 +28,7 @@ impl Memory {
     }
 
     /// Change of a test function.
-    pub fn change_of_reading(&self, index: usize, value: f64) -> f64 {
+    pub(super) fn change_of_reading(&self, index: usize, value: f64) -> f64 {
         self.readings.get(index).map_or(f64::INFINITY, |previous| {
             previous.map_or(f64::INFINITY, |previous| (value - previous).abs())
         })

@@ -40,7 +40,7 @@ pub(super) struct Rates {
 const DISPLACEMENT: f64 = 0.05;
 
 impl<C: Curve> Node<C> {
-    pub fn new(curve: &C, solution: Solution<C::Point>) -> Self {
+    pub(super) fn new(curve: &C, solution: Solution<C::Point>) -> Self {
         let readings = curve.test_functions().iter().map(|test| curve.test(test.kind, &solution)).collect();
         Self {
             readings,
@@ -52,7 +52,7 @@ impl<C: Curve> Node<C> {
     }
 
     /// Rates along the curve, computed once; `step` is a length on which the solution is resolved.
-    pub fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
+    pub(super) fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
         if self.rates.is_none() {
             self.rates = Some(match curve.exponent_rates(&self.solution) {
                 Some(mut exponents) => {
@@ -68,7 +68,7 @@ impl<C: Curve> Node<C> {
     }
 
     /// Length of the tangent in the metric as it is now.
-    pub fn stretch(&self, curve: &C) -> f64 {
+    pub(super) fn stretch(&self, curve: &C) -> f64 {
         let tangent = &self.solution.tangent;
         norm(curve, tangent, &mut vec![0.0; tangent.len()])
     }

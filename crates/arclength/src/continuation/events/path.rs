@@ -23,7 +23,7 @@ pub(super) struct Path {
 }
 
 impl Path {
-    pub fn new(ends: [f64; 2], slopes: [f64; 2]) -> Self {
+    pub(super) fn new(ends: [f64; 2], slopes: [f64; 2]) -> Self {
         let doubt = (ends[0] + 0.5 * slopes[0] - ends[1] + 0.5 * slopes[1]).abs();
         Self { ends, slopes, doubt }
     }
@@ -55,7 +55,7 @@ impl Path {
     }
 
     /// Where the quantity may pass zero more often than the signs at the ends say; `None` where there is no doubt.
-    pub fn suspicious(&self) -> Option<f64> {
+    pub(super) fn suspicious(&self) -> Option<f64> {
         let [a, b] = self.ends;
         let least = a.abs().min(b.abs());
         let turns = self.turns();

@@ -46,7 +46,12 @@ pub(super) struct Scan<'s, C: Curve> {
 }
 
 impl<'s, C: Curve> Scan<'s, C> {
-    pub fn new(curve: &'s mut C, memory: &'s Memory, bounds: &'s [Bound], settings: &'s Settings) -> Self {
+    pub(super) fn new(
+        curve: &'s mut C,
+        memory: &'s Memory,
+        bounds: &'s [Bound],
+        settings: &'s Settings,
+    ) -> Self {
         Self {
             curve,
             memory,
@@ -69,7 +74,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     }
 
     /// The change of the number of unstable directions; `None` where it is not decided.
-    pub fn change_of_count(before: &Node<C>, after: &Node<C>) -> Option<usize> {
+    pub(super) fn change_of_count(before: &Node<C>, after: &Node<C>) -> Option<usize> {
         let decided = before.spectrum.decided && after.spectrum.decided;
         decided.then(|| before.spectrum.unstable.abs_diff(after.spectrum.unstable))
     }
@@ -95,7 +100,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     ///
     /// # Errors
     /// [`Error::OtherBranch`] if the ends lie beside each other and not behind each other.
-    pub fn part(&mut self, [before, after]: [&mut Node<C>; 2], share: f64) -> Result<(), Error> {
+    pub(super) fn part(&mut self, [before, after]: [&mut Node<C>; 2], share: f64) -> Result<(), Error> {
         let changed = Self::changed(before, after);
         let (one, other) = (&before.solution, &after.solution);
         let length = distance(self.curve, &one.unknown, &other.unknown);
@@ -269,7 +274,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     }
 
     /// Locates what crosses between two solutions by the number of unstable directions alone.
-    pub fn locate_by_count(&mut self, before: &Node<C>, after: &Node<C>) -> Result<(), Error> {
+    pub(super) fn locate_by_count(&mut self, before: &Node<C>, after: &Node<C>) -> Result<(), Error> {
         let crossings = crossings(self.curve, before, after, self.settings)?;
         for [from, to] in crossings.unlocated {
             self.miss(None, &from, &to);
@@ -279,7 +284,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     }
 
     /// Notes that no point was located behind a change.
-    pub fn miss(&mut self, kind: Option<C::Kind>, from: &Solution<C::Point>, to: &Solution<C::Point>) {
+    pub(super) fn miss(&mut self, kind: Option<C::Kind>, from: &Solution<C::Point>, to: &Solution<C::Point>) {
         let values = |solution: &Solution<C::Point>| {
             self.bounds.iter().map(|bound| bound.value(&solution.unknown)).collect()
         };

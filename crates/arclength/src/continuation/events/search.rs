@@ -19,12 +19,12 @@ pub(crate) struct EventSearch {
 
 impl EventSearch {
     /// Along a curve whose parameters are bounded.
-    pub fn new(bounds: &[Bound]) -> Self {
+    pub(crate) fn new(bounds: &[Bound]) -> Self {
         Self { memory: Memory::default(), first: None, bounds: bounds.to_vec() }
     }
 
     /// The unknowns, next to the start, from which on the curve was searched; `None` before the first step.
-    pub fn into_first(self) -> Option<Vec<f64>> {
+    pub(crate) fn into_first(self) -> Option<Vec<f64>> {
         self.first
     }
 
@@ -33,7 +33,7 @@ impl EventSearch {
     ///
     /// # Errors
     /// [`Error::OtherBranch`] if the step led to another branch and has to be made anew and shorter.
-    pub fn between<C: Curve>(
+    pub(crate) fn between<C: Curve>(
         &mut self,
         curve: &mut C,
         before: &Solution<C::Point>,

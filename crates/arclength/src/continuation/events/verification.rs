@@ -23,7 +23,7 @@ impl<C: Curve> Scan<'_, C> {
     ///
     /// # Errors
     /// As [`part`](Self::part).
-    pub fn verified(&mut self, ends: [&mut Node<C>; 2]) -> Result<Vec<EventOf<C>>, Error> {
+    pub(super) fn verified(&mut self, ends: [&mut Node<C>; 2]) -> Result<Vec<EventOf<C>>, Error> {
         self.search(ends, MOST_SEARCHES)
     }
 
@@ -101,7 +101,7 @@ impl<C: Curve> Scan<'_, C> {
     }
 
     /// Whether the points between two solutions may explain how the number of unstable directions changes.
-    pub fn explain(&self, points: &[EventOf<C>], before: &Node<C>, after: &Node<C>) -> bool {
+    pub(super) fn explain(&self, points: &[EventOf<C>], before: &Node<C>, after: &Node<C>) -> bool {
         match (Self::change_of_count(before, after), self.changes_at(points)) {
             (Some(change), Some(lists)) => reachable(change, lists.into_iter()),
             _ => true,

@@ -98,7 +98,7 @@ pub(super) struct CycleLocusCurve<'a> {
 }
 
 impl<'a> CycleLocusCurve<'a> {
-    pub fn new(
+    pub(super) fn new(
         mut system: DefiningCurve<'a>,
         base: Collocation<LimitCycle<'a>>,
         sizes: StateSizes,
@@ -125,7 +125,7 @@ impl<'a> CycleLocusCurve<'a> {
         }
     }
 
-    pub fn kind(&self) -> Kind {
+    pub(super) fn kind(&self) -> Kind {
         self.system.collocation.problem.kind
     }
 

@@ -26,7 +26,7 @@ pub(super) struct Hold {
 }
 
 impl Hold {
-    pub fn new(held: Held, value: f64) -> Self {
+    pub(super) fn new(held: Held, value: f64) -> Self {
         Self { held, value, place: Vec::new(), direction: Vec::new(), rate: f64::NAN }
     }
 
@@ -64,13 +64,13 @@ impl Hold {
     }
 
     /// Writes its residual in place of that of the condition in its place.
-    pub fn add_residual(&self, system: &DefiningCurve<'_>, unknown: &[f64], residual: &mut [f64]) {
+    pub(super) fn add_residual(&self, system: &DefiningCurve<'_>, unknown: &[f64], residual: &mut [f64]) {
         let row = residual.len() - 2;
         residual[row] = self.quantity(system, unknown) - self.value;
     }
 
     /// As [`Curve::factorize`].
-    pub fn factorize(
+    pub(super) fn factorize(
         &mut self,
         system: &mut DefiningCurve<'_>,
         unknown: &[f64],
@@ -93,7 +93,7 @@ impl Hold {
     }
 
     /// As [`Curve::solve`].
-    pub fn solve(&self, system: &mut DefiningCurve<'_>, right_hand_side: &mut [f64]) {
+    pub(super) fn solve(&self, system: &mut DefiningCurve<'_>, right_hand_side: &mut [f64]) {
         let row = right_hand_side.len() - 2;
         let wanted = std::mem::take(&mut right_hand_side[row]);
         system.solve(right_hand_side);

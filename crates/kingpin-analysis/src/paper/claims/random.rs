@@ -5,12 +5,12 @@ use std::ops::Range;
 pub(super) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64) -> Self {
         Self(seed)
     }
 
     /// A number in the interval, each equally likely.
-    pub fn within(&mut self, interval: Range<f64>) -> f64 {
+    pub(super) fn within(&mut self, interval: Range<f64>) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut bits = self.0;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

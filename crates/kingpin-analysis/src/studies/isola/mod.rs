@@ -97,7 +97,7 @@ impl HopfVertex {
     }
 
     /// Both speeds at which straight running has a Hopf point with this damping.
-    pub fn speeds_at(&self, damping: f64) -> Option<[f64; 2]> {
+    pub(super) fn speeds_at(&self, damping: f64) -> Option<[f64; 2]> {
         let (l, m, k) = (CASTER_LENGTH, self.static_moment, self.stiffness);
         // m c v^2 + (m l k + l^2 c^2 - J k) v + l^3 c k = 0
         let half = 0.5 * (self.yaw_inertia * k - m * l * k - (l * damping).powi(2)) / (m * damping);
@@ -128,7 +128,7 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
 }
 
 impl Isola {
-    pub fn compute(control: &Control<'_>) -> Result<Self, Error> {
+    pub(super) fn compute(control: &Control<'_>) -> Result<Self, Error> {
         let field = lateral(1.0, WITH_HOPF_POINTS)?;
         let straight =
             Equilibria::of(&field).parameters(&[1.0, WITH_HOPF_POINTS]).along("v", 0.1..=20.0).run()?;
@@ -209,7 +209,7 @@ impl Isola {
     }
 
     /// Folds of the closed branch by speed.
-    pub fn closed_folds(&self) -> Vec<&CyclePoint> {
+    pub(super) fn closed_folds(&self) -> Vec<&CyclePoint> {
         let mut folds: Vec<&CyclePoint> = self.closed.of_kind(SpecialKind::FoldOfCycles).collect();
         folds.sort_by(|a, b| a.value.total_cmp(&b.value));
         folds
