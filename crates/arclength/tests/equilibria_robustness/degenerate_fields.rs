@@ -1,0 +1,95 @@
+//! Fields with points that are not generic, and closed branches.
+
+use super::kinds;
+use approx::assert_relative_eq;
+use arclength::branch::Stability;
+use arclength::continuation::Stop;
+use arclength::equilibrium::Equilibria;
+use arclength::{Scalar, VectorField};
+
+field!(ZeroHopf, ["x", "y", "z"], ["p"], |x, p, d| {
+    let growth = p[0] + x[2] * 0.5;
+    d[0] = growth * x[0] - x[1];
+    d[1] = x[0] + growth * x[1];
+    d[2] = p[0] - x[2] * x[2] - x[0] * x[0] - x[1] * x[1];
+});
+
+field!(Pendulum, ["angle", "rate"], ["p"], |x, p, d| {
+    d[0] = x[1];
+    d[1] = p[0] - x[0].sin();
+});
+
+field!(Circle, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0] * p[0] + x[0] * x[0] - 1.0;
+});
+
+field!(Pitchfork, ["x", "y"], ["p"], |x, p, d| {
+    d[0] = p[0] * x[0] - x[0].powi(3) + x[1] * x[0];
+    d[1] = -x[1];
+});
+
+#[test]
+fn a_zero_hopf_point_on_the_way_is_survived() {
+    let branch = Equilibria::of(&ZeroHopf).start(&[0.0, 0.0, 1.0]).parameters(&[1.0]).along("p", -1.0..=1.0);
+    let branch = branch.run().unwrap();
+    assert!(branch.folds().any(|fold| fold.value.abs() < 1e-10) || branch.special_points().count() > 0);
+    assert!(branch.points.iter().all(|point| point.state.iter().all(|entry| entry.is_finite())));
+}
+
+#[test]
+fn centres_are_neither_stable_nor_hopf_points() {
+    let branch = Equilibria::of(&Pendulum).parameters(&[0.0]).along("p", -2.0..=2.0).run().unwrap();
+    assert!(branch.hopf_points().next().is_none());
+    for point in branch.points.iter().filter(|point| point.state[0].cos() > 0.1) {
+        assert_eq!(point.stability, Stability::Undecided);
+    }
+    let folds: Vec<_> = branch.folds().collect();
+    assert!(folds.iter().all(|fold| (fold.value.abs() - 1.0).abs() < 1e-12));
+    assert!(folds.len() > 1);
+}
+
+/// Wherever on the circle it starts: on a fold, next to it before or behind it, or far from it.
+#[test]
+fn a_closed_branch_ends_after_one_lap() {
+    for angle in [0.0, 1e-6, -1e-6, 1e-3, -1e-3, 0.04, -0.04, 1.0, 2.0, 3.0, 3.1, -3.1, std::f64::consts::PI]
+    {
+        let (state, parameter) = (f64::sin(angle), f64::cos(angle));
+        let branch = Equilibria::of(&Circle)
+            .start(&[state])
+            .parameters(&[parameter])
+            .along("p", -2.0..=2.0)
+            .run()
+            .unwrap();
+        assert!(
+            matches!(branch.stops[1], Some(Stop::Closed)) && matches!(branch.stops[0], Some(Stop::Closed))
+        );
+        let folds: Vec<f64> = branch.folds().map(|fold| fold.value).collect();
+        assert_eq!(folds.len(), 2, "{angle}: {folds:?}");
+        assert_relative_eq!(folds[0] * folds[1], -1.0, epsilon = 1e-12);
+        assert_eq!(kinds(&branch).len(), 2);
+        let length: f64 = branch
+            .points
+            .windows(2)
+            .map(|pair| (pair[1].value - pair[0].value).hypot(pair[1].state[0] - pair[0].state[0]))
+            .sum();
+        assert!((length - std::f64::consts::TAU).abs() < 0.02, "{angle}: {length}");
+    }
+}
+
+#[test]
+fn both_branches_of_a_pitchfork_are_found_from_either() {
+    let branch = Equilibria::of(&Pitchfork).parameters(&[-1.0]).along("p", -1.0..=0.9).run().unwrap();
+    assert_eq!(kinds(&branch), ["BP1"]);
+    let side = Equilibria::of(&Pitchfork)
+        .start(&[1.0, 0.0])
+        .parameters(&[1.0])
+        .along("p", -1.0..=2.0)
+        .run()
+        .unwrap();
+    assert_eq!(kinds(&side), ["BP1"], "the turning branch has no fold at the pitchfork");
+    let point = side.branch_points().next().unwrap();
+    assert!(point.value.abs() < 1e-14);
+    let back = Equilibria::of(&Pitchfork).from_branch_point(point).along("p", -1.0..=2.0).run().unwrap();
+    assert!(back.points.iter().all(|point| point.state[0] == 0.0));
+    assert_eq!((back.points[0].value, back.points[back.points.len() - 1].value), (-1.0, 2.0));
+}
