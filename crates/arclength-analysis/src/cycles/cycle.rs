@@ -27,8 +27,11 @@ pub struct CycleResult {
     pub trivial_multiplier_error: f64,
     /// Nothing where that is not decided.
     pub stable: Option<bool>,
-    /// Error estimate relative to the amplitudes.
+    /// Error of period and extremes, relative to the period and to the amplitudes.
     pub error_estimate: f64,
+    /// Error of the parameter value of a special cycle that comes of the mesh.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub value_error: Option<f64>,
     /// Mesh intervals; none at a Hopf point.
     #[serde(default)]
     pub intervals: usize,
@@ -71,6 +74,7 @@ impl CycleResult {
             trivial_multiplier_error: point.trivial_multiplier_error,
             stable: point.stable,
             error_estimate: point.error_estimate,
+            value_error: point.value_error.filter(|error| error.is_finite()),
             intervals: point.orbit.mesh.len().saturating_sub(1),
             tests: tests(point.tests.iter().map(|(name, value)| (name.as_ref(), *value))),
             monitors: NamedNumbers::default(),

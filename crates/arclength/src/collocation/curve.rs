@@ -2,6 +2,7 @@
 
 use super::equations::Collocation;
 use super::fold::fold_near;
+use super::global_error::{GlobalError, largest};
 use super::mesh::{error_profile, fit_mesh};
 use super::polynomials::PiecewisePolynomial;
 use super::problem::BoundaryValueProblem;
@@ -28,7 +29,8 @@ pub struct BoundaryValuePoint {
     pub components: PiecewisePolynomial,
     /// The scalars.
     pub scalars: Vec<f64>,
-    /// Error estimate between mesh points, relative to the sizes of the components.
+    /// Error across the curve, relative to the sizes of the components and of the scalars: of the solution as far as a change of
+    /// the parameter does not undo it.
     pub error_estimate: f64,
 }
 
@@ -80,6 +82,7 @@ pub struct BoundaryValueCurve<P> {
     /// Smallest and largest values met of these.
     visited: Vec<[f64; 2]>,
     error_estimate: f64,
+    global_error: GlobalError,
 }
 
 impl<P: BoundaryValueProblem> BoundaryValueCurve<P> {
@@ -102,8 +105,10 @@ impl<P: BoundaryValueProblem> BoundaryValueCurve<P> {
         }
         let intervals = resolution.fewest_intervals.max(1);
         let mesh = (0..=intervals).map(|index| index as f64 / intervals as f64).collect();
+        let collocation = Collocation::try_new(problem, mesh, resolution.degree)?;
         Ok(Self {
-            collocation: Collocation::try_new(problem, mesh, resolution.degree)?,
+            global_error: GlobalError::new(collocation.gauss()),
+            collocation,
             resolution,
             settings: Settings::default(),
             sizes: sizes.to_vec(),
@@ -197,6 +202,16 @@ impl<P: BoundaryValueProblem> Curve for BoundaryValueCurve<P> {
             scalars: scalars.to_vec(),
             error_estimate: self.error_estimate,
         })
+    }
+
+    fn measure(&mut self, solution: &mut Solution<BoundaryValuePoint>) {
+        let error = self.global_error.of(&mut self.collocation, &solution.unknown);
+        let n = self.collocation.problem.dimension();
+        let (states, scalars) = error.split_at(error.len() - self.collocation.problem.scalars());
+        let states = states.iter().zip(self.sizes[..n].iter().cycle());
+        let relative =
+            states.chain(scalars.iter().zip(&self.sizes[n..])).map(|(error, size)| (error / size).abs());
+        solution.point.error_estimate = largest(relative);
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {

@@ -7,7 +7,7 @@
 //! peculiar to them is in [`cycle`](crate::cycle).
 //!
 //! From the ground: `gauss` (points, weights, interpolation), `polynomials`, `problem`, `bidiagonal` and `condensation` (the linear
-//! algebra), `equations` and `linearization` ([`Collocation`]: residual and Jacobian), `mesh` (error estimate and adaptation), then
+//! algebra), `equations` and `linearization` ([`Collocation`]: residual and Jacobian), `mesh` (error estimate and adaptation), `global_error`, then
 //! `curve` and `fold`; `linear_problem` serves normal forms.
 
 pub(crate) mod bidiagonal;
@@ -16,6 +16,7 @@ mod curve;
 pub(crate) mod equations;
 mod fold;
 pub(crate) mod gauss;
+pub(crate) mod global_error;
 pub(crate) mod linear_problem;
 mod linearization;
 pub(crate) mod mesh;

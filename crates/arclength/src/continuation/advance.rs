@@ -1,6 +1,6 @@
 //! One step: predict, correct, adapt the discretisation, shorten where the corrector fails or the curve turns too much.
 
-use super::corrector::{correct, finish, renormalise};
+use super::corrector::{correct, finish_measured, renormalise};
 use super::curve::{Adaptation, Curve};
 use super::metric::{inner, metric_image, norm};
 use super::settings::Settings;
@@ -46,7 +46,7 @@ pub(crate) fn converge<C: Curve>(
             break;
         }
     }
-    finish(curve, unknown, &tangent)
+    finish_measured(curve, unknown, &tangent)
 }
 
 /// One accepted step; shortens the step until the corrector succeeds.
@@ -201,7 +201,7 @@ fn settle<C: Curve>(
                 .map_err(|cause| Error::NotFound { sought: "solution on the adapted mesh", cause })?;
         }
         let tangent = carried[1].clone();
-        let solution = finish(curve, unknown, &tangent)?;
+        let solution = finish_measured(curve, unknown, &tangent)?;
         if curve.resolves(&solution.point) || refinements == MOST_REFINEMENTS {
             return Ok((solution, most));
         }

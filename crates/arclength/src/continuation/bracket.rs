@@ -1,7 +1,7 @@
 //! Zeros of test functions between two neighbouring solutions, by the Illinois variant of regula falsi with a correction at
 //! every trial point: starts for Newton's method on a defining system.
 
-use super::corrector::{correct, finish};
+use super::corrector::{correct, finish, finish_measured};
 use super::curve::Curve;
 use super::events::Location;
 use super::metric::{along, metric_image};
@@ -153,7 +153,7 @@ pub fn locate_by_defining_system<C: Curve>(
         let Ok(unknown) = solve(curve, &near) else { continue };
         let place = along(curve, before, &unknown);
         if place >= -OUTSIDE * length && place <= (1.0 + OUTSIDE) * length {
-            return Ok(Location::At(finish(curve, unknown, &before.tangent)?));
+            return Ok(Location::At(finish_measured(curve, unknown, &before.tangent)?));
         }
     }
     Ok(Location::Missed)

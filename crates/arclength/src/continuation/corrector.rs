@@ -136,6 +136,20 @@ pub(crate) fn finish<C: Curve>(
     Ok(Solution { unknown, tangent, orientation: sign, point })
 }
 
+/// Completes a corrected solution as [`finish`] does and measures its errors.
+///
+/// # Errors
+/// As [`finish`].
+pub(crate) fn finish_measured<C: Curve>(
+    curve: &mut C,
+    unknown: Vec<f64>,
+    old_tangent: &[f64],
+) -> Result<Solution<C::Point>, Error> {
+    let mut solution = finish(curve, unknown, old_tangent)?;
+    curve.measure(&mut solution);
+    Ok(solution)
+}
+
 /// The unit tangent at a corrected solution in the direction of `old_tangent`, with the sign of the determinant.
 fn tangent_at<C: Curve>(
     curve: &mut C,

@@ -53,6 +53,10 @@ pub trait Curve {
     /// When a quantity cannot be computed; the run ends there and says why.
     fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Self::Point, Error>;
 
+    /// Measures the errors of a solution that becomes part of a run, called right after its Jacobian, bordered by the tangent
+    /// or by a parameter, was factorised.
+    fn measure(&mut self, _solution: &mut Solution<Self::Point>) {}
+
     /// Whether the discretisation resolves what was found out about a solution. If not, [`adapt`](Self::adapt) makes it finer
     /// and the solution is found once more.
     fn resolves(&mut self, _point: &Self::Point) -> bool {

@@ -1,7 +1,7 @@
 //! Solutions that were asked for: at values of the parameter, where a monitor has a value, at the ends of ranges.
 
 use super::bracket::locate;
-use super::corrector::{correct, finish};
+use super::corrector::{correct, finish_measured};
 use super::curve::Curve;
 use super::metric::along;
 use super::settings::Settings;
@@ -151,7 +151,7 @@ pub(super) fn fix<C: Curve>(
     correct(curve, &mut unknown, &border, settings)
         .map_err(|cause| Error::NotFound { sought: "solution at the value asked for", cause })?;
     unknown[index] = value;
-    finish(curve, unknown, &before.tangent)
+    finish_measured(curve, unknown, &before.tangent)
 }
 
 /// As [`fix`], from a start for which the place of the value was narrowed down before: next to a turning point of the unknown

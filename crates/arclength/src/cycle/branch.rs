@@ -30,8 +30,11 @@ pub struct CyclePoint {
     pub unstable_multipliers: usize,
     /// Whether the cycle is stable; `None` when a multiplier is closer to the unit circle than the error.
     pub stable: Option<bool>,
-    /// Error estimate relative to the amplitudes.
+    /// Error of period and extremes of the cycle with this parameter value, relative to the period and to the amplitudes: what
+    /// the defect of the polynomials does through the linearised equations, or the difference from a finer mesh.
     pub error_estimate: f64,
+    /// Error of the parameter value of a special cycle that comes of the mesh.
+    pub value_error: Option<f64>,
     /// Label of a special or requested cycle.
     pub label: Option<Label>,
     /// Coefficients of the normal form of a special cycle by name. Fold: `quadratic_coefficient` `b` of `dxi/dt = b xi^2`;
@@ -87,6 +90,7 @@ impl CyclePoint {
             // At a bifurcation a multiplier is on the unit circle by definition.
             stable: if is_special || !certain { None } else { Some(outside == 0) },
             error_estimate: inspection.error_estimate,
+            value_error: inspection.parameter_error,
             label,
             normal_form: inspection.normal_form.clone(),
             branching: inspection.branching.clone(),

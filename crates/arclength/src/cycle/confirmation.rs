@@ -21,7 +21,7 @@ const CHANGE: f64 = 1e-6;
 /// or than this many times the tolerance asked for,
 const ACCEPTED: f64 = 100.0;
 /// and the multipliers, as far as their logarithms are above `LOGARITHM`, by less than this part of themselves.
-const MULTIPLIER_CHANGE: f64 = 1e-3;
+const MULTIPLIER_CHANGE: f64 = 1e-2;
 const LOGARITHM: f64 = -18.0;
 /// Part of the change that is left as the error on the finer mesh, where it is not measured: polynomials of degree 3 leave a
 /// sixteenth, others less.
@@ -32,6 +32,8 @@ const ROUNDING: f64 = 3.0;
 const UNCONFIRMED: f64 = 1.0;
 /// Nothing is told to be more exact than this.
 const LEAST_ERROR: f64 = 1e-13;
+/// A solution this close to where Newton's method started, in the metric, has the multipliers of the Jacobian there.
+const CLOSE: f64 = 1e-6;
 /// Updates of Newton's method are to become this small.
 const TOLERANCE: f64 = 1e-12;
 
@@ -127,9 +129,11 @@ impl Asked<'_> {
         let mut border = vec![0.0; unknown.len()];
         *border.last_mut()? = 1.0;
         let settings = Settings { corrector_tolerance: TOLERANCE, ..self.settings };
-        correct(&mut curve, &mut unknown, &border, &settings).ok()?;
+        let correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
         let mut update = vec![0.0; unknown.len()];
-        if curve.factorize(&unknown, &border, &mut update) == 0.0 {
+        if correction.distance < CLOSE {
+            curve.residual(&unknown, &mut update);
+        } else if curve.factorize(&unknown, &border, &mut update) == 0.0 {
             return None;
         }
         *update.last_mut()? = 0.0;

@@ -24,6 +24,10 @@ const DEFECT: f64 = 1e-3;
 const FINEST: f64 = 1e-4;
 const FINEST_TOLERANCE: f64 = 1e-10;
 const REFINEMENT: (f64, f64) = (0.1, 0.5);
+/// Where the linearised equations multiply errors, cycles need it finer than multipliers do.
+const FINEST_TOLERANCE_OF_CYCLES: f64 = 1e-12;
+/// Ratio of the error of a cycle to the local estimate above which the linearised equations multiply it.
+const MULTIPLIED: f64 = 2.0;
 /// Where the error is less than this part of what is allowed, the factor of the tolerance grows by `RELAXATION` from point to
 /// point.
 const MUCH_LESS: f64 = 0.01;
@@ -104,6 +108,8 @@ impl Curve for CycleCurve<'_> {
         Ok(CycleInspection {
             turn_is_reversed,
             error_estimate: self.error_estimate,
+            error_across: self.error_estimate,
+            parameter_error: None,
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
@@ -112,24 +118,35 @@ impl Curve for CycleCurve<'_> {
         })
     }
 
+    fn measure(&mut self, solution: &mut Solution<CycleInspection>) {
+        let [fixed, across] = self.errors(&solution.unknown, &solution.tangent);
+        (solution.point.error_estimate, solution.point.error_across) = (fixed, across);
+    }
+
     fn resolves(&mut self, point: &CycleInspection) -> bool {
         let floquet = &point.floquet;
-        let allowed = MULTIPLIER_PART * self.resolution.tolerance.sqrt();
-        let error = if floquet.is_contradictory() {
+        let tolerance = self.resolution.tolerance;
+        let allowed = MULTIPLIER_PART * tolerance.sqrt();
+        let multipliers = if floquet.is_contradictory() {
             f64::INFINITY
         } else {
-            floquet.trivial_error.max(allowed * floquet.defect() / DEFECT)
+            (floquet.trivial_error / allowed).max(floquet.defect() / DEFECT)
         };
-        if error <= allowed {
-            if error < MUCH_LESS * allowed {
+        // Where the local estimate is the larger one it has placed the mesh points already.
+        let is_multiplied = point.error_across > MULTIPLIED * self.error_estimate;
+        let cycle = if is_multiplied { point.error_across / tolerance } else { 0.0 };
+        let excess = multipliers.max(cycle);
+        if excess <= 1.0 {
+            if excess < MUCH_LESS {
                 self.refinement = (RELAXATION * self.refinement).min(1.0);
             }
             return true;
         }
         let (strongest, weakest) = REFINEMENT;
-        let reached = (self.error_estimate / self.resolution.tolerance).min(self.refinement);
-        let finer = reached * (allowed / error).clamp(strongest, weakest);
-        let finest = FINEST.max(FINEST_TOLERANCE / self.resolution.tolerance).min(1.0);
+        let reached = (self.error_estimate / tolerance).min(self.refinement);
+        let finer = reached * (1.0 / excess).clamp(strongest, weakest);
+        let finest_tolerance = if cycle > 1.0 { FINEST_TOLERANCE_OF_CYCLES } else { FINEST_TOLERANCE };
+        let finest = FINEST.max(finest_tolerance / tolerance).min(1.0);
         self.refinement = finer.max(finest);
         finer < finest
     }

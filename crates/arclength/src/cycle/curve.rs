@@ -7,6 +7,7 @@ use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
 use crate::collocation::equations::Collocation;
+use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::error_profile;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
@@ -23,8 +24,12 @@ const ROUNDING_TURN: f64 = 1e-12;
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
 pub(crate) struct CycleInspection {
-    /// Error estimate relative to the amplitudes.
+    /// Error relative to the period and to the amplitudes; as long as it is not measured, the local estimate.
     pub error_estimate: f64,
+    /// The part of it across the tangent: without what a small error of the parameter does next to a fold.
+    pub(super) error_across: f64,
+    /// Error of the parameter at a special point.
+    pub parameter_error: Option<f64>,
     /// Whether the multipliers say that the parameter changes the other way than the tangent, whose last digit that is.
     pub(super) turn_is_reversed: bool,
     /// Multipliers.
@@ -71,6 +76,7 @@ pub(crate) struct CycleCurve<'a> {
     pub(super) error_estimate: f64,
     /// Factor of the tolerance that the multipliers ask for.
     pub(super) refinement: f64,
+    pub(super) global_error: GlobalError,
     pub(super) schur: Option<(usize, PeriodicSchur)>,
     /// Sign of the rate of change of the parameter, the orientation and the parity of the number of multipliers above one,
     /// multiplied: the same all along the curve.
@@ -89,7 +95,6 @@ impl<'a> CycleCurve<'a> {
         let n = collocation.problem.dimension();
         let sizes = StateSizes::new(&collocation.problem, start);
         let mut curve = Self {
-            collocation,
             resolution,
             settings: Settings::default(),
             parameter_scale,
@@ -99,6 +104,8 @@ impl<'a> CycleCurve<'a> {
             doubled: false,
             error_estimate: f64::INFINITY,
             refinement: 1.0,
+            global_error: GlobalError::new(collocation.gauss()),
+            collocation,
             schur: None,
             relation: None,
         };
@@ -165,6 +172,22 @@ impl<'a> CycleCurve<'a> {
     pub(super) fn certain_turn(&self, solution: &Solution<CycleInspection>) -> f64 {
         let turn = self.turn(&solution.tangent);
         if solution.point.turn_is_reversed { -turn } else { turn }
+    }
+
+    /// Relative errors of period and states of a cycle at which the collocation was linearised last: of the cycle with the same
+    /// parameter value, and across the tangent.
+    pub(super) fn errors(&mut self, unknown: &[f64], tangent: &[f64]) -> [f64; 2] {
+        let error = self.global_error.of(&mut self.collocation, unknown);
+        let (states, scalars) = error.split_at(error.len() - 2);
+        let (along_states, along) = tangent.split_at(tangent.len() - 2);
+        let shift = scalars[1] / along[1];
+        let period = unknown[unknown.len() - 2].abs();
+        let sizes = || self.amplitudes.iter().cycle().take(states.len()).chain([&period]);
+        let entries = || states.iter().chain(&scalars[..1]).zip(along_states.iter().chain(&along[..1]));
+        let fixed =
+            entries().zip(sizes()).map(|((error, along), size)| ((error - shift * along) / size).abs());
+        let across = entries().zip(sizes()).map(|((error, _), size)| (error / size).abs());
+        [largest(fixed), largest(across)]
     }
 
     /// Estimates the error of a cycle on the mesh as it is.

@@ -8,6 +8,7 @@ use super::orbit::Orbit;
 use super::sizes::extent;
 use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
+use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::linear_problem::Nodes;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
@@ -47,6 +48,23 @@ impl<'a> DefiningCurve<'a> {
         let mut collocation = Collocation::new(defining, mesh, degree);
         collocation.set_reference(unknown);
         Self { collocation, scales, parameter_scales }
+    }
+}
+
+impl DefiningCurve<'_> {
+    /// Errors of a solution at which the system was linearised last: the relative one of the period and the states, and that of
+    /// the parameter.
+    fn errors(&mut self, unknown: &[f64]) -> [f64; 2] {
+        let error = GlobalError::new(self.collocation.gauss()).of(&mut self.collocation, unknown);
+        let problem = &self.collocation.problem;
+        let (nodes, scalars) = error.split_at(error.len() - problem.scalars());
+        let states = problem.scales.len();
+        let relative = nodes
+            .chunks_exact(problem.dimension())
+            .flat_map(|node| node[..states].iter().zip(&problem.scales))
+            .map(|(error, scale)| error / scale)
+            .chain([scalars[0] / problem.period_scale]);
+        [largest(relative.map(f64::abs)), scalars[scalars.len() - 2].abs()]
     }
 }
 
@@ -136,7 +154,8 @@ pub(crate) fn converge(
     }
     let (mut base, eigenfunctions) = split(&unknown, n, kind);
     base.pop();
-    let solution = if kind == Kind::BranchPoint {
+    let [error, parameter_error] = defining_curve.errors(&unknown);
+    let mut solution = if kind == Kind::BranchPoint {
         // The Jacobian bordered by the tangent is singular here: the tangent is that of the branch nearby.
         let mut residual = vec![0.0; base.len()];
         curve.factorize(&base, tangent, &mut residual);
@@ -145,6 +164,9 @@ pub(crate) fn converge(
     } else {
         finish(curve, base, tangent)?
     };
+    let point = &mut solution.point;
+    (point.error_estimate, point.error_across) = (error, error);
+    point.parameter_error = Some(parameter_error);
     Ok(Some(Located { solution, eigenfunctions }))
 }
 

@@ -77,6 +77,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
             trivial_multiplier_error: nearest,
             stable: None,
             error_estimate: 0.0,
+            value_error: None,
             intervals: 0,
             label: Some(label),
             tests: NamedNumbers::default(),

@@ -3,9 +3,8 @@
 use super::path::partners;
 use super::spectrum::Spectrum;
 use super::test_function::Reading;
-use crate::continuation::corrector::across;
-use crate::continuation::metric::{distance, norm};
-use crate::continuation::{Curve, Settings, Solution};
+use crate::continuation::metric::{distance, metric_image, norm};
+use crate::continuation::{Curve, Solution};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -19,6 +18,15 @@ pub(super) struct Node<C: Curve + ?Sized> {
     /// Number of signs that may be rounding error.
     pub undecided: usize,
     rates: Option<Option<Rates>>,
+}
+
+/// Rates at a solution that the next step begins with.
+#[derive(Debug)]
+pub(super) struct Known {
+    unknown: Vec<f64>,
+    /// Length that the tangent had in the metric.
+    stretch: f64,
+    rates: Rates,
 }
 
 /// How many of the signs at a solution may be rounding error.
@@ -36,7 +44,8 @@ pub(super) struct Rates {
 }
 
 /// Displacement along the tangent, as part of a step, from which rates are computed: the solution itself may be known on an
-/// older mesh, whose error must not count against the difference.
+/// older mesh, whose error must not count against the difference. The curve leaves its tangent with the square of it, which
+/// matters less than what a step leaves unknown.
 const DISPLACEMENT: f64 = 0.05;
 
 impl<C: Curve> Node<C> {
@@ -52,7 +61,7 @@ impl<C: Curve> Node<C> {
     }
 
     /// Rates along the curve, computed once; `step` is a length on which the solution is resolved.
-    pub(super) fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
+    pub(super) fn rates(&mut self, curve: &mut C, step: f64) -> Option<&Rates> {
         if self.rates.is_none() {
             self.rates = Some(match curve.exponent_rates(&self.solution) {
                 Some(mut exponents) => {
@@ -61,10 +70,28 @@ impl<C: Curve> Node<C> {
                     exponents.iter_mut().for_each(|rate| *rate /= stretch);
                     Some(Rates { exponents, readings: vec![None; self.readings.len()] })
                 }
-                None => self.differences(curve, step, settings),
+                None => self.differences(curve, step),
             });
         }
         self.rates.as_ref().and_then(Option::as_ref)
+    }
+
+    /// Takes over rates that were computed at the same solution in the step before.
+    pub(super) fn recall(&mut self, known: Option<Known>, curve: &C) {
+        let Some(Known { unknown, stretch, mut rates }) = known else { return };
+        if unknown == self.solution.unknown {
+            let factor = stretch / self.stretch(curve);
+            rates.exponents.iter_mut().for_each(|rate| *rate *= factor);
+            rates.readings.iter_mut().flatten().for_each(|rate| *rate *= factor);
+            self.rates = Some(Some(rates));
+        }
+    }
+
+    /// The rates for the step that begins here, if they were computed.
+    pub(super) fn into_known(self, curve: &C) -> Option<Known> {
+        let stretch = self.stretch(curve);
+        let rates = self.rates.flatten()?;
+        Some(Known { unknown: self.solution.unknown, stretch, rates })
     }
 
     /// Length of the tangent in the metric as it is now.
@@ -73,10 +100,17 @@ impl<C: Curve> Node<C> {
         norm(curve, tangent, &mut vec![0.0; tangent.len()])
     }
 
-    fn differences(&self, curve: &mut C, step: f64, settings: &Settings) -> Option<Rates> {
-        let there = across(curve, &self.solution, self.solution.ahead(DISPLACEMENT * step), settings).ok()?;
-        let length = distance(curve, &self.solution.unknown, &there.unknown);
-        let there = Node::new(curve, there);
+    fn differences(&self, curve: &mut C, step: f64) -> Option<Rates> {
+        let unknown = self.solution.ahead(DISPLACEMENT * step);
+        let tangent = self.solution.tangent.clone();
+        let border = metric_image(curve, &tangent);
+        let orientation = curve.factorize(&unknown, &border, &mut vec![0.0; unknown.len()]);
+        if orientation == 0.0 {
+            return None;
+        }
+        let point = curve.inspect(&unknown, &tangent, orientation).ok()?;
+        let length = distance(curve, &self.solution.unknown, &unknown);
+        let there = Node::new(curve, Solution { unknown, tangent, orientation, point });
         let partners = partners(&self.spectrum, &there.spectrum, None);
         let exponents = self.spectrum.exponents.iter().zip(partners).map(|(here, partner)| {
             let mut change = there.spectrum.exponents[partner] - here;

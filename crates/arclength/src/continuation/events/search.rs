@@ -3,7 +3,7 @@
 use super::found::{Events, search};
 use super::memory::Memory;
 use super::neighbour::beyond;
-use super::node::{Node, undecided};
+use super::node::{Known, Node, undecided};
 use crate::continuation::metric::distance;
 use crate::continuation::solution::Bound;
 use crate::continuation::{Curve, Settings, Solution};
@@ -15,12 +15,14 @@ pub(crate) struct EventSearch {
     /// The unknowns, next to the start, from which on the curve was searched.
     first: Option<Vec<f64>>,
     bounds: Vec<Bound>,
+    /// Rates at the end of the step before.
+    known: Option<Known>,
 }
 
 impl EventSearch {
     /// Along a curve whose parameters are bounded.
     pub(crate) fn new(bounds: &[Bound]) -> Self {
-        Self { memory: Memory::default(), first: None, bounds: bounds.to_vec() }
+        Self { memory: Memory::default(), first: None, bounds: bounds.to_vec(), known: None }
     }
 
     /// The unknowns, next to the start, from which on the curve was searched; `None` before the first step.
@@ -55,12 +57,14 @@ impl EventSearch {
         let to = if undecided[1] > least { beyond(curve, after, least, reach, settings) } else { None };
         let mut left = Node::new(curve, from.unwrap_or_else(|| before.clone()));
         let mut right = Node::new(curve, to.unwrap_or_else(|| after.clone()));
+        left.recall(self.known.take(), curve);
         let events = search(curve, [&mut left, &mut right], &self.memory, &self.bounds, settings)?;
         // A first step that led to another branch is made anew.
         if first_step {
             self.first = Some(left.solution.unknown);
         }
         self.memory = Memory::of(curve, before);
+        self.known = right.into_known(curve);
         Ok(events)
     }
 }
