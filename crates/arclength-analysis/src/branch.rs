@@ -1,5 +1,6 @@
 //! What results of every kind of branch have in common, as plain data that is written to files and read back.
 
+use arclength::equilibrium::FoundBy;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
 use num_complex::Complex64;
@@ -18,6 +19,20 @@ impl Origin {
     /// The initial state of the model.
     pub fn initial_state() -> Self {
         Self { label: None, how: "the equilibrium near the initial state".to_owned() }
+    }
+
+    /// An equilibrium that was sought from the initial state.
+    pub fn sought(by: FoundBy) -> Self {
+        let how = match by {
+            FoundBy::Flow => {
+                "the equilibrium near a state to which the flow leads from the initial state".to_owned()
+            }
+            FoundBy::RandomStart(number) => format!(
+                "the equilibrium near random start {number} around the motion from the initial state: others may be nearer"
+            ),
+            _ => return Self::initial_state(),
+        };
+        Self { label: None, how }
     }
 
     /// A labelled point.

@@ -83,7 +83,9 @@ pub enum Error {
     },
     /// A model whose right-hand side depends on the time has neither equilibria nor cycles of its own.
     #[error(
-        "{model}: the right-hand side depends on the time: it has no equilibria and no cycles of its own\n{snippet}"
+        "{model}: the right-hand side depends on the time: it has no equilibria and no cycles of its own; try: --freeze t=0 (equilibria \
+         with everything as it is at that time), or for a periodic force an oscillator in place of the time (u'=u*(1-u^2-v^2)-w*v, \
+         v'=v*(1-u^2-v^2)+w*u: v is sin(w*t))\n{snippet}"
     )]
     TimeDependent {
         /// Name of the model.

@@ -3,6 +3,7 @@
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::stored_model::StoredModel;
+use arclength::equilibrium::WithTotals;
 use arclength_ode::Model;
 use kingpin_report::NamedNumbers;
 use std::path::Path;
@@ -22,7 +23,10 @@ pub struct ChosenModel {
 
 impl ChosenModel {
     /// A model with the parameters and the initial state of its text.
-    pub fn new(stored: StoredModel, model: Model) -> Self {
+    pub fn new(stored: StoredModel, mut model: Model) -> Self {
+        if let Some(time) = stored.frozen_time {
+            model.freeze(time);
+        }
         let parameters = model.default_parameters().to_vec();
         let start = model.initial_state(&parameters);
         Self { stored, model, parameters, start }
@@ -44,6 +48,22 @@ impl ChosenModel {
             chosen.parameters[index] = *value;
         }
         Ok(chosen)
+    }
+
+    /// Freezes the time.
+    ///
+    /// # Errors
+    /// The field `freeze` with a value that is not finite.
+    pub fn freeze(&mut self, time: f64) -> Result<(), Error> {
+        let time = finite(&["freeze"], "t", time)?;
+        self.model.freeze(time);
+        self.stored.frozen_time = Some(time);
+        Ok(())
+    }
+
+    /// The field that is continued: that of the model with the totals that it conserves at their values in the state.
+    pub fn field(&self) -> WithTotals<'_, Model> {
+        WithTotals::at(&self.model, &self.start, &self.parameters)
     }
 
     /// Sets parameters.

@@ -36,6 +36,9 @@ pub struct ModelRequest {
     /// Initial values of states.
     #[serde(default)]
     pub start: NamedNumbers,
+    /// The time at which a right-hand side that depends on it is frozen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub freeze: Option<f64>,
 }
 
 /// A model that was read, with the labelled point that it comes from, if it is one, and what the reader warns of.
@@ -52,7 +55,13 @@ pub struct OpenedModel {
 impl ModelRequest {
     /// A model as it is.
     pub fn new(source: ModelSource) -> Self {
-        Self { source, named_set: None, set: NamedNumbers::default(), start: NamedNumbers::default() }
+        Self {
+            source,
+            named_set: None,
+            set: NamedNumbers::default(),
+            start: NamedNumbers::default(),
+            freeze: None,
+        }
     }
 
     /// Reads the model, or the labelled point with its model, and sets parameters and initial state.
@@ -75,6 +84,9 @@ impl ModelRequest {
                 (chosen, None, warnings)
             }
         };
+        if let Some(time) = self.freeze {
+            chosen.freeze(time)?;
+        }
         let mut initial = Vec::new();
         if let Some(name) = &self.named_set {
             let set = chosen.named_set(name)?.clone();
@@ -92,7 +104,7 @@ impl ModelRequest {
 
     /// Whether parameters or states are not those of the source.
     pub fn changes_anything(&self) -> bool {
-        self.named_set.is_some() || !self.set.is_empty() || !self.start.is_empty()
+        self.named_set.is_some() || !self.set.is_empty() || !self.start.is_empty() || self.freeze.is_some()
     }
 }
 
@@ -108,7 +120,8 @@ fn read(path: &Path) -> Result<(ChosenModel, Vec<String>), Error> {
         .map_err(|source| Error::Model { path: path.to_owned(), source: source.into() })?;
     let warnings = warnings(path, &model);
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Ok((ChosenModel::new(StoredModel { name, source: model.source().to_owned() }, model), warnings))
+    let stored = StoredModel { name, source: model.source().to_owned(), frozen_time: None };
+    Ok((ChosenModel::new(stored, model), warnings))
 }
 
 fn warnings(path: &Path, model: &Model) -> Vec<String> {

@@ -9,4 +9,7 @@ pub struct StoredModel {
     pub name: String,
     /// The text of that file.
     pub source: String,
+    /// The time at which its right-hand side is frozen.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frozen_time: Option<f64>,
 }

@@ -15,7 +15,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 fn model() -> ModelRequest {
     let source = "x' = p - x^2\npar p=1\ninit x=1\n".to_owned();
-    ModelRequest::new(ModelSource::Text(StoredModel { name: "fold.ode".to_owned(), source }))
+    ModelRequest::new(ModelSource::Text(StoredModel {
+        name: "fold.ode".to_owned(),
+        source,
+        frozen_time: None,
+    }))
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::model_options::ModelOptions;
 use crate::monitor_options::MonitorOptions;
 use arclength_analysis::equilibria::EquilibriaRequest;
-use arclength_analysis::{Interval, Values};
+use arclength_analysis::{Assignment, Interval, ModelRequest, Values};
 use clap::Args;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 
@@ -29,6 +29,10 @@ pub(crate) struct Equilibria {
     #[command(flatten)]
     monitors: MonitorOptions,
 
+    /// Freeze the time of a model whose right-hand side depends on it
+    #[arg(long, value_name = "t=VALUE")]
+    freeze: Option<Assignment>,
+
     /// Tell the story of the run after the table
     #[arg(long)]
     explain: bool,
@@ -40,6 +44,21 @@ pub(crate) struct Equilibria {
 }
 
 impl Equilibria {
+    /// The time at which the right-hand side is frozen.
+    fn freeze(&self) -> Result<Option<f64>, Failure> {
+        let Some(asked) = &self.freeze else { return Ok(None) };
+        let (name, value) = asked.number(&["freeze"])?;
+        if name.eq_ignore_ascii_case("t") {
+            return Ok(Some(value));
+        }
+        Err(Failure::Option {
+            option: "--freeze",
+            given: format!("{}={}", asked.key, asked.value),
+            problem: "only the time can be frozen".to_owned(),
+            allowed: "t=VALUE; a parameter stays at its value without being frozen".to_owned(),
+        })
+    }
+
     /// Runs the command.
     ///
     /// # Errors
@@ -47,7 +66,7 @@ impl Equilibria {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?.explain(self.explain);
         let request = EquilibriaRequest {
-            model: self.model.request()?,
+            model: ModelRequest { freeze: self.freeze()?, ..self.model.request()? },
             along: self.along.clone(),
             at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
             monitors: self.monitors.asked(),

@@ -62,6 +62,7 @@ impl ModelOptions {
             named_set: self.named_set.clone(),
             set: self.parameters.values()?,
             start: numbers(&self.start, &["start"])?,
+            freeze: None,
         })
     }
 }

@@ -27,6 +27,7 @@ pub struct Model {
     options: Options,
     warnings: Vec<Warning>,
     time: Option<Place>,
+    frozen: Option<f64>,
     field: Tape,
     auxiliary: Tape,
     derivation: Tape,
@@ -135,19 +136,24 @@ impl Model {
         state
     }
 
-    /// Whether the field does not depend on the time.
+    /// Whether the field does not depend on the time, or the time is frozen.
     pub fn is_autonomous(&self) -> bool {
-        self.time.is_none()
+        self.time_dependence().is_none()
     }
 
-    /// The first place where the field uses the time `t`.
+    /// The first place where the field uses the time `t`, unless that is frozen.
     pub fn time_dependence(&self) -> Option<&Place> {
-        self.time.as_ref()
+        self.time.as_ref().filter(|_| self.frozen.is_none())
+    }
+
+    /// Has [`VectorField::evaluate`] be the right-hand side at one time, so that it is a field of its own.
+    pub fn freeze(&mut self, time: f64) {
+        self.frozen = Some(time);
     }
 
     /// Writes the right-hand side at a time into `derivative`.
     ///
-    /// [`VectorField::evaluate`] is this at time 0.
+    /// [`VectorField::evaluate`] is this at the time that is [frozen](Self::freeze), by default 0.
     pub fn evaluate_at<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], derivative: &mut [T]) {
         self.field.evaluate(time, state, parameters, derivative);
     }
@@ -193,7 +199,7 @@ impl VectorField for Model {
     }
 
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        self.field.evaluate(T::zero(), state, parameters, derivative);
+        self.field.evaluate(T::from(self.frozen.unwrap_or(0.0)), state, parameters, derivative);
     }
 
     fn dimension(&self) -> usize {
@@ -295,6 +301,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         options,
         warnings,
         time,
+        frozen: None,
         field,
         auxiliary,
         derivation,

@@ -213,3 +213,48 @@ fn whole_powers_of_negative_numbers_have_derivatives() {
     assert_relative_eq!(derivative[0].value, -8.0 + 0.25 - 32.0, max_relative = 1e-14);
     assert_relative_eq!(derivative[0].derivatives[0], 12.0 + 0.25 + 80.0, max_relative = 1e-14);
 }
+
+/// Value and slope of a right-hand side in its state `v`.
+fn value_and_slope(right_hand_side: &str, v: f64) -> (f64, f64) {
+    let text = format!("par a=10,k=3\nvtrap(x,y)=x/(exp(x/y)-1)\nv'={right_hand_side}\n");
+    let model = Model::parse(&text).unwrap();
+    let mut image = [Dual::<f64, 1>::from(0.0)];
+    let parameters = [Dual::from(10.0), Dual::from(3.0)];
+    model.evaluate(&[Dual::variable(v, 0)], &parameters, &mut image);
+    (image[0].value, image[0].derivatives[0])
+}
+
+#[test]
+fn a_removable_quotient_has_its_limit_and_its_slope() {
+    // Each is c B(x), B(x) = x/(exp(x) - 1) = 1 - x/2 + x^2/12, in x = s (v - v0): limit c, slope -c s/2; or 1/B.
+    let cases = [
+        ("v/(1-exp(-v))", 0.0, 1.0, 0.5),
+        ("v/(exp(v)-1)", 0.0, 1.0, -0.5),
+        ("0.1*(v+40)/(1-exp(-(v+40)/10))", -40.0, 1.0, 0.05),
+        (".01*(v+55)/(1-exp(-0.1*(v+55)))", -55.0, 0.1, 0.005),
+        ("(25-v)/(10*(exp((25-v)/10)-1))", 25.0, 1.0, 0.05),
+        ("-0.32*(v+54)/(exp(-(v+54)/4)-1)", -54.0, 1.28, 0.16),
+        ("0.32*(v+54)/(1-exp(-0.25*v-13.5))", -54.0, 1.28, 0.16),
+        ("a*vtrap(-(v+35),k)", -35.0, 30.0, 5.0),
+        ("(1-exp(-v*2))/v", 0.0, 2.0, -2.0),
+        ("k*(v-a)/(-1+exp((v-a)/k))", 10.0, 9.0, -1.5),
+    ];
+    for (text, at, value, slope) in cases {
+        for offset in [0.0, 1e-9, -1e-7] {
+            let (found, rate) = value_and_slope(text, at + offset);
+            assert_relative_eq!(found, value + slope * offset, max_relative = 1e-13);
+            assert_relative_eq!(rate, slope, max_relative = 1e-6);
+        }
+    }
+}
+
+#[test]
+fn other_quotients_are_left_alone() {
+    // Not 0/0 where the exponential is one: they have no limit there.
+    for text in ["(v+1)/(1-exp(-v))", "1/(exp(v)-1)", "v*v/(exp(v)-2)", "(v+40)/(1-exp(-(v+41)/10))"] {
+        let (value, slope) = value_and_slope(text, 3.0);
+        let (above, _) = value_and_slope(text, 3.0 + 1e-6);
+        assert_relative_eq!(slope, (above - value) / 1e-6, max_relative = 1e-5);
+    }
+    assert!(!value_and_slope("(v+1)/(1-exp(-v))", 0.0).0.is_finite());
+}

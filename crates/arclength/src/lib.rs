@@ -20,6 +20,7 @@ pub mod linear;
 pub mod locus;
 pub mod numbers;
 mod parameters;
+mod random;
 
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;

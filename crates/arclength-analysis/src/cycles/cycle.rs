@@ -27,6 +27,9 @@ pub struct CycleResult {
     pub trivial_multiplier_error: f64,
     /// Nothing where that is not decided.
     pub stable: Option<bool>,
+    /// Whether it is one of a family at one parameter value, as conserved quantities make them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub neutral: bool,
     /// Error of period and extremes, relative to the period and to the amplitudes.
     pub error_estimate: f64,
     /// Error of the parameter value of a special cycle that comes of the mesh.
@@ -73,6 +76,7 @@ impl CycleResult {
                 .collect(),
             trivial_multiplier_error: point.trivial_multiplier_error,
             stable: point.stable,
+            neutral: point.neutral,
             error_estimate: point.error_estimate,
             value_error: point.value_error.filter(|error| error.is_finite()),
             intervals: point.orbit.mesh.len().saturating_sub(1),
@@ -82,6 +86,16 @@ impl CycleResult {
             branching: point.branching,
             orbit: label.as_ref().map(|_| point.orbit),
             label,
+        }
+    }
+
+    /// Number of digits of the parameter value that hold.
+    pub fn certain_digits(&self) -> usize {
+        match self.value_error {
+            Some(error) if error > 0.0 && self.value != 0.0 => {
+                (self.value.abs() / error).log10().floor().clamp(1.0, 17.0) as usize
+            }
+            _ => 17,
         }
     }
 

@@ -152,8 +152,9 @@ impl CyclesRequest {
     fn open_samples(&self, samples: &Path, model: &ModelSource) -> Result<Opened, Error> {
         let opened = ModelRequest::new(model.clone()).open()?;
         let name = samples.file_name().unwrap_or_default().to_string_lossy();
-        let chosen = self.change(opened.chosen, &name)?;
+        let mut chosen = self.change(opened.chosen, &name)?;
         let orbit = read_orbit(samples, chosen.model.states())?;
+        chosen.start = orbit.state_at(0.0);
         Ok(Opened {
             chosen,
             start: CycleStart::Orbit(orbit),
@@ -247,8 +248,9 @@ impl CyclesAnalysis {
             };
             Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
         });
+        let field = self.chosen.field();
         let branch = monitors
-            .fold(Cycles::of(&self.chosen.model, self.start.clone()), Cycles::monitor)
+            .fold(Cycles::of(&field, self.start.clone()), Cycles::monitor)
             .parameters(&self.chosen.parameters)
             .along(name, self.along.start..=self.along.end)
             .at(&self.at)

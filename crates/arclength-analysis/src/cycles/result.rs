@@ -123,7 +123,15 @@ impl Report for CyclesResult {
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "limit cycles of {} at {}", self.model.name, parameters(&self.parameters.0))?;
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
-        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
+        writeln!(out, "  first: {}\n  last:  {}", self.ends[0].text(), self.ends[1].text())?;
+        if self.points.iter().any(|point| point.neutral) {
+            let key = &self.along.key;
+            writeln!(
+                out,
+                "  neutral: {key} stands still along a family of cycles, as it does where something is conserved; their multiplier is 1"
+            )?;
+        }
+        writeln!(out)?;
         let state = self.states().first().copied().unwrap_or_default();
         let [largest, smallest] = ["max", "min"].map(|end| format!("{end} {state}"));
         let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
@@ -132,14 +140,15 @@ impl Report for CyclesResult {
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![
                 point.label.clone().into(),
-                Cell::Digits(point.value, DIGITS),
+                Cell::Digits(point.value, point.certain_digits().min(DIGITS)),
                 Cell::Digits(point.period, DIGITS),
                 point.max.get(0).into(),
                 point.min.get(0).into(),
                 Cell::Digits(point.error_estimate, 2),
             ];
             cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
-            cells.push(stability(point.stable, is_bifurcation(point.label.as_deref())).into());
+            let stability = stability(point.stable, is_bifurcation(point.label.as_deref()));
+            cells.push(if point.neutral { "neutral" } else { stability }.into());
             cells.push(point.remark().into());
             table.row(cells);
         }

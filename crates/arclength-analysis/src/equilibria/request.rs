@@ -1,6 +1,6 @@
 //! What a branch of equilibria is asked for by, and how it is computed.
 
-use super::result::EquilibriaResult;
+use super::result::{ConservedResult, EquilibriaResult};
 use crate::branch::Origin;
 use crate::error::Error;
 use crate::interval::Interval;
@@ -11,7 +11,9 @@ use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::Steps;
 use arclength::branch::Monitor;
 use arclength::control::Control;
-use arclength::equilibrium::{BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings};
+use arclength::equilibrium::{
+    BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings, seek_equilibrium,
+};
 use arclength_ode::Quantity;
 use kingpin_report::numbers::{readable, significant};
 use serde::{Deserialize, Serialize};
@@ -120,7 +122,13 @@ impl EquilibriaAnalysis {
             None => (None, Origin::initial_state()),
         };
         let chosen = &self.chosen;
-        let equilibria = Equilibria::of(&chosen.model).start(&chosen.start).parameters(&chosen.parameters);
+        let field = chosen.field();
+        let mut start = chosen.start.clone();
+        if self.point.is_none() {
+            let found = seek_equilibrium(&field, &start, &chosen.parameters)?;
+            (start, origin) = (found.state, Origin::sought(found.by));
+        }
+        let equilibria = Equilibria::of(&field).start(&start).parameters(&chosen.parameters);
         let exact =
             matches!(&self.point, Some(point) if matches!(point.solution, LabelledSolution::Equilibrium(_)));
         let equilibria = match branch_point {
@@ -137,7 +145,7 @@ impl EquilibriaAnalysis {
             };
             Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
         });
-        let branch = monitors
+        let mut branch = monitors
             .fold(equilibria, Equilibria::monitor)
             .along(name, self.along.start..=self.along.end)
             .at(&self.at)
@@ -153,7 +161,13 @@ impl EquilibriaAnalysis {
         {
             origin = Origin::labelled(&point.label, "the other branch through it");
         }
-        Ok(EquilibriaResult::new(chosen, &self.along, origin, &self.names(), &branch))
+        branch.points.iter_mut().for_each(|point| field.restore_eigenvalues(&mut point.eigenvalues));
+        let totals = field.totals().iter().map(|total| ConservedResult {
+            total: total.text(chosen.model.states()),
+            value: total.value(&chosen.start),
+        });
+        let result = EquilibriaResult::new(chosen, &self.along, origin, &self.names(), &branch);
+        Ok(EquilibriaResult { conserved: totals.collect(), ..result })
     }
 
     fn names(&self) -> Vec<String> {

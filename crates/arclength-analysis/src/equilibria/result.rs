@@ -14,6 +14,7 @@ use crate::unlocated::{UnlocatedResult, warnings};
 use crate::varying_parameter::VaryingParameter;
 use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
 use kingpin_figure::{Figure, FigureError, palette};
+use kingpin_report::numbers::readable;
 use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -46,6 +47,15 @@ pub struct EquilibriumResult {
     pub special: Option<SpecialPoint>,
 }
 
+/// A linear combination of the states that every motion conserves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConservedResult {
+    /// The combination.
+    pub total: String,
+    /// The value at which it is kept.
+    pub value: f64,
+}
+
 /// A branch of equilibria.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EquilibriaResult {
@@ -56,6 +66,9 @@ pub struct EquilibriaResult {
     pub model: StoredModel,
     /// The parameter that varies.
     pub along: VaryingParameter,
+    /// What is conserved, and kept at its value at the start: the eigenvalues zero that belong to it do not count.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub conserved: Vec<ConservedResult>,
     /// Where the branch starts.
     pub from: Origin,
     /// Why it ends, at its first and at its last point.
@@ -105,6 +118,7 @@ impl EquilibriaResult {
             parameters: chosen.named_parameters(&branch.active),
             model: chosen.stored.clone(),
             along: along.into(),
+            conserved: Vec::new(),
             from,
             ends,
             unlocated: branch.unlocated.iter().map(UnlocatedResult::from).collect(),
@@ -148,7 +162,12 @@ impl Report for EquilibriaResult {
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "equilibria of {} at {}", self.model.name, parameters(&self.parameters.0))?;
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
-        writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
+        writeln!(out, "  first: {}\n  last:  {}", self.ends[0].text(), self.ends[1].text())?;
+        if !self.conserved.is_empty() {
+            let kept = self.conserved.iter().map(|kept| format!("{} = {}", kept.total, readable(kept.value)));
+            writeln!(out, "  conserved by every motion and kept: {}", kept.collect::<Vec<_>>().join(", "))?;
+        }
+        writeln!(out)?;
         let states = self.states().into_iter().take(SHOWN_STATES);
         let headings = ["label", self.along.key.as_str()].into_iter().chain(states);
         let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));

@@ -215,13 +215,14 @@ impl LocusAnalysis {
     /// # Errors
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
-        let curve = EquilibriumLocus::of(&self.point.chosen.model);
+        let field = self.point.chosen.field();
+        let curve = EquilibriumLocus::of(&field);
         let (curve, how) = match &self.start {
             Start::Fold(fold) => (curve.from_fold(fold), "the folds through it"),
             Start::Hopf(hopf) => (curve.from_hopf(hopf), "the Hopf points through it"),
             Start::BranchPoint(point) => (curve.from_branch_point(point), "the branch points through it"),
             Start::Cycle(kind, orbit) => {
-                let curve = CycleLocus::of(&self.point.chosen.model);
+                let curve = CycleLocus::of(&field);
                 let curve = curve.from_cycle(*kind, orbit, &self.point.chosen.parameters);
                 let how = match kind {
                     SpecialKind::FoldOfCycles => "the folds of cycles through it",
@@ -231,7 +232,7 @@ impl LocusAnalysis {
                 return self.of_cycles(curve, how, control).map(LocusResult::Cycles);
             }
             Start::Held(held, orbit) => {
-                let curve = CycleLocus::of(&self.point.chosen.model);
+                let curve = CycleLocus::of(&field);
                 let curve = curve.from_held_cycle(held.clone(), orbit, &self.point.chosen.parameters);
                 let result = self.of_cycles(curve, "the cycles through it", control)?;
                 return Ok(LocusResult::Cycles(

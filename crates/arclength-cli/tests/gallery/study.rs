@@ -33,7 +33,7 @@ impl Study {
         let source = std::fs::read_to_string(gallery().join(format!("models/{name}.ode"))).unwrap();
         let model = Model::parse(&source).unwrap_or_else(|error| panic!("{name}: {}", error.snippet()));
         assert!(model.warnings().is_empty(), "{:?}", model.warnings());
-        let stored = StoredModel { name: format!("{name}.ode"), source };
+        let stored = StoredModel { name: format!("{name}.ode"), source, frozen_time: None };
         let mut chosen = ChosenModel::new(stored, model);
         for (key, value) in set {
             let index = chosen.model.parameter_index(key).expect("a parameter");

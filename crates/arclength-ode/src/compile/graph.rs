@@ -2,7 +2,7 @@
 //!
 //! Equal subexpressions get the same node (hash consing), so what two equations have in common is
 //! computed once. Rewrites are limited to those that are exact in floating-point arithmetic, except
-//! that multiplication by a literal zero gives zero.
+//! that multiplication by a literal zero gives zero and that `0/0` which is none is removed (`removable`).
 
 use crate::expression::{BinaryOperation, UnaryOperation};
 use crate::tape::{apply_binary, apply_unary};
@@ -64,6 +64,10 @@ impl Graph {
         self.insert(Operation::Constant(if value.is_nan() { f64::NAN.to_bits() } else { value.to_bits() }))
     }
 
+    pub(super) fn operation(&self, node: NodeId) -> Operation {
+        self.operations[node as usize]
+    }
+
     /// The value of a node that does not vary.
     pub(crate) fn constant_value(&self, node: NodeId) -> Option<f64> {
         match self.operations[node as usize] {
@@ -123,6 +127,11 @@ impl Graph {
         }
         if let (Add | Subtract | Multiply | Divide, Some(node)) =
             (operation, self.without_signs(operation, a, b))
+        {
+            return node;
+        }
+        if operation == Divide
+            && let Some(node) = self.removable_quotient(a, b)
         {
             return node;
         }

@@ -25,6 +25,8 @@ pub(crate) enum UnaryOperation {
     Floor,
     Ceiling,
     Not,
+    /// `(exp(x) - 1)/x`
+    RelativeExponential,
     ErrorFunction,
     ComplementaryErrorFunction,
     /// Bessel function of the first kind, of the given order.

@@ -1,7 +1,9 @@
 //! The instructions and what they do.
 
 use super::registers::Registers;
-use super::special::{bessel_j, bessel_y, complementary_error_function, error_function};
+use super::special::{
+    bessel_j, bessel_y, complementary_error_function, error_function, relative_exponential,
+};
 use crate::expression::{BinaryOperation, UnaryOperation};
 use arclength::Scalar;
 
@@ -253,6 +255,7 @@ pub(crate) fn apply_unary<T: Scalar>(operation: UnaryOperation, x: T) -> T {
         U::Floor => x.floor(),
         U::Ceiling => -((-x).floor()),
         U::Not => truth(x.value() == 0.0),
+        U::RelativeExponential => relative_exponential(x),
         U::ErrorFunction => error_function(x),
         U::ComplementaryErrorFunction => complementary_error_function(x),
         U::BesselJ(order) => bessel_j(order, x),

@@ -48,6 +48,31 @@ pub(super) fn complementary_error_function<T: Scalar>(x: T) -> T {
     taylor(x, error_function_derivatives(at, libm::erfc(at), -1.0))
 }
 
+/// `(exp(x) - 1)/x`, one at zero.
+pub(super) fn relative_exponential<T: Scalar>(x: T) -> T {
+    /// Where `exp(x)` is closer to one, digits of the difference and of its derivatives would cancel.
+    const SMALL: f64 = 1.0;
+    /// Terms of the series, whose last are below rounding then.
+    const TERMS: u32 = 20;
+    let at = x.value();
+    if at.abs() >= SMALL {
+        return (x.exp() - 1.0) / x;
+    }
+    if x.is_constant() {
+        return T::from(if at == 0.0 { 1.0 } else { at.exp_m1() / at });
+    }
+    // Derivative of order k: the sum of x^j/(j! (j + k + 1)).
+    let mut derivatives = [0.0; DEGREE + 1];
+    let mut power = 1.0;
+    for term in 0..TERMS {
+        for (order, derivative) in derivatives.iter_mut().enumerate() {
+            *derivative += power / f64::from(term + order as u32 + 1);
+        }
+        power *= at / f64::from(term + 1);
+    }
+    taylor(x, derivatives)
+}
+
 /// Derivatives of a Bessel function of the first or second kind (Abramowitz and Stegun, 9.1.31):
 /// 2^k C_n^(k) = sum over i of (-1)^i binomial(k, i) C_{n-k+2i}.
 fn bessel_derivatives(order: i32, x: f64, bessel: fn(i32, f64) -> f64) -> [f64; DEGREE + 1] {
@@ -99,6 +124,21 @@ mod tests {
         let complement = complementary_error_function(second(x));
         assert_relative_eq!(complement.value() + y.value(), 1.0, max_relative = 1e-15);
         assert_relative_eq!(complement.derivatives[0].derivatives[0], 2.0 * x * slope, max_relative = 1e-14);
+    }
+
+    #[test]
+    fn the_relative_exponential_is_smooth() {
+        // The derivatives at zero are 1/(k + 1); elsewhere x E = exp(x) - 1 and x E' + E = exp(x).
+        let zero = relative_exponential(second(0.0));
+        assert_eq!(zero.value(), 1.0);
+        assert_relative_eq!(zero.derivatives[0].value, 0.5, max_relative = 1e-15);
+        assert_relative_eq!(zero.derivatives[0].derivatives[0], 1.0 / 3.0, max_relative = 1e-15);
+        for x in [-30.0_f64, -1.0, -0.999, -0.3, 1e-9, 0.2, 0.999, 1.0, 4.0] {
+            let y = relative_exponential(second(x));
+            assert_relative_eq!(x * y.value(), x.exp_m1(), max_relative = 1e-15);
+            let slope = x * y.derivatives[0].value + y.value();
+            assert_relative_eq!(slope, x.exp(), max_relative = 1e-14, epsilon = 1e-15);
+        }
     }
 
     #[test]

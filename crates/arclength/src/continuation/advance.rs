@@ -26,6 +26,8 @@ const FAR_CORRECTION_PART: f64 = 0.1;
 /// this part of their ranges: drawn as a polygon it is smooth.
 const PLANE_ANGLE: f64 = 0.2;
 const PLANE_DISTANCE: f64 = 0.005;
+/// Part of a parameter's range by which a step is predicted to leave it at most.
+const OVERSHOOT: f64 = 0.01;
 /// Corrections after a change of mesh that may follow each other at one point.
 const MOST_ADAPTATIONS: usize = 12;
 /// Times that a discretisation is made finer at one point because it does not resolve what was found out there.
@@ -63,6 +65,14 @@ pub(super) fn advance<C: Curve>(
         let most = settings.largest_parameter_change * bound.width();
         if *step * rate > most {
             *step = most / rate;
+        }
+        // The problem need not make sense far outside the range.
+        let slope = current.tangent[current.tangent.len() - bound.from_end];
+        let value = bound.value(&current.unknown);
+        let left = if slope > 0.0 { bound.upper - value } else { value - bound.lower };
+        let to_end = (left + OVERSHOOT * bound.width()) / rate;
+        if to_end > 0.0 && *step > to_end {
+            *step = to_end;
         }
     }
     loop {

@@ -30,6 +30,9 @@ pub struct CyclePoint {
     pub unstable_multipliers: usize,
     /// Whether the cycle is stable; `None` when a multiplier is closer to the unit circle than the error.
     pub stable: Option<bool>,
+    /// Whether it is one of a family of cycles at one parameter value, as conserved quantities make them: the parameter stands
+    /// still and a nontrivial multiplier is one.
+    pub neutral: bool,
     /// Error of period and extremes of the cycle with this parameter value, relative to the period and to the amplitudes: what
     /// the defect of the polynomials does through the linearised equations, or the difference from a finer mesh.
     pub error_estimate: f64,
@@ -88,7 +91,8 @@ impl CyclePoint {
             trivial_multiplier_error: inspection.floquet.trivial_error,
             unstable_multipliers: outside,
             // At a bifurcation a multiplier is on the unit circle by definition.
-            stable: if is_special || !certain { None } else { Some(outside == 0) },
+            stable: if is_special || !certain || inspection.is_neutral { None } else { Some(outside == 0) },
+            neutral: inspection.is_neutral,
             error_estimate: inspection.error_estimate,
             value_error: inspection.parameter_error,
             label,

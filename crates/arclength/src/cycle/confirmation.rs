@@ -8,6 +8,7 @@
 use super::branch::{CycleBranch, CyclePoint};
 use super::curve::CycleCurve;
 use super::floquet::Floquet;
+use super::orbit::Orbit;
 use super::start::Asked;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
@@ -93,7 +94,7 @@ impl Asked<'_> {
             if 2 * (mesh.len() - 1) > self.resolution.most_intervals {
                 break;
             }
-            let Some(level) = self.solve_on_halves(&mesh, &unknown, degree) else {
+            let Some(level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
                 if last_change.is_none() {
                     (point.error_estimate, point.stable) = (UNCONFIRMED, None);
                 }
@@ -115,8 +116,14 @@ impl Asked<'_> {
         }
     }
 
-    /// The cycle at the same parameter value with every interval of the mesh halved.
-    fn solve_on_halves(&self, mesh: &[f64], unknown: &[f64], degree: usize) -> Option<Level> {
+    /// The cycle at the same parameter value, or the one of a neutral family that is as large, with every interval of the mesh
+    /// halved.
+    fn solve_on_halves(
+        &self,
+        (mesh, unknown): (&[f64], &[f64]),
+        degree: usize,
+        neutral: bool,
+    ) -> Option<Level> {
         let halves: Vec<f64> = mesh
             .windows(2)
             .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
@@ -127,7 +134,16 @@ impl Asked<'_> {
         let fine = Collocation::new(self.problem(), halves.clone(), degree);
         let mut curve = CycleCurve::new(fine, self.resolution, self.bound.width(), &unknown);
         let mut border = vec![0.0; unknown.len()];
-        *border.last_mut()? = 1.0;
+        if neutral {
+            let [end, dimension] = [unknown.len() - 2, self.field.dimension()];
+            let states = unknown[..end].to_vec();
+            let orbit = Orbit { mesh: halves.clone(), degree, dimension, states, period: unknown[end] };
+            let mut growth = orbit.deviation();
+            growth.extend([0.0, 0.0]);
+            curve.apply_metric(&growth, &mut border);
+        } else {
+            *border.last_mut()? = 1.0;
+        }
         let settings = Settings { corrector_tolerance: TOLERANCE, ..self.settings };
         let correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
         let mut update = vec![0.0; unknown.len()];
@@ -218,7 +234,7 @@ impl Level {
             // One that moves away from the circle as the mesh gets finer is on its side of it.
             now.abs() > MARGIN * error || (now * then > 0.0 && now.abs() >= then.abs())
         });
-        point.stable = (certain && decided.all(|decided| decided)).then_some(outside == 0);
+        point.stable = (certain && !point.neutral && decided.all(|decided| decided)).then_some(outside == 0);
         let mut all = errors.to_vec();
         let trivial =
             self.told.multipliers.partition_point(|one| one.log_modulus > self.floquet.trivial.abs().ln());

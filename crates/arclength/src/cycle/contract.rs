@@ -1,6 +1,6 @@
 //! What continuation asks of a curve of cycles: residuals, meshes, test functions, where special points lie, where the curve ends.
 
-use super::curve::{CycleCurve, CycleInspection};
+use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
 use super::extrema::ranges;
 use super::floquet::floquet;
@@ -46,6 +46,8 @@ const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
 /// Rate of change of the parameter, as part of its range, that may be rounding, and one below which a cycle may be a fold.
 const PARAMETER_ROUNDING: f64 = 1e-13;
 const NEARLY_FOLD: f64 = 1e-8;
+/// Growth of the states over their natural sizes beyond which a curve on which the parameter stands still leads to infinity.
+const UNBOUNDED_GROWTH: f64 = 1e6;
 /// Difference of the arguments of two pairs of multipliers.
 const DISTINCT: f64 = 1e-6;
 
@@ -109,6 +111,7 @@ impl Curve for CycleCurve<'_> {
             turn_is_reversed,
             error_estimate: self.error_estimate,
             error_across: self.error_estimate,
+            is_neutral: self.is_neutral(tangent, &floquet),
             parameter_error: None,
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
@@ -120,7 +123,9 @@ impl Curve for CycleCurve<'_> {
 
     fn measure(&mut self, solution: &mut Solution<CycleInspection>) {
         let [fixed, across] = self.errors(&solution.unknown, &solution.tangent);
-        (solution.point.error_estimate, solution.point.error_across) = (fixed, across);
+        let point = &mut solution.point;
+        point.error_across = across;
+        point.error_estimate = if point.is_neutral { across } else { fixed };
     }
 
     fn resolves(&mut self, point: &CycleInspection) -> bool {
@@ -158,6 +163,9 @@ impl Curve for CycleCurve<'_> {
     fn test(&self, kind: SpecialKind, solution: &Solution<CycleInspection>) -> Option<Reading> {
         let floquet = &solution.point.floquet;
         let reading = match kind {
+            SpecialKind::FoldOfCycles | SpecialKind::BranchPointOfCycles if self.follows_neutral_family => {
+                return None;
+            }
             // On the explosion of a canard the parameter may vary by its rounding only.
             SpecialKind::FoldOfCycles => {
                 let turn = self.certain_turn(solution);
@@ -177,10 +185,15 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn spectrum(&self, solution: &Solution<CycleInspection>) -> Spectrum {
-        solution.point.floquet.growth()
+        let spectrum = solution.point.floquet.growth();
+        // Which side of the circle a multiplier one is on is rounding.
+        Spectrum { decided: spectrum.decided && !self.follows_neutral_family, ..spectrum }
     }
 
     fn undecided(&self, solution: &Solution<CycleInspection>) -> usize {
+        if self.follows_neutral_family {
+            return 0;
+        }
         let (_, certain) = solution.point.floquet.unstable();
         usize::from(!certain) + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
     }
@@ -223,8 +236,12 @@ impl Curve for CycleCurve<'_> {
         before: &Solution<CycleInspection>,
         after: &Solution<CycleInspection>,
     ) -> Option<Ending<CycleEnd>> {
+        self.follows_neutral_family = before.point.is_neutral && after.point.is_neutral;
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
+        if self.turn(&after.tangent).abs() < STANDING && self.sizes.growth() > UNBOUNDED_GROWTH {
+            return Some(Ending::After(Stop::Problem(CycleEnd::AmplitudeUnbounded { period, parameter })));
+        }
         let rate = after.tangent[end] / self.period_scale;
         let sensitivity = (rate / self.turn(&after.tangent)).abs();
         if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance)

@@ -12,6 +12,7 @@ use crate::collocation::mesh::error_profile;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::{Settings, Solution};
+use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 
 /// Samples for the difference of the halves of a doubled cycle.
@@ -21,6 +22,13 @@ const HALF_SAMPLES: usize = 64;
 const CERTAIN_TURN: f64 = 1e-6;
 const ROUNDING_TURN: f64 = 1e-12;
 
+/// Rate of change of the parameter, as part of its range, below which it may stand still, and logarithm of a multiplier that may
+/// be one there.
+pub(super) const STANDING: f64 = 1e-8;
+const NEUTRAL: f64 = 1e-4;
+/// The same along a family that was followed so far: large cycles of it may not resolve it better.
+const STILL_NEUTRAL: f64 = 0.5;
+
 /// What is known about one cycle.
 #[derive(Clone, Debug)]
 pub(crate) struct CycleInspection {
@@ -28,6 +36,8 @@ pub(crate) struct CycleInspection {
     pub error_estimate: f64,
     /// The part of it across the tangent: without what a small error of the parameter does next to a fold.
     pub(super) error_across: f64,
+    /// Whether the parameter stands still and a multiplier is one, as along a family of cycles that a conserved quantity makes.
+    pub(crate) is_neutral: bool,
     /// Error of the parameter at a special point.
     pub parameter_error: Option<f64>,
     /// Whether the multipliers say that the parameter changes the other way than the tangent, whose last digit that is.
@@ -74,6 +84,8 @@ pub(crate) struct CycleCurve<'a> {
     /// Whether the branch is one of doubled cycles, which ends where they become single again.
     pub doubled: bool,
     pub(super) error_estimate: f64,
+    /// Whether both ends of the last step are neutral.
+    pub(super) follows_neutral_family: bool,
     /// Factor of the tolerance that the multipliers ask for.
     pub(super) refinement: f64,
     pub(super) global_error: GlobalError,
@@ -103,6 +115,7 @@ impl<'a> CycleCurve<'a> {
             sizes,
             doubled: false,
             error_estimate: f64::INFINITY,
+            follows_neutral_family: false,
             refinement: 1.0,
             global_error: GlobalError::new(collocation.gauss()),
             collocation,
@@ -150,6 +163,15 @@ impl<'a> CycleCurve<'a> {
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.
     pub(crate) fn turn(&self, tangent: &[f64]) -> f64 {
         tangent.last().map_or(0.0, |rate| rate / self.parameter_scale)
+    }
+
+    /// Whether the parameter stands still at a cycle with a multiplier one. At a single cycle this may be a fold; from cycle to
+    /// cycle it is a family for one parameter value (Munoz-Almaraz, Freire, Galan, Doedel and Vanderbauwhede, "Continuation of
+    /// periodic orbits in conservative and Hamiltonian systems" (2003)).
+    pub(super) fn is_neutral(&self, tangent: &[f64], floquet: &Floquet) -> bool {
+        let near = if self.follows_neutral_family { STILL_NEUTRAL } else { NEUTRAL };
+        let one = |multiplier: &Multiplier| multiplier.argument == 0.0 && multiplier.log_modulus.abs() < near;
+        self.turn(tangent).abs() < STANDING && floquet.nontrivial.iter().any(one)
     }
 
     /// Whether the rate of change of the parameter has the wrong sign. On the explosion of a canard it may be nothing but

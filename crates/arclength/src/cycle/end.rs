@@ -36,14 +36,21 @@ pub enum CycleEnd {
         /// The equilibrium beside which the time is spent.
         beside: SlowPassage,
     },
+    /// The amplitude grows without bound while the parameter tends to a value.
+    AmplitudeUnbounded {
+        /// Period of the last cycle.
+        period: f64,
+        /// Parameter value of the last cycle.
+        parameter: f64,
+    },
 }
 
 impl WithParameters for CycleEnd {
     fn with_parameters(mut self, convert: impl Fn(usize, f64) -> f64) -> Self {
         match &mut self {
-            Self::HopfPoint { parameter, .. } | Self::PeriodDoubling { parameter, .. } => {
-                *parameter = convert(0, *parameter)
-            }
+            Self::HopfPoint { parameter, .. }
+            | Self::PeriodDoubling { parameter, .. }
+            | Self::AmplitudeUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
             Self::PeriodUnbounded { parameter, beside, .. } => {
                 *parameter = convert(0, *parameter);
                 if let SlowPassage::SaddleNode { parameter, .. } = beside {
@@ -74,6 +81,13 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
+            Self::AmplitudeUnbounded { period, parameter } => Explanation::of(format!(
+                "the amplitude grows without bound while {} tends to {}; the last period is {}",
+                wording.name(0),
+                readable(*parameter),
+                wording.time(*period)
+            ))
+            .try_this("nothing, if it does in truth; else other coordinates, such as logarithms"),
             Self::PeriodUnbounded { period, parameter, beside } => {
                 let list = |state: &[f64]| {
                     state.iter().map(|value| readable(*value)).collect::<Vec<_>>().join(", ")

@@ -45,7 +45,7 @@ impl Asked<'_> {
                         (*parameter, *period) = (value, exact);
                     }
                 }
-                CycleEnd::PeriodUnbounded { .. } => {}
+                CycleEnd::PeriodUnbounded { .. } | CycleEnd::AmplitudeUnbounded { .. } => {}
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::collocation::gauss::Gauss;
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
-use crate::integration::{Event, Integrator, autonomous};
+use crate::integration::{Event, Integrator, Stepper, autonomous};
 use serde::{Deserialize, Serialize};
 
 /// A periodic orbit, piecewise polynomial in the unit time `t / period`.
@@ -24,11 +24,57 @@ pub struct Orbit {
 
 /// Tolerance with which a time history is cut into an orbit.
 const HISTORY_TOLERANCE: f64 = 1e-9;
-/// Intervals and degree of an orbit made from a time history.
-const HISTORY_INTERVALS: usize = 40;
+/// Degree and fewest intervals of an orbit made from a time history, intervals for each unit of what is made equal in all of them
+/// (a harmonic motion has 6.5), and most intervals.
 const HISTORY_DEGREE: usize = 7;
+const FEWEST_INTERVALS: usize = 40;
+const INTERVALS_PER_UNIT: f64 = 6.0;
+const MOST_INTERVALS: usize = 400;
 /// Agreement of the state after one period, relative to the size of the motion.
 const HISTORY_CLOSURE: f64 = 0.05;
+
+/// A mesh of the unit interval that suits samples of a motion over one period: in every interval there is as much of the way in
+/// time, of the changes of the states and of the roots of those of their rates.
+fn mesh_for(times: &[f64], value: impl Fn(usize, usize) -> f64, dimension: usize) -> Vec<f64> {
+    let count = times.len();
+    let period = times[count - 1] - times[0];
+    let mut masses = vec![0.0; count - 1];
+    for component in 0..dimension {
+        let (low, high) = (0..count).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), index| {
+            (low.min(value(index, component)), high.max(value(index, component)))
+        });
+        if high <= low {
+            continue;
+        }
+        let change = |index: usize| (value(index + 1, component) - value(index, component)) / (high - low);
+        let rate = |index: usize| change(index) / (times[index + 1] - times[index]);
+        for (index, mass) in masses.iter_mut().enumerate() {
+            let bend = (rate((index + 1) % (count - 1)) - rate(index)).abs();
+            let root = (bend * (times[index + 1] - times[index])).sqrt();
+            *mass += (change(index).abs() + root) / dimension as f64;
+        }
+    }
+    for (mass, pair) in masses.iter_mut().zip(times.windows(2)) {
+        *mass += (pair[1] - pair[0]) / period;
+    }
+    let total: f64 = masses.iter().sum();
+    let intervals = ((INTERVALS_PER_UNIT * total) as usize).clamp(FEWEST_INTERVALS, MOST_INTERVALS);
+    let mut mesh = vec![0.0];
+    let (mut index, mut passed) = (0, 0.0);
+    for point in 1..intervals {
+        let wanted = total * point as f64 / intervals as f64;
+        while index + 1 < masses.len() && passed + masses[index] < wanted {
+            passed += masses[index];
+            index += 1;
+        }
+        let part = ((wanted - passed) / masses[index]).clamp(0.0, 1.0);
+        let time = times[index] + part * (times[index + 1] - times[index]);
+        mesh.push((time - times[0]) / period);
+    }
+    mesh.push(1.0);
+    mesh.dedup_by(|later, earlier| *later <= *earlier);
+    mesh
+}
 
 impl Orbit {
     /// An approximate periodic orbit from a function of time over one period, which need not be a solution: Newton's method
@@ -40,10 +86,13 @@ impl Orbit {
     /// let circle = Orbit::from_function(TAU, |time| vec![time.cos(), time.sin()]);
     /// assert!((circle.state_at(1.0)[0] - 1_f64.cos()).abs() < 1e-10);
     /// ```
-    pub fn from_function(period: f64, mut state_at: impl FnMut(f64) -> Vec<f64>) -> Self {
+    pub fn from_function(period: f64, state_at: impl FnMut(f64) -> Vec<f64>) -> Self {
+        let mesh = (0..=FEWEST_INTERVALS).map(|index| index as f64 / FEWEST_INTERVALS as f64);
+        Self::on_mesh(mesh.collect(), period, state_at)
+    }
+
+    fn on_mesh(mesh: Vec<f64>, period: f64, mut state_at: impl FnMut(f64) -> Vec<f64>) -> Self {
         let gauss = Gauss::new(HISTORY_DEGREE);
-        let mesh: Vec<f64> =
-            (0..=HISTORY_INTERVALS).map(|index| index as f64 / HISTORY_INTERVALS as f64).collect();
         let (mut states, mut dimension) = (Vec::new(), 0);
         for pair in mesh.windows(2) {
             for node in std::iter::once(0.0).chain(gauss.points.iter().copied()) {
@@ -122,7 +171,8 @@ impl Orbit {
             let ((before, one), (after, other)) = (sample(index - 1), sample(index + 1));
             (other[component] - one[component]) / (after - before)
         };
-        Ok(Self::from_function(period, |time| {
+        let mesh = mesh_for(times, |index, component| states[index][component], dimension);
+        Ok(Self::on_mesh(mesh, period, |time| {
             let time = times[0] + time;
             let index =
                 times.partition_point(|candidate| *candidate <= time).clamp(1, count - 1) as isize - 1;
@@ -179,8 +229,15 @@ impl Orbit {
             .find(|crossing| crossing.time > 0.0 && distance(&crossing.state) < HISTORY_CLOSURE * size)
             .map(|crossing| crossing.time)
             .ok_or(Error::NoReturn { duration: longest_period })?;
+        let (mut steps, mut along) = (vec![0.0], initial.to_vec());
+        let mut stepper = Stepper::new(autonomous(field, parameters), &integrator, 0.0, initial, period)?;
+        while !stepper.is_finished() {
+            stepper.advance()?;
+            steps.push(stepper.time());
+            along.extend_from_slice(stepper.state());
+        }
         let gauss = Gauss::new(HISTORY_DEGREE);
-        let mesh: Vec<f64> = (0..=HISTORY_INTERVALS).map(|j| j as f64 / HISTORY_INTERVALS as f64).collect();
+        let mesh = mesh_for(&steps, |index, component| along[index * dimension + component], dimension);
         let times: Vec<f64> = mesh
             .windows(2)
             .flat_map(|pair| {

@@ -113,6 +113,15 @@ impl StateSizes {
         })
     }
 
+    /// How many times its natural size the amplitude of a state has become at most.
+    pub(crate) fn growth(&self) -> f64 {
+        self.largest
+            .iter()
+            .zip(self.natural())
+            .map(|(largest, natural)| largest / natural)
+            .fold(0.0, f64::max)
+    }
+
     /// Sizes that the nonlinearity of the field gives the states.
     pub(crate) fn natural(&self) -> impl Iterator<Item = f64> + '_ {
         self.resting.iter().map(|resting| resting / RESTING_PART)

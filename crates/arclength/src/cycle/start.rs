@@ -180,9 +180,21 @@ impl<'a> Cycles<'a> {
             Branch::assemble(&asked.field, (&asked.parameters, &active), followed, |solution, label| {
                 point(&solution, label)
             });
+        keep_neutral_families(&mut branch);
         asked.refine_ends(&mut branch);
         asked.confirm(&mut branch, at);
         Ok(branch)
+    }
+}
+
+/// A family has more than one cycle: a single one at which the parameter stands still is next to a fold.
+fn keep_neutral_families(branch: &mut CycleBranch) {
+    let neutral: Vec<bool> = branch.points.iter().map(|point| point.neutral).collect();
+    for (index, point) in branch.points.iter_mut().enumerate() {
+        let neighbours = [index.checked_sub(1), Some(index + 1)];
+        let has_neutral_neighbour =
+            neighbours.into_iter().flatten().any(|place| neutral.get(place) == Some(&true));
+        point.neutral = point.neutral && has_neutral_neighbour;
     }
 }
 

@@ -22,7 +22,7 @@ const FIRST_INTERVALS: usize = 8;
 /// the length of its range.
 const FIRST_AMPLITUDE: f64 = 0.02;
 /// Largest amplitude of the first cycle relative to the natural size of a state.
-const LARGEST_FIRST_AMPLITUDE: f64 = 0.1;
+const LARGEST_FIRST_AMPLITUDE: f64 = 0.02;
 /// Below this part of the other coefficients of the branching equation a coefficient counts as zero.
 const NEGLIGIBLE: f64 = 1e-6;
 

@@ -6,11 +6,13 @@
 
 mod branch;
 mod branch_point;
+mod conservation;
 mod contract;
 mod curve;
 pub(crate) mod defining;
 mod departure;
 mod end;
+mod first;
 mod fold;
 pub(crate) mod hopf;
 pub(crate) mod locating;
@@ -24,7 +26,9 @@ pub(crate) mod spectrum;
 
 pub use branch::{EquilibriumBranch, EquilibriumPoint};
 pub use branch_point::{BranchPoint, Crossing};
+pub use conservation::{ConservedTotal, WithTotals, conserved_totals};
 pub use end::EquilibriumEnd;
+pub use first::{FoundBy, FoundEquilibrium, seek_equilibrium};
 pub use fold::FoldPoint;
 pub use hopf::HopfPoint;
 pub use newton::find_equilibrium;

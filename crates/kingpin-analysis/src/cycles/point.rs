@@ -76,6 +76,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
             multiplier_errors: Vec::new(),
             trivial_multiplier_error: nearest,
             stable: None,
+            neutral: false,
             error_estimate: 0.0,
             value_error: None,
             intervals: 0,

@@ -1,0 +1,136 @@
+//! The first equilibrium, from a start that may be far from one.
+//!
+//! Newton's method and pseudo-transient steps come first. Where they fail the flow itself is followed, since most starts that
+//! models come with lead to an equilibrium or at least to the part of the state space where one is; then starts are drawn at
+//! random from there, always the same ones.
+
+use super::newton::find_erased;
+use crate::algebraic::scales::natural_scales;
+use crate::erased::ErasedField;
+use crate::error::Error;
+use crate::field::VectorField;
+use crate::integration::{Integrator, Stepper, from_fn};
+use crate::random::Random;
+
+/// How an equilibrium was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FoundBy {
+    /// By Newton's method, perhaps behind implicit steps with the flow, from the start: it is near.
+    Newton,
+    /// By Newton's method from a state to which the flow leads from the start.
+    Flow,
+    /// By Newton's method from the random start of this number, counted from 1.
+    RandomStart(usize),
+}
+
+/// An equilibrium and how it was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundEquilibrium {
+    /// The state.
+    pub state: Vec<f64>,
+    /// How it was found.
+    pub by: FoundBy,
+}
+
+/// Tolerance of the flow that is followed, and accepted steps in all; Newton's method is tried at powers of two of them.
+const FLOW_TOLERANCE: f64 = 1e-6;
+const FLOW_STEPS: u32 = 4096;
+const FIRST_TRIAL: u32 = 16;
+/// A flow is followed no longer than this.
+const FLOW_TIME: f64 = 1e12;
+/// Random starts.
+const RANDOM_STARTS: usize = 200;
+/// Part of the range of a state along the flow by which random starts exceed it.
+const MARGIN: f64 = 0.5;
+
+/// An equilibrium of `field` at `parameters`, sought from `start` by Newton's method, then along the flow, then from random starts
+/// around what the flow visits.
+///
+/// ```
+/// use arclength::{Scalar, VectorField, equilibrium::{FoundBy, seek_equilibrium}};
+/// /// Newton's method does not leave the local extremum of the first equation.
+/// struct Hump;
+/// impl VectorField for Hump {
+///     fn state_names(&self) -> Vec<String> { vec!["x".into()] }
+///     fn parameter_names(&self) -> Vec<String> { vec![] }
+///     fn evaluate<T: Scalar>(&self, x: &[T], _: &[T], derivative: &mut [T]) {
+///         derivative[0] = (x[0] * x[0] - 1.0).powi(2) + 0.1 - x[0] * 0.01;
+///     }
+/// }
+/// let found = seek_equilibrium(&Hump, &[-1.0], &[]);
+/// assert!(found.is_ok_and(|found| found.by != FoundBy::Newton));
+/// ```
+///
+/// # Errors
+/// [`Error::NotFound`] with why Newton's method failed from the start; [`Error::Invalid`] when `start` or `parameters` have the
+/// wrong length or are not finite.
+pub fn seek_equilibrium<F: VectorField>(
+    field: &F,
+    start: &[f64],
+    parameters: &[f64],
+) -> Result<FoundEquilibrium, Error> {
+    seek_erased(ErasedField::of(field), start, parameters)
+}
+
+/// As [`seek_equilibrium`].
+pub(crate) fn seek_erased(
+    field: ErasedField<'_>,
+    start: &[f64],
+    parameters: &[f64],
+) -> Result<FoundEquilibrium, Error> {
+    let failure = match find_erased(field, start, parameters) {
+        Ok(state) => return Ok(FoundEquilibrium { state, by: FoundBy::Newton }),
+        Err(error @ Error::NotFound { .. }) => error,
+        Err(error) => return Err(error),
+    };
+    let found_from = |state: &[f64]| find_erased(field, state, parameters).ok();
+    let mut visited: Vec<[f64; 2]> = start.iter().map(|value| [*value; 2]).collect();
+    if let Some(state) = along_flow(field, start, parameters, &mut visited, found_from) {
+        return Ok(FoundEquilibrium { state, by: FoundBy::Flow });
+    }
+    let sizes = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
+    let mut random = Random::new(1);
+    for number in 1..=RANDOM_STARTS {
+        let drawn: Vec<f64> = visited
+            .iter()
+            .zip(&sizes)
+            .map(|([low, high], size)| {
+                let margin = MARGIN * (high - low) + size;
+                (low - margin) + random.next_unit() * (high - low + 2.0 * margin)
+            })
+            .collect();
+        if let Some(state) = found_from(&drawn) {
+            return Ok(FoundEquilibrium { state, by: FoundBy::RandomStart(number) });
+        }
+    }
+    Err(failure)
+}
+
+/// The first equilibrium that is found from a state on the way of the flow; `visited` grows to the ranges of the states.
+fn along_flow(
+    field: ErasedField<'_>,
+    start: &[f64],
+    parameters: &[f64],
+    visited: &mut [[f64; 2]],
+    found_from: impl Fn(&[f64]) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let system = from_fn(start.len(), |_, state, derivative| field.evaluate(state, parameters, derivative));
+    let integrator = Integrator::with_tolerance(FLOW_TOLERANCE);
+    let mut stepper = Stepper::new(system, &integrator, 0.0, start, FLOW_TIME).ok()?;
+    for step in 1..=FLOW_STEPS {
+        if stepper.is_finished() || stepper.advance().is_err() {
+            return found_from(stepper.state());
+        }
+        for ([low, high], value) in visited.iter_mut().zip(stepper.state()) {
+            (*low, *high) = (low.min(*value), high.max(*value));
+        }
+        if step >= FIRST_TRIAL
+            && step.is_power_of_two()
+            && let Some(state) = found_from(stepper.state())
+        {
+            return Some(state);
+        }
+    }
+    None
+}
