@@ -80,7 +80,7 @@ impl Classification {
                     .to_owned(),
             );
         }
-        if motion.growth_rate() > 0.0 && !motion.is_stable() {
+        if motion.is_stable() == Some(false) {
             warnings.push("the uniform motion is unstable: see `kingpin stability`".to_owned());
         }
         Ok(warnings)

@@ -4,6 +4,7 @@ use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
+use arclength_analysis::branch::stability;
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
@@ -52,8 +53,8 @@ pub struct StabilityResult {
     pub eigenvalues: Vec<[f64; 2]>,
     /// Largest real part in 1/s of those that count.
     pub growth_rate: f64,
-    /// Whether it is negative.
-    pub stable: bool,
+    /// Whether it is negative; nothing where rounding could decide that either way.
+    pub stable: Option<bool>,
     /// Speed in m/s at which the stability changes.
     pub critical_speed: Option<f64>,
     /// Yaw rate in rad/s there.
@@ -70,7 +71,7 @@ impl Report for StabilityResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let verdict = if self.stable { "stable" } else { "unstable" };
+        let verdict = stability(self.stable, false);
         writeln!(out, "uniform motion at {}: {verdict}\n", description::of(&self.wheel, &[]))?;
         let mut table = Table::new(["eigenvalue", "real part (1/s)", "imaginary part (rad/s)"]);
         for (number, [real, imaginary]) in (1..).zip(&self.eigenvalues) {
@@ -83,6 +84,9 @@ impl Report for StabilityResult {
             writeln!(out, "on a straight path without c_u, the undamped longitudinal motion does not count")?;
         }
         writeln!(out, "growth rate {} 1/s", readable(self.growth_rate))?;
+        if self.stable.is_none() {
+            writeln!(out, "undecided: rounding of the parameters could make it stable or unstable")?;
+        }
         match (self.critical_speed, self.critical_yaw_rate) {
             (Some(speed), Some(yaw_rate)) => writeln!(
                 out,
@@ -90,6 +94,7 @@ impl Report for StabilityResult {
                 readable(speed),
                 readable(yaw_rate)
             ),
+            _ if self.stable.is_none() => writeln!(out, "no critical speed was found"),
             _ => writeln!(out, "no critical speed: the stability changes at no speed"),
         }
     }

@@ -13,9 +13,10 @@ const EXAMPLE: &str = "kingpin safe-kick -s v=6 -o edge.svg
 /// Smallest disturbance of a kind from which the wheel does not return to its uniform motion
 ///
 /// Both directions are tried. Magnitudes up to --largest are scanned at 64 equal distances for the first that does not
-/// return, and the edge before it is narrowed down by bisection to a millionth of the largest one: with basins that have
-/// fine structure there may be a smaller one between two that were tried. Files hold the motions on both sides of the
-/// edge.
+/// return, and the edge before it is narrowed down by bisection to a millionth of the largest one. Just below an edge 32
+/// closer magnitudes are tried, and the search goes on from there if one does not return. The result says how far apart
+/// magnitudes were tried (`resolution`): failures in a narrower range may lie below the edge. Files hold the motions on
+/// both sides of it.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct SafeKick {

@@ -17,7 +17,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             eigenvalue.re
         );
     }
-    println!("{}", if motion.is_stable() { "a small disturbance dies out" } else { "it shimmies by itself" });
+    let verdict = match motion.is_stable() {
+        Some(true) => "a small disturbance dies out",
+        Some(false) => "it shimmies by itself",
+        None => "rounding could decide it either way",
+    };
+    println!("{verdict}");
     match wheel.critical_speed() {
         Some(critical) => println!("the limit is at v = {:.4} m/s", critical.speed),
         None => println!("there is no limit speed"),

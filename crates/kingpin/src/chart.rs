@@ -21,6 +21,9 @@ const POINTS_PER_CHUNK: usize = 4096;
 /// Points of a row that are taken together.
 const LANES: usize = 8;
 
+/// Rounding error of the Hopf condition, a pure number of the order of one.
+const HOPF_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 type Lanes = lanes::Lanes<LANES>;
 
 /// Stability and rolling on a grid. The rows of the grid follow each other: point `(column, row)` has the index
@@ -31,7 +34,7 @@ pub struct StabilityChart {
     pub x: Vec<f64>,
     /// Values of the parameter along y.
     pub y: Vec<f64>,
-    /// Whether the uniform motion exists and is linearly stable.
+    /// Whether the uniform motion exists and is linearly stable beyond rounding errors.
     pub stable: Vec<bool>,
     /// Whether it exists and the ground can hold the wheel in it.
     pub rolls: Vec<bool>,
@@ -46,8 +49,8 @@ pub struct GrowthRateChart {
     pub y: Vec<f64>,
     /// Largest real part of the eigenvalues in 1/s; `None` where there is no uniform motion.
     pub growth_rate: Vec<Option<f64>>,
-    /// Whether the uniform motion exists and its growth rate is negative.
-    pub stable: Vec<bool>,
+    /// Whether the uniform motion exists and is linearly stable; `None` where rounding could decide that either way.
+    pub stable: Vec<Option<bool>>,
     /// Whether it exists and the ground can hold the wheel in it.
     pub rolls: Vec<bool>,
 }
@@ -60,7 +63,7 @@ impl Wheel {
     /// use arclength::control::Control;
     /// let plane = Plane::new(Axis::new(Key::V, 1.0..=10.0)?, Axis::new(Key::L, 0.05..=0.2)?)?;
     /// let chart = Wheel::default().growth_rate_chart(&plane, [10, 4], &Control::none())?;
-    /// assert!(chart.stable[0] && !chart.stable[9]);
+    /// assert_eq!((chart.stable[0], chart.stable[9]), (Some(true), Some(false)));
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     ///
@@ -74,7 +77,7 @@ impl Wheel {
     ) -> Result<GrowthRateChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
         let mut growth_rate = vec![None; x.len() * y.len()];
-        let mut stable = vec![false; x.len() * y.len()];
+        let mut stable = vec![Some(false); x.len() * y.len()];
         let mut rolls = vec![false; x.len() * y.len()];
         let rows = (&mut growth_rate[..], &mut stable[..], &mut rolls[..]);
         let (x_key, y_key) = (plane.x().key(), plane.y().key());
@@ -90,8 +93,8 @@ impl Wheel {
                 for ((x, y), ((growth_rate, stable), rolls)) in points.zip(results) {
                     control.check()?;
                     let wheel = self.with(y_key, y).and_then(|wheel| wheel.with(x_key, x))?;
-                    let Some((rate, holds)) = wheel.growth_rate_and_rolling() else { continue };
-                    (*growth_rate, *stable, *rolls) = (Some(rate), rate < 0.0, holds);
+                    let Some(point) = wheel.chart_point() else { continue };
+                    (*growth_rate, *stable, *rolls) = (Some(point.growth_rate), point.stable, point.rolls);
                 }
                 progress.advance(y.len());
                 Ok::<_, KingpinError>(())
@@ -119,6 +122,7 @@ impl Wheel {
         if !(corner.is_plain() && stays_plain) {
             let GrowthRateChart { x, y, stable, rolls, .. } =
                 self.growth_rate_chart(plane, points, control)?;
+            let stable = stable.into_iter().map(|stable| stable == Some(true)).collect();
             return Ok(StabilityChart { x, y, stable, rolls });
         }
         let mut stable = vec![false; x.len() * y.len()];
@@ -199,7 +203,8 @@ fn plain_margins(wheel: &Wheel, key: Key, x: Lanes) -> [Lanes; 2] {
     let [second, _] = determinants(polynomial);
     let [c1, _, c3, _, c5] = polynomial;
     let [stiff, inertial] = hopf_condition(&body);
-    let hopf = Lanes::from(0.0) - stiff - inertial * squared;
+    // Both terms are of the order of one where they decide, and so is their rounding in units of the last place.
+    let hopf = Lanes::from(-HOPF_ROUNDING) - stiff - inertial * squared;
 
     // l - a0 = l (1 - rho)
     let elastic = body.lateral_stiffness * body.caster_length;

@@ -11,6 +11,7 @@
 
 use crate::arithmetic::Arithmetic;
 use crate::body::Body;
+use crate::bounded::Bounded;
 
 /// The coefficients `c1 ... c5`.
 pub(crate) type Quintic<T> = [T; 5];
@@ -21,6 +22,33 @@ pub(crate) fn determinants<T: Arithmetic>([c1, c2, c3, c4, c5]: Quintic<T>) -> [
     let second = c1 * c2 - c3;
     let mixed = c1 * c4 - c5;
     [second, second * (c3 * c4 - c2 * c5) - mixed * mixed]
+}
+
+/// Whether all roots lie in the open left half-plane of a quintic or cubic whose coefficients carry bounds on their errors; `None`
+/// where these could decide it either way.
+///
+/// Every coefficient and every Hurwitz determinant of a stable polynomial is positive, so that one of them that is surely negative
+/// suffices to refute it.
+pub(crate) fn is_surely_stable(coefficients: &[Bounded]) -> Option<bool> {
+    match *coefficients {
+        [c1, c2, c3] => surely([c1, c3, c1 * c2 - c3], [c2]),
+        [c1, c2, c3, c4, c5] => {
+            let [second, fourth] = determinants([c1, c2, c3, c4, c5]);
+            surely([c1, c3, c5, second, fourth], [c2, c4])
+        }
+        _ => None,
+    }
+}
+
+/// Whether conditions hold that are sufficient and necessary together; beside them others may fail, each of which is necessary.
+pub(crate) fn surely<const S: usize, const N: usize>(
+    sufficient: [Bounded; S],
+    necessary: [Bounded; N],
+) -> Option<bool> {
+    if sufficient.iter().chain(&necessary).any(|condition| condition.is_negative()) {
+        return Some(false);
+    }
+    sufficient.iter().all(|condition| condition.is_positive()).then_some(true)
 }
 
 /// Whether all roots of the quintic lie in the open left half-plane.

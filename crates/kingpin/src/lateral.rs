@@ -89,7 +89,7 @@ impl Wheel {
     /// use kingpin::{Key, Wheel};
     /// let wheel = Wheel::from_toml("k_u = inf\nc_q = 0.05\nr = inf\nl = 0.04")?;
     /// assert_eq!(wheel.lateral(&[Key::V])?.parameters(), [4.0]);
-    /// assert!(!wheel.uniform_motion()?.is_stable());
+    /// assert_eq!(wheel.uniform_motion()?.is_stable(), Some(false));
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     ///
@@ -177,6 +177,20 @@ impl Wheel {
             body.static_moment * yaw_acceleration - force_across,
         )
     }
+}
+
+/// The vector field at a state `(q, psi, Omega)` and its Jacobian over any scalar, from the parameters as such.
+pub(crate) fn jacobian_over<T: Scalar>(
+    parameter: impl Fn(Key) -> T,
+    state: &[T; 3],
+) -> ([T; 3], [[T; 3]; 3]) {
+    let constant = |key| Dual::<T, 3>::constant(parameter(key));
+    let body = Body::new(constant);
+    let state: [Dual<T, 3>; 3] = std::array::from_fn(|index| Dual::variable(state[index], index));
+    let v = constant(Key::V);
+    let mut derivative = [Dual::constant(T::zero()); 3];
+    right_hand_side(&body, (v, v * constant(Key::Curvature)), &state, &mut derivative);
+    (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
 }
 
 /// The coefficients of the characteristic polynomial `s^3 + c1 s^2 + c2 s + c3` of a matrix.

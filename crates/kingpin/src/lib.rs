@@ -11,7 +11,7 @@
 //! wheel.set("v", "5")?;
 //! let motion = wheel.uniform_motion()?;
 //! assert_eq!(motion.u(), 0.0);
-//! assert!(motion.is_stable() && !motion.rolls());
+//! assert!(motion.is_stable() == Some(true) && !motion.rolls());
 //! # Ok::<(), kingpin::KingpinError>(())
 //! ```
 
@@ -22,10 +22,13 @@ mod arithmetic;
 pub mod basin;
 mod body;
 pub mod boundary;
+mod bounded;
 pub mod branches;
+mod certain_stability;
 pub mod characteristic;
 pub mod chart;
 pub mod contact;
+mod critical_speed;
 pub mod ensemble;
 pub mod error;
 pub mod hurwitz;
@@ -46,9 +49,9 @@ pub mod wheel;
 pub use boundary::Curve;
 pub use chart::{GrowthRateChart, StabilityChart};
 pub use contact::ContactForce;
+pub use critical_speed::CriticalSpeed;
 pub use error::{KingpinError, NoUniformMotion, Position};
 pub use lateral::LateralWheel;
-pub use linear_stability::CriticalSpeed;
 pub use parameters::Key;
 pub use plane::{Axis, Plane};
 pub use rolling::RollingWheel;

@@ -2,7 +2,7 @@
 //!
 //! For the plain wheel (equal stiffnesses, no dampers, no spring about the king pin) the characteristic polynomial and
 //! the critical yaw rate are closed forms: stability is lost at `v = r w_crit(l)`, whatever the radius. For any other
-//! wheel the polynomial is that of the Jacobian, and the critical speed is found by root-finding.
+//! wheel the polynomial is that of the Jacobian. Whether it is stable is said only beyond rounding errors.
 //!
 //! **Rectilinear towing.** At `omega = 0` the polynomial is the product of a quadratic, of the longitudinal oscillation
 //! of wheel and king pin, and a cubic, of the lateral motion. Without longitudinal damping the former is neutral, at
@@ -12,32 +12,16 @@
 //! With lateral elasticity only, `k_u = inf`, there are three eigenvalues; in rectilinear towing they are those of the same
 //! cubic.
 
+use crate::arithmetic::Arithmetic;
 use crate::body::Body;
 use crate::characteristic::{characteristic_polynomial, largest_real_part_first, roots};
-use crate::hurwitz::{self, determinants, hopf_condition, plain_characteristic_polynomial};
+use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomial};
 use crate::lateral::characteristic_cubic;
 use crate::parameters::Key;
 use crate::uniform_motion::{UniformMotion, jacobian};
 use crate::wheel::Wheel;
+use arclength::branch::Stability;
 use num_complex::Complex64;
-
-/// Smallest speed in m/s at which a change of stability is looked for.
-const SLOWEST: f64 = 1e-3;
-/// Number of speeds, in geometric progression, between which changes of stability are looked for.
-const SPEEDS: usize = 400;
-/// The interval of the critical speed is halved until it is this small, relative to the speed.
-const CRITICAL_SPEED_TOLERANCE: f64 = 4.0 * f64::EPSILON;
-
-/// The speed at which the uniform motion loses (or gains) its stability.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CriticalSpeed {
-    /// Towing speed in m/s.
-    pub speed: f64,
-    /// Yaw rate `omega = v/r` in rad/s.
-    pub yaw_rate: f64,
-    /// What is left of the growth rate there, in 1/s.
-    pub residual: f64,
-}
 
 /// The characteristic polynomial at a uniform motion.
 enum Characteristic {
@@ -105,17 +89,18 @@ impl Characteristic {
         }
     }
 
-    fn is_stable(&self) -> bool {
-        match self {
-            Self::Circle(coefficients) => hurwitz::is_stable(coefficients),
-            // The longitudinal damping is not negative.
-            Self::Straight { lateral, .. } | Self::Lateral(lateral) => hurwitz::is_stable_cubic(lateral),
-        }
+    /// Number of eigenvalues with positive real part, of those that count.
+    fn unstable(&self) -> usize {
+        let eigenvalues = match self {
+            Self::Straight { longitudinal: [0.0, _], lateral } => roots(lateral).into(),
+            characteristic => characteristic.eigenvalues(),
+        };
+        eigenvalues.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count()
     }
 }
 
 /// The characteristic polynomial of the lateral motion in rectilinear towing.
-fn lateral_cubic(body: &Body<f64>, v: f64) -> [f64; 3] {
+pub(crate) fn lateral_cubic<T: Arithmetic>(body: &Body<T>, v: T) -> [T; 3] {
     let l = body.caster_length;
     let damping = body.static_moment * v + body.rotational_damping + body.lateral_damping * l * l;
     let stiffness = body.rotational_stiffness + l * body.lateral_damping * v + l * l * body.lateral_stiffness;
@@ -156,34 +141,61 @@ impl UniformMotion {
         self.characteristic().growth_rate()
     }
 
-    /// Whether the uniform motion is linearly stable, by the Routh-Hurwitz conditions; in rectilinear towing without
-    /// longitudinal damping those of the lateral motion.
-    pub fn is_stable(&self) -> bool {
-        self.characteristic().is_stable()
+    /// Whether the uniform motion is linearly stable; in rectilinear towing without longitudinal damping whether the lateral motion
+    /// is. Two witnesses have to agree: the Routh-Hurwitz conditions beyond the rounding errors of their terms, those of the
+    /// parameters included, and the sign of the growth rate. It is undecided otherwise.
+    pub fn stability(&self) -> Stability {
+        self.stability_with(&self.characteristic())
+    }
+
+    fn stability_with(&self, characteristic: &Characteristic) -> Stability {
+        let growth_rate = characteristic.growth_rate();
+        match self.is_surely_stable() {
+            Some(true) if growth_rate < 0.0 => Stability::Stable,
+            Some(false) if growth_rate > 0.0 => Stability::Unstable { dimension: characteristic.unstable() },
+            _ => Stability::Undecided,
+        }
+    }
+
+    /// Whether it is linearly stable, `None` where that is undecided: see [`stability`](Self::stability).
+    pub fn is_stable(&self) -> Option<bool> {
+        self.stability().is_stable()
     }
 }
 
+/// What a chart tells of one uniform motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChartPoint {
+    /// Largest real part of the eigenvalues that count, in 1/s.
+    pub growth_rate: f64,
+    /// `None` where that is undecided.
+    pub stable: Option<bool>,
+    pub rolls: bool,
+}
+
 impl Wheel {
-    /// The growth rate of the uniform motion in 1/s, and whether the wheel rolls in it; `None` where there is no such
-    /// motion.
-    #[inline]
-    pub(crate) fn growth_rate_and_rolling(&self) -> Option<(f64, bool)> {
-        let state = self.uniform_state().ok()?;
-        let growth_rate = Characteristic::at(self, &state).growth_rate();
-        Some((growth_rate, self.contact_force(&state).rolls()))
+    /// Growth rate, stability and rolling of the uniform motion; `None` where there is no such motion.
+    pub(crate) fn chart_point(&self) -> Option<ChartPoint> {
+        let motion = self.uniform_motion().ok()?;
+        let characteristic = motion.characteristic();
+        Some(ChartPoint {
+            growth_rate: characteristic.growth_rate(),
+            stable: motion.stability_with(&characteristic).is_stable(),
+            rolls: motion.rolls(),
+        })
     }
 
     /// A smooth function of the parameters, positive where the uniform motion is stable and zero at a Hopf point on the
     /// boundary of stability; `None` where there is no motion or another of the conditions for stability fails.
     pub(crate) fn flutter_margin(&self) -> Option<f64> {
         let state = self.uniform_state().ok()?;
-        if self.is_plain() {
+        // In rectilinear towing `N` has a second factor, the sense in which turning will damp the longitudinal motion, which does not
+        // count there.
+        if self.is_plain() && self.towing_yaw_rate() != 0.0 {
             let (body, omega) = (self.body(), self.towing_yaw_rate());
             let [stiff, inertial] = hopf_condition(&body);
-            // In rectilinear towing `D2` changes its sign together with `N`.
-            let others = omega == 0.0 || beside_the_hopf_condition(&body, omega * omega);
             let margin = -stiff - inertial * omega * omega;
-            return (others && body.static_moment > 0.0).then_some(margin);
+            return beside_the_hopf_condition(&body, omega * omega).then_some(margin);
         }
         match Characteristic::at(self, &state) {
             Characteristic::Circle([c1, c2, c3, c4, c5]) => {
@@ -244,44 +256,6 @@ impl Wheel {
         let inertia = self.get(Key::JCz) + self.get(Key::JWzeta);
         (self.is_plain() && arm > 0.0).then(|| arm + inertia / (self.get(Key::MC) * arm))
     }
-
-    /// The smallest towing speed at which the uniform motion changes its stability; `None` where it does not.
-    ///
-    /// A plain wheel on a circle has it in closed form, `r w_crit(l)`. Otherwise the growth rate is sampled at 400
-    /// speeds from 1 mm/s to the largest at which the motion exists, and its first zero is found by bisection.
-    pub fn critical_speed(&self) -> Option<CriticalSpeed> {
-        let radius = self.get(Key::TurningRadius);
-        let growth_rate = |speed: f64| {
-            let (growth_rate, _) = self.with(Key::V, speed).ok()?.growth_rate_and_rolling()?;
-            Some(growth_rate)
-        };
-        if self.is_plain() {
-            // In rectilinear towing the stability of a plain wheel does not depend on the speed.
-            let yaw_rate = self.critical_yaw_rate().filter(|_| radius.is_finite())?;
-            let speed = radius * yaw_rate;
-            return Some(CriticalSpeed { speed, yaw_rate, residual: growth_rate(speed)?.abs() });
-        }
-        let body = self.body();
-        let limit = (body.lateral_stiffness * body.caster_length / body.static_moment).sqrt() * radius;
-        let fastest = Key::V.allowed().highest;
-        let fastest = if limit < fastest { limit } else { fastest };
-        let ratio = (fastest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
-        let mut before: Option<(f64, f64)> = None;
-        for index in 0..SPEEDS {
-            let speed = SLOWEST * ratio.powi(index as i32);
-            let Some(rate) = growth_rate(speed) else {
-                before = None;
-                continue;
-            };
-            if let Some((slower, slower_rate)) = before.filter(|(_, other)| (*other < 0.0) != (rate < 0.0)) {
-                let speed = bisect(slower, slower_rate, speed, growth_rate)?;
-                let residual = growth_rate(speed)?.abs();
-                return Some(CriticalSpeed { speed, yaw_rate: speed / radius, residual });
-            }
-            before = Some((speed, rate));
-        }
-        None
-    }
 }
 
 /// Whether a plain wheel has a uniform motion on a circle wide enough, and the Hurwitz conditions other than
@@ -292,13 +266,4 @@ fn beside_the_hopf_condition(body: &Body<f64>, yaw_rate_squared: f64) -> bool {
     let [second, _] = determinants(polynomial);
     let remaining = body.lateral_stiffness * body.caster_length - body.static_moment * yaw_rate_squared;
     [remaining, c1, c3, c5, second].into_iter().all(|condition| condition > 0.0)
-}
-
-/// The zero of a function between two points where its signs differ.
-fn bisect(mut low: f64, low_value: f64, mut high: f64, function: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    while high - low > CRITICAL_SPEED_TOLERANCE * high {
-        let middle = 0.5 * (low + high);
-        if (function(middle)? < 0.0) == (low_value < 0.0) { low = middle } else { high = middle }
-    }
-    Some(0.5 * (low + high))
 }

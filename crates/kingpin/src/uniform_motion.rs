@@ -20,7 +20,7 @@ use crate::error::{KingpinError, NoUniformMotion};
 use crate::parameters::Key;
 use crate::rolling::right_hand_side;
 use crate::wheel::Wheel;
-use arclength::Dual;
+use arclength::{Dual, Scalar};
 
 /// Newton's method stops when the step is below this, relative to the scale of each state.
 const NEWTON_TOLERANCE: f64 = 1e-14;
@@ -117,7 +117,8 @@ impl Wheel {
         newton(self, start).ok().map(|state| self.motion_at(state))
     }
 
-    fn motion_at(&self, state: [f64; 5]) -> UniformMotion {
+    /// The motion at a state in which nothing changes.
+    pub(crate) fn motion_at(&self, state: [f64; 5]) -> UniformMotion {
         let residual = if self.has_lateral_elasticity_only() {
             let [_, q, psi, _, yaw_rate] = state;
             largest(&self.lateral_linearisation(&[q, psi, yaw_rate]).0)
@@ -218,6 +219,20 @@ pub(crate) fn jacobian(wheel: &Wheel, state: &[f64; 5]) -> ([f64; 5], [[f64; 5];
     (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
 }
 
+/// The vector field and its Jacobian over any scalar, from the parameters as such.
+pub(crate) fn jacobian_over<T: Scalar>(
+    parameter: impl Fn(Key) -> T,
+    state: &[T; 5],
+) -> ([T; 5], [[T; 5]; 5]) {
+    let constant = |key| Dual::<T, 5>::constant(parameter(key));
+    let body = Body::new(constant);
+    let state: [Dual<T, 5>; 5] = std::array::from_fn(|index| Dual::variable(state[index], index));
+    let v = constant(Key::V);
+    let mut derivative = [Dual::constant(T::zero()); 5];
+    right_hand_side(&body, true, true, (v, v * constant(Key::Curvature)), &state, &mut derivative);
+    (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
+}
+
 /// Newton's method for the equilibrium; the error is the residual where it gave up.
 fn newton(wheel: &Wheel, start: &[f64; 5]) -> Result<[f64; 5], f64> {
     let v = wheel.get(Key::V);
@@ -248,22 +263,22 @@ fn newton(wheel: &Wheel, start: &[f64; 5]) -> Result<[f64; 5], f64> {
 }
 
 /// Gaussian elimination with partial pivoting, rows scaled by their largest element; `None` where singular.
-fn solve(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
-    for row in 0..5 {
+pub(crate) fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
+    for row in 0..N {
         let size = largest(&matrix[row]);
         matrix[row] = matrix[row].map(|element| element / size);
         right[row] /= size;
     }
-    for column in 0..5 {
+    for column in 0..N {
         let pivot =
-            (column..5).max_by(|&i, &j| matrix[i][column].abs().total_cmp(&matrix[j][column].abs()))?;
+            (column..N).max_by(|&i, &j| matrix[i][column].abs().total_cmp(&matrix[j][column].abs()))?;
         matrix.swap(column, pivot);
         right.swap(column, pivot);
         let pivot_row = matrix[column];
         if pivot_row[column] == 0.0 || !pivot_row[column].is_finite() {
             return None;
         }
-        for row in column + 1..5 {
+        for row in column + 1..N {
             let factor = matrix[row][column] / pivot_row[column];
             for (element, above) in matrix[row].iter_mut().zip(pivot_row) {
                 *element -= factor * above;
@@ -271,8 +286,8 @@ fn solve(mut matrix: [[f64; 5]; 5], mut right: [f64; 5]) -> Option<[f64; 5]> {
             right[row] -= factor * right[column];
         }
     }
-    for row in (0..5).rev() {
-        let known: f64 = (row + 1..5).map(|column| matrix[row][column] * right[column]).sum();
+    for row in (0..N).rev() {
+        let known: f64 = (row + 1..N).map(|column| matrix[row][column] * right[column]).sum();
         right[row] = (right[row] - known) / matrix[row][row];
     }
     Some(right)

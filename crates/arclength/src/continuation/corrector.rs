@@ -25,6 +25,43 @@ const FAR: f64 = 0.03;
 const GROWTH_LIMIT: f64 = 2.0;
 /// Updates below this may stagnate at the level of rounding and still count as converged.
 const STAGNATION_LIMIT: f64 = 1e-7;
+/// Updates up to this may be measured to be rounding: those of a parameter on which the solutions hardly depend.
+const ROUNDING_LIMIT: f64 = 1e-4;
+/// An update is rounding where it is below this many times the update that rounding of the unknowns makes.
+const ROUNDING_SHARE: f64 = 4.0;
+/// Roundings of the unknowns that are tried.
+const ROUNDINGS: usize = 3;
+
+/// The largest update that is made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice.
+fn rounding_update<C: Curve>(curve: &mut C, unknown: &[f64]) -> f64 {
+    let mut here = vec![0.0; unknown.len()];
+    curve.residual(unknown, &mut here);
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut image = vec![0.0; unknown.len()];
+    let mut largest = 0.0_f64;
+    for _ in 0..ROUNDINGS {
+        let rounded: Vec<f64> = unknown
+            .iter()
+            .map(|&value| {
+                // Marsaglia's generator of 2003.
+                bits ^= bits << 13;
+                bits ^= bits >> 7;
+                bits ^= bits << 17;
+                if bits & 1 == 0 { value.next_up() } else { value.next_down() }
+            })
+            .collect();
+        let mut update = vec![0.0; unknown.len()];
+        curve.residual(&rounded, &mut update);
+        for (there, here) in update.iter_mut().zip(&here) {
+            *there -= here;
+        }
+        let last = update.len() - 1;
+        update[last] = 0.0;
+        curve.solve(&mut update);
+        largest = largest.max(norm(curve, &update, &mut image));
+    }
+    largest
+}
 
 /// Solves `F(z) = 0`, `border . (z - start) = 0` from `unknown`, in place.
 ///
@@ -58,7 +95,12 @@ pub fn correct<C: Curve>(
             return Err(CorrectionFailure::NotFinite);
         }
         let contraction = length / previous;
-        let stagnates = iteration > 1 && contraction > CHORD_REJECTION && length < STAGNATION_LIMIT;
+        let stands = iteration > 1 && contraction > CHORD_REJECTION;
+        let stagnates = stands
+            && (length < STAGNATION_LIMIT
+                || (fresh_jacobian
+                    && length < ROUNDING_LIMIT
+                    && length < ROUNDING_SHARE * rounding_update(curve, unknown)));
         if !fresh_jacobian && contraction > CHORD_REJECTION && !stagnates {
             fresh_jacobian = true;
             continue;

@@ -9,6 +9,7 @@ pub(crate) mod defining;
 pub(crate) mod eigenfunctions;
 mod end;
 mod ending;
+mod expansion;
 pub(crate) mod extrema;
 pub(crate) mod floquet;
 pub(crate) mod limit_cycle;

@@ -3,6 +3,7 @@
 use super::branch::{CycleBranch, CyclePoint};
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
+use super::expansion::Expansion;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::switching::{Branching, Departure, HopfStart};
@@ -34,6 +35,10 @@ const MOST_REDUCTIONS: usize = 6;
 /// Reductions of the first amplitude next to a Hopf point, and of that distance.
 const AMPLITUDE_REDUCTION: f64 = 0.25;
 const DISTANCE_REDUCTION: f64 = 0.5;
+
+/// Distance of the first cycle from a Hopf point in the parameter, in multiples of what the normal form gives, beyond which it is
+/// no cycle that is born there.
+const FARTHEST_FIRST: f64 = 3.0;
 
 /// Growth rate beside the frequency of a Hopf point above which it is certain that the cycles are born with its sign.
 const CERTAIN_RATE: f64 = 1e-6;
@@ -332,9 +337,32 @@ impl<'a> Asked<'a> {
             let fits = |amplitude: &f64| self.unstable_at(hopf, *amplitude, request) == Some(expected);
             amplitude = reduced.take(MOST_REDUCTIONS).find(fits).unwrap_or(amplitude);
         }
+        let place = self.parameters[self.active];
+        let expansion = Expansion::at(hopf, self.field, &self.parameters, self.active, &scales);
         self.first_of(amplitude, AMPLITUDE_REDUCTION, |amplitude| {
-            let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
-            self.follow(&start, false, request, observer)
+            let mut first = |expansion: Option<&Expansion>| {
+                let start = hopf.cycle(place, amplitude, expansion, self.resolution.degree);
+                let followed = self.follow(&start, false, request, observer)?;
+                let expected = amplitude * amplitude * hopf.cubic_coefficient / hopf.crossing_speed;
+                if self.is_stray(&followed, FARTHEST_FIRST * expected.abs()) {
+                    return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
+                }
+                Ok(followed)
+            };
+            match first(None) {
+                Err(Error::NotFound { .. }) if expansion.is_some() => first(expansion.as_ref()),
+                result => result,
+            }
+        })
+    }
+
+    /// Whether a branch that is to start at the parameter's value starts outside its range and farther away than `expected`:
+    /// then Newton's method has gone elsewhere.
+    fn is_stray(&self, followed: &FollowedCycles, expected: f64) -> bool {
+        let first = followed.solutions.first().and_then(|(solution, _)| solution.unknown.last());
+        first.is_some_and(|&value| {
+            let outside = !(self.bound.lower..=self.bound.upper).contains(&value);
+            outside && (value - self.parameters[self.active]).abs() > expected
         })
     }
 
@@ -359,7 +387,7 @@ impl<'a> Asked<'a> {
         amplitude: f64,
         request: &Request<'_, CycleInspection>,
     ) -> Option<usize> {
-        let start = hopf.cycle(self.parameters[self.active], amplitude, self.resolution.degree);
+        let start = hopf.cycle(self.parameters[self.active], amplitude, None, self.resolution.degree);
         let mut curve = self.curve(&start);
         let found = exact_start(&mut curve, start.unknown, start.tangent, request).ok()?;
         let (unstable, certain) = found.point.floquet.unstable();

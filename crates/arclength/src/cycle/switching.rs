@@ -6,6 +6,7 @@
 //! solution of bifurcation and nonlinear eigenvalue problems" (1977); Doedel, Keller and Kernevez (1991), section 2.4).
 
 use super::eigenfunctions::Eigenfunctions;
+use super::expansion::Expansion;
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use crate::collocation::gauss::Gauss;
@@ -238,11 +239,19 @@ impl HopfStart<'_> {
         if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit }
     }
 
-    /// A small cycle next to the Hopf point, to first order in its amplitude, and the direction of the branch.
-    pub(super) fn cycle(&self, parameter: f64, amplitude: f64, degree: usize) -> Departure {
+    /// A small cycle next to the Hopf point, to first order in its amplitude, or to second with an expansion, and the direction of
+    /// the branch.
+    pub(super) fn cycle(
+        &self,
+        parameter: f64,
+        amplitude: f64,
+        expansion: Option<&Expansion>,
+        degree: usize,
+    ) -> Departure {
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
         let gauss = Gauss::new(degree);
+        let square = amplitude * amplitude;
         let (mut unknown, mut tangent) = (Vec::new(), Vec::new());
         for pair in mesh.windows(2) {
             let nodes = std::iter::once(0.0).chain(gauss.points.iter().copied());
@@ -253,9 +262,18 @@ impl HopfStart<'_> {
                     unknown.push(value + deviation);
                     tangent.push(deviation);
                 }
+                if let Some(Expansion { mean, second_harmonic, .. }) = expansion {
+                    let second = Complex64::from_polar(square, 4.0 * PI * time);
+                    let states = unknown.iter_mut().rev().zip(mean.iter().zip(second_harmonic).rev());
+                    states.for_each(|(state, (mean, harmonic))| {
+                        *state += square * mean + (harmonic * second).re
+                    });
+                }
             }
         }
-        unknown.extend([2.0 * PI / self.frequency, parameter]);
+        let frequency = self.frequency + expansion.map_or(0.0, |expansion| square * expansion.frequency);
+        let parameter = parameter + expansion.map_or(0.0, |expansion| square * expansion.parameter);
+        unknown.extend([2.0 * PI / frequency, parameter]);
         tangent.extend([0.0, 0.0]);
         Departure { unknown, tangent, mesh, degree }
     }

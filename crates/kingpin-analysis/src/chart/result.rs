@@ -53,8 +53,8 @@ pub struct ChartResult {
     pub y: SampledAxis,
     /// Growth rate in 1/s row by row, nothing where there is no uniform motion.
     pub growth_rate: Vec<Option<f64>>,
-    /// Whether it is stable.
-    pub stable: Vec<bool>,
+    /// Whether it is stable; nothing where rounding could decide that either way.
+    pub stable: Vec<Option<bool>>,
     /// Whether it rolls.
     pub rolls: Vec<bool>,
     /// The limit of stability, as curves of points.
@@ -95,10 +95,11 @@ impl ChartResult {
     fn symbol(&self, index: usize) -> char {
         match (self.growth_rate[index], self.stable[index], self.rolls[index]) {
             (None, ..) => ' ',
-            (_, true, true) => '+',
-            (_, true, false) => 's',
-            (_, false, true) => '-',
-            (_, false, false) => 'u',
+            (_, Some(true), true) => '+',
+            (_, Some(true), false) => 's',
+            (_, Some(false), true) => '-',
+            (_, Some(false), false) => 'u',
+            (_, None, _) => '?',
         }
     }
 
@@ -122,15 +123,16 @@ impl Report for ChartResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let count = |values: &[bool]| values.iter().filter(|&&value| value).count();
+        let stable = self.stable.iter().filter(|stable| **stable == Some(true)).count();
+        let undecided = self.stable.iter().filter(|stable| stable.is_none()).count();
         let points = self.growth_rate.len();
         let exists = self.growth_rate.iter().flatten().count();
         writeln!(out, "uniform motion at {}", description::of(&self.wheel, &self.keys()))?;
         writeln!(
             out,
             "{points} points: it exists at {exists}, is stable at {}, rolls at {}\n",
-            count(&self.stable),
-            count(&self.rolls)
+            stable,
+            self.rolls.iter().filter(|rolls| **rolls).count()
         )?;
         let [across, down] = [self.x.values.len().min(PRINTED[0]), self.y.values.len().min(PRINTED[1])];
         let nearest = |place: usize, places: usize, count: usize| place * (count - 1) / (places - 1);
@@ -153,7 +155,11 @@ impl Report for ChartResult {
         writeln!(
             out,
             "\n+ stable, - unstable; s stable, u unstable, but the friction does not suffice; blank: no motion"
-        )
+        )?;
+        if undecided > 0 {
+            writeln!(out, "? undecided, at {undecided} points: rounding could make it stable or unstable")?;
+        }
+        Ok(())
     }
 
     fn columns(&self) -> Columns {

@@ -99,7 +99,7 @@ fn uniform_motion(
         let motion = wheel.with(key, value).and_then(|wheel| wheel.uniform_motion());
         // Outside its range there is nothing to draw.
         if let Ok(motion) = motion {
-            points.push(((value, motion.psi()), Stability::from(motion.is_stable())));
+            points.push(((value, motion.psi()), Stability::from(motion.is_stable() == Some(true))));
         }
     }
     points.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));

@@ -5,8 +5,8 @@ use crate::error::{Error, unless_stopped};
 use arclength::continuation::Settings;
 use arclength::equilibrium::EquilibriumPoint;
 use arclength_analysis::Control;
+use kingpin::Wheel;
 use kingpin::branches::{Along, MotionBranch};
-use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Relative distance of parameter values within which two Hopf points are the same.
@@ -42,7 +42,7 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
     let stability = |stable: Option<bool>| match stable {
         Some(true) => "stable",
         Some(false) => "unstable",
-        None => "neither clearly stable nor clearly unstable",
+        None => "of undecided stability",
     };
     let (start, end) = along.ends();
     let mut message = format!(
@@ -61,12 +61,6 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
             let why = stop.as_ref().map_or_else(String::new, |stop| format!(" ({stop})"));
             message += &format!("; beyond {} it could not be followed{why}", readable(reached));
         }
-    }
-    let straight = wheel.get(Key::TurningRadius).is_infinite() && along.key() != Key::TurningRadius;
-    if straight && wheel.get(Key::CU) == 0.0 && !wheel.has_lateral_elasticity_only() {
-        message += "; on a straight path without c_u the longitudinal motion is undamped, which hides Hopf points: \
-                    set a small c_u, or follow cycles from a circle with `kingpin cycles --along r=A:inf`";
-        return message;
     }
     message += "; try a wider interval, or see with `kingpin chart` where the stability changes";
     message

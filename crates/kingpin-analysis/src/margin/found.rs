@@ -23,25 +23,38 @@ impl Found {
     /// Seeks the edges of a wheel.
     ///
     /// # Errors
-    /// A motion that cannot be followed; [`Error::Stopped`].
+    /// [`Error::Stopped`], and what is wrong with the request at any value.
     pub(super) fn seek(
         wheel: &Wheel,
         disturbance: &DisturbanceRequest,
         classification: &Classification,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
-        let without =
-            |problem: &str| Ok(Self { positive: None, negative: None, problem: Some(problem.to_owned()) });
-        let settings = match classification.settings(wheel) {
-            Err(Error::Simulation(SimulationError::Wheel(KingpinError::NoUniformMotion { .. }))) => {
-                return without("no uniform motion");
+        let without = |error: SimulationError| match error {
+            SimulationError::Wheel(KingpinError::NoUniformMotion { .. })
+            | SimulationError::UniformMotionSlides { .. }
+            | SimulationError::Integration(_) => {
+                Ok(Self { positive: None, negative: None, problem: Some(reason(&error)) })
             }
+            error => Err(error.into()),
+        };
+        // What is wrong at this value only is no reason to throw away the others.
+        let settings = match classification.settings(wheel) {
+            Err(Error::Simulation(error)) => return without(error),
             settings => settings?,
         };
         match disturbance.edges(wheel, classification.model(), settings, control) {
             Ok([positive, negative]) => Ok(Self { positive, negative, problem: None }),
-            Err(SimulationError::UniformMotionSlides { .. }) => without("the uniform motion slides"),
-            Err(error) => Err(error.into()),
+            Err(error) => without(error),
         }
+    }
+}
+
+/// Why there is no edge at one value of the parameter, in words that fit into a table.
+fn reason(error: &SimulationError) -> String {
+    match error {
+        SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => "no uniform motion".to_owned(),
+        SimulationError::UniformMotionSlides { .. } => "the uniform motion slides".to_owned(),
+        error => error.to_string(),
     }
 }

@@ -12,6 +12,7 @@ use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Control, SampledInterval};
 use kingpin::Wheel;
+use kingpin::basin::SafeKick;
 use kingpin::branches::Along;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -151,12 +152,17 @@ impl MarginAnalysis {
         if control.is_stopped() {
             return Err(journal.interrupted(self.values.len(), self.values.len()));
         }
+        let resolution = |&value: &f64| {
+            let largest = self.disturbance.largest(&self.wheel.with(self.along.key(), value)?);
+            Ok((value, SafeKick::resolution(largest)))
+        };
+        let values = self.values.iter().map(resolution).collect::<Result<Vec<_>, Error>>()?;
         Ok(MarginResult::new(
             self.wheel,
             self.along,
             self.disturbance.disturbance(),
             self.classification.model(),
-            self.values.clone(),
+            values,
             found,
             cycles,
         ))

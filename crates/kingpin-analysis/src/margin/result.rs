@@ -21,6 +21,8 @@ use std::io::{self, Write};
 pub struct MarginPoint {
     /// Value of the parameter.
     pub value: f64,
+    /// Distance of the disturbances that were tried: failures in a narrower range may lie below an edge.
+    pub resolution: f64,
     /// What was found there.
     #[serde(flatten)]
     pub found: Found,
@@ -33,12 +35,12 @@ pub struct MarginPoint {
 }
 
 impl MarginPoint {
-    fn new(value: f64, found: Found, unstable_amplitude: Option<f64>) -> Self {
+    fn new(value: f64, resolution: f64, found: Found, unstable_amplitude: Option<f64>) -> Self {
         let edges = [found.positive, found.negative].into_iter().flatten();
         let nearest = edges.min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let safe = nearest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns.abs());
         let ratio = safe.zip(unstable_amplitude).map(|(safe, amplitude)| safe / amplitude);
-        Self { value, found, safe, unstable_amplitude, ratio }
+        Self { value, resolution, found, safe, unstable_amplitude, ratio }
     }
 
     /// What is to be said of it beside the numbers.
@@ -143,13 +145,13 @@ pub struct MarginResult {
 }
 
 impl MarginResult {
-    /// The result of what was found at each value.
+    /// The result of what was found at each value, which comes with the distance of the disturbances that were tried there.
     pub(super) fn new(
         wheel: Wheel,
         interval: Along,
         kind: Disturbance,
         model: ContactModel,
-        values: Vec<f64>,
+        values: Vec<(f64, f64)>,
         cells: Vec<Found>,
         cycles: UnstableCycles,
     ) -> Self {
@@ -157,7 +159,9 @@ impl MarginResult {
             .into_iter()
             .zip(cells)
             .zip(cycles.amplitudes)
-            .map(|((value, cell), amplitude)| MarginPoint::new(value, cell, amplitude))
+            .map(|(((value, resolution), cell), amplitude)| {
+                MarginPoint::new(value, resolution, cell, amplitude)
+            })
             .collect();
         Self {
             wheel,

@@ -79,7 +79,8 @@ fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
     for speed in speeds {
         let motion = branch.wheel(speed)?.uniform_motion()?;
         let changes = hopf.clone().any(|critical| critical == speed);
-        let stability = if changes { Stability::Changes } else { Stability::from(motion.is_stable()) };
+        let stability =
+            if changes { Stability::Changes } else { Stability::from(motion.is_stable() == Some(true)) };
         uniform.push(((speed, motion.psi()), stability));
         data.push([
             "uniform motion".into(),
@@ -88,7 +89,7 @@ fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
             motion.psi().into(),
             motion.psi().into(),
             Cell::Empty,
-            if changes { "Hopf point" } else { stability_word(Some(motion.is_stable())) }.into(),
+            if changes { "Hopf point" } else { stability_word(motion.is_stable()) }.into(),
         ]);
     }
     wall = wall.curve(Curve::new(uniform).color(palette::GREEN).unstable_color(palette::VERMILION));

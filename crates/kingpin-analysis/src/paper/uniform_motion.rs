@@ -4,6 +4,7 @@
 //! beside it as the independent witness.
 
 use super::data::Data;
+use super::diagrams_in_space::stability_word;
 use super::drawing::Drawing;
 use super::numbers::number;
 use super::wheel::paper_wheel;
@@ -104,7 +105,7 @@ impl UniformMotions {
                 motion.psi().into(),
                 motion.forward_speed().into(),
                 newton.u().into(),
-                if motion.is_stable() { "stable" } else { "unstable" }.into(),
+                stability_word(motion.is_stable()).into(),
             ]);
         }
         let caption = format!(
@@ -126,10 +127,9 @@ impl UniformMotions {
     /// A quantity against the speed, from its limit at standstill on; dashed beyond the critical speed.
     fn branch(&self, at_standstill: f64, quantity: impl Fn(&UniformMotion) -> f64) -> Curve {
         let start = ((0.0, at_standstill), Stability::Stable);
-        let points = self
-            .closed_form
-            .iter()
-            .map(|motion| ((speed_of(motion), quantity(motion)), Stability::from(motion.is_stable())));
+        let points = self.closed_form.iter().map(|motion| {
+            ((speed_of(motion), quantity(motion)), Stability::from(motion.is_stable() == Some(true)))
+        });
         Branch::new(std::iter::once(start).chain(points)).color(palette::BLUE).into()
     }
 }

@@ -3,7 +3,7 @@
 use crate::description;
 use crate::disturbance::Edge;
 use crate::parameters::parameters_of;
-use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion};
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, SafeKick};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::history::drawn;
@@ -77,6 +77,10 @@ pub struct SafeKickResult {
     pub duration: f64,
     /// Largest magnitude that was tried.
     pub largest: f64,
+    /// Distance of the magnitudes that were tried: failures in a narrower range may lie below an edge.
+    pub resolution: f64,
+    /// The same just below an edge, as far as `resolution`.
+    pub resolution_beside_edge: f64,
     /// The edge in the positive direction.
     pub positive: Option<Edge>,
     /// The edge in the negative direction.
@@ -117,6 +121,8 @@ impl SafeKickResult {
             contact: model.name(),
             duration: settings.duration,
             largest,
+            resolution: SafeKick::resolution(largest),
+            resolution_beside_edge: SafeKick::resolution_beside_edge(largest),
             positive,
             negative,
             safe: smallest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns),
@@ -181,6 +187,12 @@ impl Report for SafeKickResult {
             }
         }
         table.write(out)?;
+        writeln!(
+            out,
+            "\nmagnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may lie below it",
+            readable(self.resolution),
+            readable(self.resolution_beside_edge)
+        )?;
         if [self.positive, self.negative].into_iter().flatten().any(|edge| edge.is_undecided()) {
             writeln!(
                 out,

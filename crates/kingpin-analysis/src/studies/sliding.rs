@@ -156,7 +156,7 @@ impl Motions {
         for index in 0..=100 {
             let speed = SPEEDS.0 + (SPEEDS.1 - SPEEDS.0) * f64::from(index) / 100.0;
             let motion = loaded(speed, self.damping)?.uniform_motion()?;
-            uniform.push(((speed, motion.psi()), Stability::from(motion.is_stable())));
+            uniform.push(((speed, motion.psi()), Stability::from(motion.is_stable() == Some(true))));
         }
         let hopf: Vec<(f64, f64)> = self.hopf.iter().map(|hopf| (hopf.value, hopf.state[2])).collect();
         uniform.extend(hopf.iter().map(|&point| (point, Stability::Changes)));

@@ -143,7 +143,7 @@ impl Map {
 
     fn is_stable(&self, (speed, radius): (f64, f64)) -> bool {
         let motion = curve(self.model, speed, radius).and_then(|wheel| wheel.uniform_motion());
-        motion.is_ok_and(|motion| motion.is_stable())
+        motion.is_ok_and(|motion| motion.is_stable() == Some(true))
     }
 
     fn findings(&self) -> Vec<Finding> {

@@ -10,6 +10,7 @@ mod interruption;
 mod lateral;
 mod studies;
 mod tables;
+mod verdicts;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

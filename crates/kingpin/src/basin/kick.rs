@@ -10,8 +10,10 @@ use rayon::prelude::*;
 
 /// Magnitudes that are tried, at equal distances, before the first failure is narrowed down.
 const SCAN: usize = 64;
-/// What that is of the whole time, roughly.
-const PART_OF_SCAN: f64 = 0.7;
+/// Magnitudes that are tried between an edge and the one scanned magnitude below it: the basin is often torn just there.
+const BESIDE_EDGE: usize = 32;
+/// What the scan, and what then the first edge is of the whole time, roughly.
+const PARTS: [f64; 2] = [0.5, 0.7];
 /// The magnitude is narrowed down to this, relative to the largest one.
 const RESOLUTION: f64 = 1e-6;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
@@ -167,8 +169,19 @@ pub struct SafeKick {
 }
 
 impl SafeKick {
+    /// Distance of the magnitudes that are tried up to a largest one: failures in a narrower range may be missed.
+    pub fn resolution(largest: f64) -> f64 {
+        largest.abs() / SCAN as f64
+    }
+
+    /// Distance of the magnitudes that are tried next to an edge, up to the [resolution](Self::resolution) below it.
+    pub fn resolution_beside_edge(largest: f64) -> f64 {
+        Self::resolution(largest) / BESIDE_EDGE as f64
+    }
+
     /// Finds the smallest disturbance up to `largest` from which the uniform motion does not return: the first
-    /// failure among equidistant magnitudes, narrowed down by bisection. `None` if there is no failure.
+    /// failure among equidistant magnitudes, narrowed down by bisection; then the first among closer ones just below that, as long
+    /// as there is one. `None` if there is no failure.
     ///
     /// Not to have returned in the time that motions are followed counts as failure; near the edge of a basin they linger, and
     /// the fate at the edge tells whether that time was too short.
@@ -199,31 +212,54 @@ impl SafeKick {
                 Err(error) => Err(error),
             }
         };
-        let magnitude = |index: usize| largest * (index as f64 / SCAN as f64);
-        let progress = control.part(0.0..PART_OF_SCAN).count(SCAN + 1);
-        let scanned: Vec<Option<Fate>> = (0..=SCAN)
-            .into_par_iter()
-            .map(|index| {
-                let fate = fate(magnitude(index))?;
+        let returned = |&fate: &Option<Fate>| fate == Some(Fate::UniformMotion);
+        let scan = |magnitudes: Vec<f64>, control: &Control<'_>| -> Result<_, SimulationError> {
+            let progress = control.count(magnitudes.len());
+            let fates = magnitudes.par_iter().map(|&magnitude| {
+                let fate = fate(magnitude)?;
                 progress.advance(1);
                 Ok(fate)
-            })
-            .collect::<Result<_, SimulationError>>()?;
-        let Some(first) = scanned.iter().position(|&fate| fate != Some(Fate::UniformMotion)) else {
-            return Ok(None);
+            });
+            let fates = fates.collect::<Result<Vec<Option<Fate>>, SimulationError>>()?;
+            let first = fates.iter().position(|fate| !returned(fate));
+            Ok(first.map(|first| {
+                // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
+                let beyond = fates[first.max(usize::from(magnitudes[first] == 0.0))];
+                (magnitudes[first.saturating_sub(1)], magnitudes[first], beyond)
+            }))
         };
-        let (mut returns, mut fails) = (magnitude(first.saturating_sub(1)), magnitude(first));
-        // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
-        let mut beyond = scanned[first.max(1)];
-        let halvings = (SCAN as f64 * RESOLUTION).recip().log2().ceil() as usize;
-        let progress = control.part(PART_OF_SCAN..1.0).count(halvings);
-        while (fails - returns).abs() > RESOLUTION * largest.abs() {
-            let middle = 0.5 * (returns + fails);
-            match fate(middle)? {
-                Some(Fate::UniformMotion) => returns = middle,
-                other => (fails, beyond) = (middle, other),
+        let narrow = |(mut returns, mut fails, mut beyond): (f64, f64, Option<Fate>),
+                      control: &Control<'_>| {
+            let halvings = (SCAN as f64 * RESOLUTION).recip().log2().ceil() as usize;
+            let progress = control.count(halvings);
+            while (fails - returns).abs() > RESOLUTION * largest.abs() {
+                let middle = 0.5 * (returns + fails);
+                match fate(middle)? {
+                    Some(Fate::UniformMotion) => returns = middle,
+                    other => (fails, beyond) = (middle, other),
+                }
+                progress.advance(1);
             }
-            progress.advance(1);
+            Ok::<_, SimulationError>((returns, fails, beyond))
+        };
+        let [scanned, narrowed] = PARTS;
+        let magnitudes = (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
+        let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else { return Ok(None) };
+        let (mut returns, mut fails, mut beyond) = narrow(first, &control.part(scanned..narrowed))?;
+        let beside = control.part(narrowed..1.0);
+        // Each turn goes down by one of the closer steps at least.
+        while returns != 0.0 {
+            let lowest = returns - Self::resolution(largest).min(returns.abs()).copysign(largest);
+            let part = |index: usize| lowest + (returns - lowest) * (index as f64 / BESIDE_EDGE as f64);
+            let magnitudes = (0..BESIDE_EDGE).map(part).collect();
+            let Some(lower) = scan(magnitudes, &beside)? else { break };
+            let (mut below, failed, fate) = lower;
+            if failed == lowest {
+                // The nearest magnitude below it that is known to return is one of the first scan.
+                let step = largest / SCAN as f64;
+                below = step * ((lowest / step).ceil() - 1.0).max(0.0);
+            }
+            (returns, fails, beyond) = narrow((below, failed, fate), &control.quiet())?;
         }
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
         Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))

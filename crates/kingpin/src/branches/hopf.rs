@@ -1,6 +1,8 @@
 //! Hopf points of the uniform motion: where shimmy is born.
 
 use super::Along;
+#[cfg(doc)]
+use crate::UniformMotion;
 use crate::{KingpinError, Wheel};
 use arclength::branch::Criticality;
 use arclength::continuation::{Settings, Stop};
@@ -35,7 +37,8 @@ pub struct HopfPoint {
 #[derive(Debug)]
 pub struct MotionBranch {
     /// The motions, from the lower end of the interval to the upper one where the branch does not turn; `value` is a value of
-    /// the key and `state` the states `u q psi V Omega`. What is known of special points is as the continuation found it, which
+    /// the key and `state` the states `u q psi V Omega`; the stability is that of [`UniformMotion::stability`], which does not count
+    /// a longitudinal motion without damping. What is known of special points is as the continuation found it, which
     /// follows `1/r` in place of `r`.
     pub motions: Vec<EquilibriumPoint>,
     /// The Hopf points in ascending order of the parameter.
@@ -148,7 +151,9 @@ impl Wheel {
                 continue;
             }
             for motion in &mut motions {
-                motion.state = model.full_state(&motion.state, &[motion.value]).to_vec();
+                let state = model.full_state(&motion.state, &[motion.value]);
+                motion.stability = wheel.with(key, motion.value)?.motion_at(state).stability();
+                motion.state = state.to_vec();
                 motion.value = along.convert(motion.value);
                 if let Some(SpecialPoint::Degenerate { value, location_error, .. }) =
                     motion.special.as_deref_mut()

@@ -105,7 +105,7 @@ pub(in crate::paper) fn of_the_basin(branches: &Branches) -> Result<Vec<Claim>, 
     let [inside, outside] = BESIDE.map(|scale| swing_after(branch, cycle, scale));
     let (inside, outside) = (inside?, outside?);
     let bounded = inside < 1.0 && outside > 1.0;
-    let stable = branch.wheel(SPEED)?.uniform_motion()?.is_stable();
+    let stable = branch.wheel(SPEED)?.uniform_motion()?.is_stable() == Some(true);
     Ok(vec![
         Claim {
             place: "section 4",

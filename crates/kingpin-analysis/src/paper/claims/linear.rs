@@ -78,8 +78,9 @@ fn longitudinal_freedom() -> Result<Claim, Error> {
         let (mut elastic, mut rigid) = (0, 0);
         for index in 1..=SPEEDS {
             let wheel = paper_wheel(FASTEST * index as f64 / SPEEDS as f64, length, COMPARED_RADIUS)?;
-            elastic += usize::from(wheel.uniform_motion()?.is_stable());
-            rigid += usize::from(wheel.with(Key::KU, f64::INFINITY)?.uniform_motion()?.is_stable());
+            elastic += usize::from(wheel.uniform_motion()?.is_stable() == Some(true));
+            rigid +=
+                usize::from(wheel.with(Key::KU, f64::INFINITY)?.uniform_motion()?.is_stable() == Some(true));
         }
         // One loses its stability within the range of speeds and the other does not.
         qualitative &= (elastic < SPEEDS) != (rigid < SPEEDS);
@@ -181,7 +182,7 @@ fn critical_speed_in_cornering() -> Result<Claim, Error> {
         let wheel = paper_wheel(limit, LENGTHS.1, radius)?;
         let chart = wheel.growth_rate_chart(&plane, GRID, &Control::none())?;
         points += chart.growth_rate.iter().flatten().count();
-        stable += chart.stable.iter().filter(|stable| **stable).count();
+        stable += chart.stable.iter().filter(|stable| **stable == Some(true)).count();
     }
     let just_below = growth_rate(&paper_wheel(largest * (1.0 - BESIDE), length, 1.0)?)? < 0.0;
     Ok(Claim {
@@ -225,7 +226,8 @@ fn cornering_against_straight_running() -> Result<Claim, Error> {
     let plane = Plane::new(Axis::new(Key::V, 0.1..=20.0)?, Axis::new(Key::L, 0.02..=0.3)?)?;
     let chart = |radius: f64| -> Result<Vec<bool>, Error> {
         let wheel = paper_wheel(1.0, 0.1, radius)?;
-        Ok(wheel.growth_rate_chart(&plane, GRID, &Control::none())?.stable)
+        let chart = wheel.growth_rate_chart(&plane, GRID, &Control::none())?;
+        Ok(chart.stable.into_iter().map(|stable| stable == Some(true)).collect())
     };
     let straight = chart(f64::INFINITY)?;
     let (mut gained, mut lost) = (0, Vec::new());

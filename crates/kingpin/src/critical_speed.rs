@@ -1,0 +1,174 @@
+//! The smallest towing speed at which the uniform motion changes its stability.
+//!
+//! Where it comes from: the plain wheel has it in closed form, `r w_crit(l)`; in rectilinear towing it is a root of a quadratic;
+//! otherwise it is sought. Wherever it comes from, the stability on both sides has to be certain and different: a speed at which the
+//! motion only ceases to exist is none.
+
+use crate::arithmetic::Arithmetic;
+use crate::body::Body;
+use crate::parameters::Key;
+use crate::wheel::Wheel;
+
+/// Smallest speed in m/s at which a change of stability is looked for.
+const SLOWEST: f64 = 1e-3;
+/// Number of speeds, in geometric progression, between which changes of stability are looked for.
+const SPEEDS: usize = 400;
+/// The interval of the critical speed is halved until it is this small, relative to the speed.
+const TOLERANCE: f64 = 4.0 * f64::EPSILON;
+/// Relative distances from a critical speed, one after the other, at which the stability on both sides is compared.
+const SIDES: [f64; 3] = [1e-10, 1e-8, 1e-6];
+/// Growth rate, relative to the largest eigenvalue, that is zero but for rounding.
+const NEUTRAL: f64 = 1e-9;
+/// Steps of the golden section by which an extremum of the growth rate between three speeds is narrowed down.
+const GOLDEN_STEPS: usize = 60;
+
+/// The speed at which the uniform motion loses (or gains) its stability.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CriticalSpeed {
+    /// Towing speed in m/s.
+    pub speed: f64,
+    /// Yaw rate `omega = v/r` in rad/s.
+    pub yaw_rate: f64,
+    /// What is left of the growth rate there, in 1/s.
+    pub residual: f64,
+}
+
+impl Wheel {
+    /// The smallest towing speed, from 1 mm/s to 10 km/s, at which the uniform motion changes its stability; `None` where no such
+    /// speed is found.
+    ///
+    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds up to the largest at which the motion exists,
+    /// and at its extrema between them; its first zero is found by bisection.
+    pub fn critical_speed(&self) -> Option<CriticalSpeed> {
+        let radius = self.get(Key::TurningRadius);
+        let speed = if radius.is_infinite() {
+            // The stability of a plain wheel does not depend on the speed there.
+            self.critical_speeds_straight().into_iter().find(|&speed| self.changes_stability_at(speed))
+        } else if self.is_plain() {
+            let speed = radius * self.critical_yaw_rate()?;
+            self.changes_stability_at(speed).then_some(speed)
+        } else {
+            self.seek_critical_speed()
+        }?;
+        let residual = self.growth_rate_at(speed)?.abs();
+        Some(CriticalSpeed { speed, yaw_rate: speed / radius, residual })
+    }
+
+    fn growth_rate_at(&self, speed: f64) -> Option<f64> {
+        Some(self.with(Key::V, speed).ok()?.uniform_motion().ok()?.growth_rate())
+    }
+
+    fn is_stable_at(&self, speed: f64) -> Option<bool> {
+        self.with(Key::V, speed).ok()?.uniform_motion().ok()?.is_stable()
+    }
+
+    /// Whether the growth rate passes through zero at the speed, and does not jump from one uniform motion to another.
+    fn is_neutral_at(&self, speed: f64) -> bool {
+        let motion = self.with(Key::V, speed).ok().and_then(|wheel| wheel.uniform_motion().ok());
+        motion.is_some_and(|motion| {
+            let moduli = motion.eigenvalues().into_iter().map(|eigenvalue| eigenvalue.norm());
+            motion.growth_rate().abs() <= NEUTRAL * moduli.fold(0.0, f64::max)
+        })
+    }
+
+    /// Whether the uniform motion is neutral at the speed, and certain to be stable on one side of it and unstable on the other.
+    fn changes_stability_at(&self, speed: f64) -> bool {
+        let sides =
+            |part: f64| self.is_stable_at(speed * (1.0 - part)).zip(self.is_stable_at(speed * (1.0 + part)));
+        self.is_neutral_at(speed)
+            && SIDES.into_iter().find_map(sides).is_some_and(|(below, above)| below != above)
+    }
+
+    /// In rectilinear towing, the positive roots of the Hopf condition of the lateral motion, which is quadratic in the speed,
+    /// in ascending order.
+    fn critical_speeds_straight(&self) -> Vec<f64> {
+        let [a, b, c] = straight_hopf_condition(&self.body());
+        let half = -0.5 * b;
+        let discriminant = half * half - a * c;
+        if discriminant < 0.0 {
+            return Vec::new();
+        }
+        let larger = half + discriminant.sqrt().copysign(half);
+        let mut roots = vec![larger / a, c / larger];
+        roots.retain(|&root| root.is_finite() && root > 0.0);
+        roots.sort_by(f64::total_cmp);
+        roots
+    }
+
+    fn seek_critical_speed(&self) -> Option<f64> {
+        let radius = self.get(Key::TurningRadius);
+        let body = self.body();
+        let limit = (body.lateral_stiffness * body.caster_length / body.static_moment).sqrt() * radius;
+        let fastest = Key::V.allowed().highest;
+        let fastest = if limit < fastest { limit } else { fastest };
+        let ratio = (fastest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
+        let rate = |speed: f64| self.growth_rate_at(speed);
+        let mut before: [Option<(f64, f64)>; 2] = [None, None];
+        for index in 0..SPEEDS {
+            let speed = SLOWEST * ratio.powi(index as i32);
+            let here = rate(speed).map(|rate| (speed, rate));
+            let mut places = Vec::new();
+            if let [Some(first), Some(middle)] = before
+                && let Some(last) = here
+                && let Some(turn) = beyond_zero([first, middle, last], rate)
+            {
+                places.extend([[first, turn], [turn, last]]);
+            }
+            if let (Some(slower), Some(faster)) = (before[1], here) {
+                places.push([slower, faster]);
+            }
+            let changes = places.into_iter().filter(|[one, other]| (one.1 < 0.0) != (other.1 < 0.0));
+            let speeds = changes.filter_map(|[one, other]| bisect(one.0, one.1, other.0, rate));
+            if let Some(speed) = speeds.into_iter().find(|&speed| self.changes_stability_at(speed)) {
+                return Some(speed);
+            }
+            before = [before[1], here];
+        }
+        None
+    }
+}
+
+/// `[a, b, c]` of the Hopf condition `a v^2 + b v + c = 0` of the lateral motion in rectilinear towing: the product of the first two
+/// coefficients of its characteristic polynomial less the third, times `J^2`.
+pub(crate) fn straight_hopf_condition<T: Arithmetic>(body: &Body<T>) -> [T; 3] {
+    let l = body.caster_length;
+    let damping = body.rotational_damping + body.lateral_damping * l * l;
+    let stiffness = body.rotational_stiffness + l * l * body.lateral_stiffness;
+    let (moment, viscous) = (body.static_moment, l * body.lateral_damping);
+    let elastic = body.yaw_inertia * l * body.lateral_stiffness;
+    [moment * viscous, moment * stiffness + damping * viscous - elastic, damping * stiffness]
+}
+
+/// Where the function has the other sign between three points, with the middle one closest to zero; nothing where it has not.
+fn beyond_zero(
+    [first, middle, last]: [(f64, f64); 3],
+    function: impl Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let sign = middle.1.signum();
+    let [one, closest, other] = [first, middle, last].map(|(_, value)| sign * value);
+    if !(closest > 0.0 && one > closest && other > closest) {
+        return None;
+    }
+    const SECTION: f64 = 0.618_033_988_749_894_9;
+    let (mut low, mut high) = (first.0, last.0);
+    for _ in 0..GOLDEN_STEPS {
+        let left = high - SECTION * (high - low);
+        let right = low + SECTION * (high - low);
+        let values = [left, right].map(|place| Some((place, function(place)?)));
+        let [Some(left), Some(right)] = values else { return None };
+        if let Some(beyond) = [left, right].into_iter().find(|(_, value)| sign * value < 0.0) {
+            return Some(beyond);
+        }
+        if sign * left.1 < sign * right.1 { high = right.0 } else { low = left.0 }
+    }
+    None
+}
+
+/// The zero of a function between two points where its signs differ.
+fn bisect(mut low: f64, low_value: f64, mut high: f64, function: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    while high - low > TOLERANCE * high {
+        let middle = 0.5 * (low + high);
+        if (function(middle)? < 0.0) == (low_value < 0.0) { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}
