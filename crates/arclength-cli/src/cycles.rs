@@ -79,7 +79,7 @@ impl Cycles {
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
         let progress = ProgressDisplay::spinner("cycles", output.is_quiet());
-        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control));
         let result = result?;
         output.warn_of(&result.warnings());
         output.deliver(&result)?;

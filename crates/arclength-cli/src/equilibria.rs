@@ -75,7 +75,7 @@ impl Equilibria {
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
         let progress = ProgressDisplay::spinner("equilibria", output.is_quiet());
-        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control));
         let result = result?;
         output.warn_of(&result.warnings());
         output.deliver(&result)?;

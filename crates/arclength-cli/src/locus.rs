@@ -69,7 +69,7 @@ impl Locus {
         };
         let analysis = request.validate()?;
         let progress = ProgressDisplay::spinner("curve", output.is_quiet());
-        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control));
         let result = result?;
         output.warn_of(&result.warnings());
         output.deliver(&result)?;

@@ -9,7 +9,7 @@ mod show;
 mod simulate;
 
 use clap::{Parser, Subcommand};
-use kingpin_terminal::{Failure, exit_code};
+use kingpin_terminal::{Failure, run};
 use std::process::ExitCode;
 
 /// Bifurcation analysis of models in XPPAUT's .ode files
@@ -46,5 +46,5 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    exit_code(Arclength::parse().command.run())
+    run(|options: &Arclength| options.command.run())
 }

@@ -3,8 +3,9 @@
 use arclength_analysis::diagram::diagram;
 use arclength_analysis::{Error, ResultFile};
 use clap::Args;
-use kingpin_report::{PictureFormat, Report, ReportError, files};
-use kingpin_terminal::{Failure, print, say};
+use kingpin_report::files::{self, Staged};
+use kingpin_report::{PictureFormat, Report, ReportError};
+use kingpin_terminal::{Failure, print, publish};
 use std::io::{self, Write};
 use std::path::PathBuf;
 
@@ -38,20 +39,19 @@ impl Show {
     /// # Errors
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
+        let mut pictures = Vec::new();
+        for path in &self.out {
+            pictures.push((path.clone(), PictureFormat::of(path)?));
+            files::check_writable(path)?;
+        }
         let mut results = Vec::new();
         for (index, path) in self.files.iter().enumerate() {
             results.push(ResultFile::read(path).map_err(|problem| self.failure(index, problem))?);
         }
         if !self.out.is_empty() {
             let figure = diagram(&results).map_err(|(index, problem)| self.failure(index, problem))?;
-            let formats =
-                self.out.iter().map(|path| PictureFormat::of(path)).collect::<Result<Vec<_>, _>>()?;
-            for (path, format) in self.out.iter().zip(formats) {
-                files::write_picture(&figure, path, format).map_err(Failure::of_output)?;
-                if !self.quiet {
-                    say("wrote", &path.display().to_string());
-                }
-            }
+            let stage = |(path, format): &(PathBuf, PictureFormat)| Staged::picture(&figure, path, *format);
+            publish(pictures.iter().map(stage), self.quiet)?;
             if self.quiet {
                 return Ok(());
             }

@@ -16,15 +16,25 @@ pub struct Place {
 }
 
 impl Place {
-    /// The line of the source with carets under the place, as compilers print it.
+    /// The line of the source with carets under the place, as compilers print it; of a long line what is around the place.
     pub fn snippet(&self) -> String {
+        /// Most characters of a line that are shown.
+        const MOST: usize = 200;
+        /// What stands where characters are left out.
+        const LEFT_OUT: &str = "...";
         let number = self.line.to_string();
         let margin = " ".repeat(number.len());
-        let shown: String = self.source_line.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let room = shown.chars().count().saturating_sub(self.column - 1).max(1);
-        let indent = " ".repeat(self.column - 1);
+        let count = self.source_line.chars().count();
+        let before = self.column - 1;
+        let start = if count > MOST { before.saturating_sub(MOST / 2).min(count - MOST) } else { 0 };
+        let shown = self.source_line.chars().skip(start).take(MOST);
+        let shown: String = shown.map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let head = if start > 0 { LEFT_OUT } else { "" };
+        let tail = if start + MOST < count { LEFT_OUT } else { "" };
+        let room = shown.chars().count().saturating_sub(before - start).max(1);
+        let indent = " ".repeat(head.len() + before - start);
         let carets = "^".repeat(self.length.clamp(1, room));
-        format!("{margin} |\n{number} | {shown}\n{margin} | {indent}{carets}")
+        format!("{margin} |\n{number} | {head}{shown}{tail}\n{margin} | {indent}{carets}")
     }
 }
 

@@ -81,7 +81,7 @@ pub enum Error {
         kept: String,
     },
     /// The control stopped the run before there was a result.
-    #[error("interrupted before the result was complete")]
+    #[error("interrupted before the result was complete; nothing was written")]
     Stopped,
 }
 

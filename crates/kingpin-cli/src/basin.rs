@@ -74,7 +74,7 @@ impl Basin {
             output.note(&format!("{done} of {parts} parts were finished"));
         }
         let progress = ProgressDisplay::bar("basin", output.is_quiet());
-        let (result, _) = output.watch(progress, |control| analysis.run(control, &journal))?;
+        let (result, _) = output.watch(progress, |control| analysis.run(control, &journal));
         output.deliver(&result?)?;
         Ok(journal.finish()?)
     }

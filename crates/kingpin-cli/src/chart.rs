@@ -37,7 +37,7 @@ impl Chart {
         let output = self.output.prepare()?;
         output.warn_of(analysis.warnings());
         let progress = ProgressDisplay::bar("chart", output.is_quiet());
-        let (result, _) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, _) = output.watch(progress, |control| analysis.run(control));
         output.deliver(&result?)
     }
 }

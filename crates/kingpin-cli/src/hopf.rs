@@ -39,7 +39,7 @@ impl Hopf {
             HopfRequest { wheel: self.wheel.request(), along: self.along.clone(), steps: self.steps.into() };
         let analysis = request.validate()?;
         let progress = ProgressDisplay::spinner("uniform motions", output.is_quiet());
-        let (result, interruption) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, interruption) = output.watch(progress, |control| analysis.run(control));
         let result = result?;
         output.warn_of(&result.warnings());
         output.deliver(&result)?;

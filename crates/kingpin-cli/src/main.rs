@@ -17,7 +17,7 @@ mod study;
 mod wheel_options;
 
 use clap::{Parser, Subcommand};
-use kingpin_terminal::{Failure, exit_code};
+use kingpin_terminal::{Failure, run};
 use std::process::ExitCode;
 
 /// Finds out whether a towed wheel shimmies
@@ -67,5 +67,5 @@ impl Command {
 }
 
 fn main() -> ExitCode {
-    exit_code(Kingpin::parse().command.run())
+    run(|options: &Kingpin| options.command.run())
 }

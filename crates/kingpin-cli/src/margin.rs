@@ -58,7 +58,7 @@ impl Margin {
             output.note(&format!("{done} of {parts} parts were finished"));
         }
         let progress = ProgressDisplay::bar("margin", output.is_quiet());
-        let (result, _) = output.watch(progress, |control| analysis.run(control, &journal))?;
+        let (result, _) = output.watch(progress, |control| analysis.run(control, &journal));
         output.deliver(&result?)?;
         Ok(journal.finish()?)
     }

@@ -40,7 +40,7 @@ impl Paper {
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = PaperRequest { figure: self.figure, out: self.out.clone() };
         let progress = ProgressDisplay::bar("paper", self.quiet);
-        let (result, _) = output.watch(progress, |control| request.run(control))?;
+        let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)
     }
 }

@@ -45,7 +45,7 @@ impl SafeKick {
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
         let progress = ProgressDisplay::bar("smallest disturbance that does not return", output.is_quiet());
-        let (result, _) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, _) = output.watch(progress, |control| analysis.run(control));
         output.deliver(&result?)
     }
 }

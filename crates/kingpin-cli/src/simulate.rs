@@ -53,7 +53,7 @@ impl Simulate {
         };
         let analysis = request.validate()?;
         let progress = ProgressDisplay::bar("motion", output.is_quiet());
-        let (result, _) = output.watch(progress, |control| analysis.run(control))?;
+        let (result, _) = output.watch(progress, |control| analysis.run(control));
         let result = result?;
         output.warn_of(&result.warnings());
         output.deliver(&result)

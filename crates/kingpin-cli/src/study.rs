@@ -70,7 +70,7 @@ impl StudyCommand {
         let output = Output::new(self.format, &[], self.quiet, &[])?;
         let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };
         let progress = ProgressDisplay::bar("study", self.quiet);
-        let (result, _) = output.watch(progress, |control| request.run(control))?;
+        let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)
     }
 }

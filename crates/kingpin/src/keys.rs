@@ -9,6 +9,9 @@ impl Key {
     /// The key whose name is nearest to what was given: fewest edits when case and underscores are disregarded,
     /// then fewest edits with them.
     pub fn nearest(given: &str) -> Key {
+        /// Characters that are looked at: no key has as many.
+        const LOOKED_AT: usize = 40;
+        let given = &given.chars().take(LOOKED_AT).collect::<String>();
         let plain = |text: &str| text.to_lowercase().replace('_', "");
         let distance =
             |key: &Key| (edit_distance(&plain(given), &plain(key.name())), edit_distance(given, key.name()));

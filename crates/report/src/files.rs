@@ -1,13 +1,20 @@
 //! Results and pictures in files whose endings say their format, each written whole or not at all.
+//!
+//! A file is [staged](Staged) under another name first, in the same folder, and then published in one step; several that belong
+//! together are published when all are staged. Symbolic links are followed, permissions of what is replaced are kept, and pipes
+//! and devices are written to, never replaced.
 
 use crate::columns::Columns;
+use crate::destination::{Destination, open_stream};
 use crate::error::ReportError;
 use crate::report::Report;
+use crate::unfinished::UnfinishedFile;
 use crate::{json, parquet};
 use kingpin_figure::Figure;
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Resolution of PNG files in dots per inch.
 const PICTURE_RESOLUTION: f64 = 300.0;
@@ -106,39 +113,108 @@ fn unknown<'a>(path: &Path, allowed: impl Iterator<Item = &'a str>) -> ReportErr
 /// # Errors
 /// [`ReportError::Unwritable`].
 pub fn check_writable(path: &Path) -> Result<(), ReportError> {
-    let unwritable = |source| ReportError::Unwritable { path: path.to_owned(), source };
-    if path.is_dir() {
-        return Err(unwritable(io::ErrorKind::IsADirectory.into()));
+    let check = || match Destination::of(path)? {
+        Destination::File { path, .. } => UnfinishedFile::beside(&path).map(drop),
+        // Opening a pipe would wait for its reader.
+        Destination::Stream(_) | Destination::Output(_) => Ok(()),
+    };
+    check().map_err(unwritable(path))
+}
+
+/// What is complete and waits to be published where it is wanted; dropped, it leaves nothing.
+#[derive(Debug)]
+pub struct Staged {
+    /// The path as it was asked for.
+    path: PathBuf,
+    content: Content,
+}
+
+/// What was staged.
+#[derive(Debug)]
+enum Content {
+    /// A file under another name, and its own.
+    File(UnfinishedFile, PathBuf),
+    /// What is to go through a pipe or a device.
+    Stream(Vec<u8>, PathBuf),
+    /// What is to follow the output of this program.
+    Output(Vec<u8>, File),
+}
+
+impl Staged {
+    /// Stages what a writer writes.
+    ///
+    /// # Errors
+    /// [`ReportError::Unwritable`], and those of the writer.
+    pub fn new(
+        path: &Path,
+        write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ReportError>,
+    ) -> Result<Self, ReportError> {
+        let unwritable = || unwritable(path);
+        let content = match Destination::of(path).map_err(unwritable())? {
+            Destination::File { path, permissions } => {
+                let mut file = UnfinishedFile::beside(&path).map_err(unwritable())?;
+                if let Some(permissions) = permissions {
+                    file.set_permissions(permissions).map_err(unwritable())?;
+                }
+                let mut out = BufWriter::new(file.file());
+                write(&mut out)?;
+                out.flush().map_err(unwritable())?;
+                drop(out);
+                Content::File(file, path)
+            }
+            Destination::Stream(to) => Content::Stream(in_memory(write)?, to),
+            Destination::Output(to) => Content::Output(in_memory(write)?, to),
+        };
+        Ok(Self { path: path.to_owned(), content })
     }
-    temporary_beside(path).map(drop).map_err(unwritable)
+
+    /// Stages a result.
+    ///
+    /// # Errors
+    /// [`ReportError::Unwritable`], those of the format and of the drawing.
+    pub fn result<R: Report>(result: &R, path: &Path, format: FileFormat) -> Result<Self, ReportError> {
+        let picture = || result.figure()?.ok_or(ReportError::NothingToDraw);
+        Self::new(path, |out| match format {
+            FileFormat::Json => json::write(result, out),
+            FileFormat::Csv => result.columns().write_csv(out).map_err(ReportError::encoding("CSV")),
+            FileFormat::Parquet => {
+                let columns = result.columns();
+                parquet::write(&columns, &metadata(result, &columns)?, out)
+            }
+            FileFormat::Picture(format) => encode_picture(&picture()?, format, out),
+        })
+    }
+
+    /// Stages a picture.
+    ///
+    /// # Errors
+    /// As [`result`](Self::result).
+    pub fn picture(figure: &Figure, path: &Path, format: PictureFormat) -> Result<Self, ReportError> {
+        Self::new(path, |out| encode_picture(figure, format, out))
+    }
+
+    /// The path as it was asked for.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Puts it where it is wanted.
+    ///
+    /// # Errors
+    /// [`ReportError::Unwritable`].
+    pub fn publish(self) -> Result<(), ReportError> {
+        let published = match self.content {
+            Content::File(file, path) => file.finish(&path).map(drop),
+            Content::Stream(bytes, path) => {
+                open_stream(&path).and_then(|mut stream| stream.write_all(&bytes))
+            }
+            Content::Output(bytes, mut file) => file.write_all(&bytes),
+        };
+        published.map_err(unwritable(&self.path))
+    }
 }
 
-/// Writes a result into a file.
-///
-/// # Errors
-/// [`ReportError::Unwritable`], those of the format and of the drawing; then no file is left behind.
-pub fn write_result<R: Report>(result: &R, path: &Path, format: FileFormat) -> Result<(), ReportError> {
-    let picture = || result.figure()?.ok_or(ReportError::NothingToDraw);
-    write_whole(path, |out| match format {
-        FileFormat::Json => json::write(result, out),
-        FileFormat::Csv => result.columns().write_csv(out).map_err(ReportError::encoding("CSV")),
-        FileFormat::Parquet => {
-            let columns = result.columns();
-            parquet::write(&columns, &metadata(result, &columns)?, out)
-        }
-        FileFormat::Picture(format) => encode_picture(&picture()?, format, out),
-    })
-}
-
-/// Writes a picture into a file.
-///
-/// # Errors
-/// As [`write_result`].
-pub fn write_picture(figure: &Figure, path: &Path, format: PictureFormat) -> Result<(), ReportError> {
-    write_whole(path, |out| encode_picture(figure, format, out))
-}
-
-/// Writes a file that appears whole or not at all: under another name first, in the same folder.
+/// Writes a file that appears whole or not at all.
 ///
 /// # Errors
 /// [`ReportError::Unwritable`], and those of the writer; then no file is left behind.
@@ -146,14 +222,19 @@ pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ReportError>,
 ) -> Result<(), ReportError> {
-    let unwritable = |source| ReportError::Unwritable { path: path.to_owned(), source };
-    let mut file = temporary_beside(path).map_err(unwritable)?;
-    let mut out = BufWriter::new(file.as_file_mut());
-    write(&mut out)?;
-    out.flush().map_err(unwritable)?;
-    drop(out);
-    file.persist(path).map_err(|error| unwritable(error.error))?;
-    Ok(())
+    Staged::new(path, write)?.publish()
+}
+
+fn unwritable(path: &Path) -> impl FnOnce(io::Error) -> ReportError {
+    move |source| ReportError::Unwritable { path: path.to_owned(), source }
+}
+
+fn in_memory(
+    write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ReportError>,
+) -> Result<Vec<u8>, ReportError> {
+    let mut bytes = Vec::new();
+    write(&mut bytes)?;
+    Ok(bytes)
 }
 
 fn encode_picture(
@@ -176,18 +257,4 @@ fn metadata<R: Report>(result: &R, columns: &Columns) -> Result<[(&'static str, 
         ("parameters", serde_json::to_string(&result.parameters()).map_err(failure)?),
         ("units", serde_json::to_string(&columns.units().collect::<BTreeMap<_, _>>()).map_err(failure)?),
     ])
-}
-
-/// A temporary file in the folder of a file, so that renaming it is one step; it goes when dropped.
-fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".unfinished-");
-    #[cfg(unix)]
-    {
-        // As any other new file, not for the owner alone; the mask of the user applies.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
 }

@@ -5,6 +5,7 @@
 //! a terminal.
 
 mod columns;
+mod destination;
 mod error;
 pub mod files;
 pub mod history;
@@ -16,6 +17,7 @@ mod report;
 mod schema;
 mod story;
 mod table;
+mod unfinished;
 
 pub use columns::{Column, Columns, Entries};
 pub use error::ReportError;
@@ -25,6 +27,7 @@ pub use report::Report;
 pub use schema::Schema;
 pub use story::Story;
 pub use table::{Cell, Table};
+pub use unfinished::{Abandoned, UnfinishedFile, abandon_unfinished};
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

@@ -1,18 +1,52 @@
-//! How a program ends: what it says of a failure, and its exit code.
+//! How a program runs and ends: its options, what it says of a failure, and its exit code.
 
 use crate::failure::Failure;
+use crate::interruption::Interruption;
+use crate::shortened::shortened;
 use crate::streams::say;
+use clap::Parser;
+use clap::error::ErrorKind;
+use std::borrow::Cow;
 use std::error::Error;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
-/// The exit code of a command, after saying why it failed.
-pub fn exit_code(outcome: Result<(), Failure>) -> ExitCode {
-    match outcome {
+const HELP_WITHOUT_COMMAND: ErrorKind = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+/// Exit code of options that cannot be read, as of other bad input.
+const BAD_OPTIONS: u8 = 2;
+
+/// Runs a program: listens to signals, reads the options, runs the command, says why it failed. The exit code is 0 when it is
+/// done, 1 when the computation failed, 2 for bad input, 128 and its number where a signal stopped it.
+pub fn run<Options: Parser>(command: impl FnOnce(&Options) -> Result<(), Failure>) -> ExitCode {
+    if let Err(failure) = Interruption::listen() {
+        say_failure(&failure);
+        return ExitCode::from(failure.exit_code());
+    }
+    let options = match Options::try_parse() {
+        Ok(options) => options,
+        Err(error) => return refuse(&error),
+    };
+    match command(&options) {
         Ok(()) | Err(Failure::OutputClosed) => ExitCode::SUCCESS,
         Err(failure) => {
             say_failure(&failure);
-            ExitCode::from(failure.exit_code())
+            // Whatever failed after a signal failed because of it.
+            ExitCode::from(Interruption::exit_code().unwrap_or_else(|| failure.exit_code()))
         }
+    }
+}
+
+/// Says what is wrong with the options, or the help that was asked for.
+fn refuse(error: &clap::Error) -> ExitCode {
+    let text = error.render().to_string();
+    match shortened(&text) {
+        // Help is as long as it is; what need not be shortened a terminal shows in colours.
+        Cow::Owned(text) if error.use_stderr() && error.kind() != HELP_WITHOUT_COMMAND => {
+            // Where standard error is closed there is nobody left to tell.
+            let _ = write!(io::stderr(), "{text}");
+            ExitCode::from(BAD_OPTIONS)
+        }
+        _ => error.exit(),
     }
 }
 

@@ -39,12 +39,12 @@ pub enum Failure {
         /// The error itself.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// Ctrl-C was pressed on the way along a branch; the result has been delivered.
+    /// A signal came on the way along a branch; the result has been delivered.
     #[error("interrupted: what was computed before is in the result, which can be continued from its ends")]
     BranchInterrupted,
-    /// Ctrl-C could not be listened to.
-    #[error("cannot listen to Ctrl-C: {0}")]
-    Signals(#[source] ctrlc::Error),
+    /// Signals could not be listened to.
+    #[error("cannot listen to signals: {0}")]
+    Signals(#[source] std::io::Error),
     /// Threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[source] rayon::ThreadPoolBuildError),

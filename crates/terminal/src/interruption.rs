@@ -1,40 +1,101 @@
-//! Ctrl-C.
+//! Ctrl-C and the signal to terminate, from the first line of a program to its last.
+//!
+//! A signal stops an analysis under way, which then says what there is of its result. At any other time, and when it comes again, it
+//! ends the program at once. In no case is an unfinished file left.
 
 use crate::failure::Failure;
+use crate::signals::{self, Signal};
+use crate::streams::say;
+use kingpin_report::abandon_unfinished;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 
-/// The flag that Ctrl-C sets, so that a run stops after the part that it is at; pressed again it ends the program.
+/// What the program is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Reading what is asked for; nothing has been written.
+    Preparation,
+    /// An analysis that looks at the flag.
+    Analysis,
+    /// Writing the result.
+    Delivery,
+}
+
+/// What the program is at, and the first signal that came.
+static STATE: Mutex<(Stage, Option<Signal>)> = Mutex::new((Stage::Preparation, None));
+/// The flag at which the analysis looks.
+static STOP: AtomicBool = AtomicBool::new(false);
+
+/// An analysis that a signal stops.
 #[derive(Clone, Copy, Debug)]
-pub struct Interruption(&'static AtomicBool);
+pub struct Interruption(());
 
 impl Interruption {
-    /// Listens to Ctrl-C from now on.
+    /// Listens to signals from now on. Until there is an analysis they end the program at once.
     ///
     /// # Errors
     /// [`Failure::Signals`] where that is not possible.
-    pub fn watch() -> Result<Self, Failure> {
-        static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-        /// The exit code of programs that end by the signal SIGINT.
-        const ENDED_BY_SIGNAL: i32 = 130;
-        ctrlc::set_handler(|| {
-            if INTERRUPTED.swap(true, Ordering::Relaxed) {
-                std::process::exit(ENDED_BY_SIGNAL);
-            }
-        })
-        .map_err(Failure::Signals)?;
-        Ok(Self(&INTERRUPTED))
+    pub fn listen() -> Result<(), Failure> {
+        signals::listen(received).map_err(Failure::Signals)
+    }
+
+    /// From now on a signal stops the analysis by the flag; when it comes again it ends the program.
+    pub(crate) fn of_analysis() -> Self {
+        enter(Stage::Analysis);
+        Self(())
+    }
+
+    /// From now on a signal ends the program at once again.
+    pub(crate) fn analysis_has_ended(self) {
+        enter(Stage::Delivery);
     }
 
     /// The flag.
-    pub fn flag(self) -> &'static AtomicBool {
-        self.0
+    pub(crate) fn flag(self) -> &'static AtomicBool {
+        &STOP
     }
 
-    /// That nobody pressed Ctrl-C on the way along a branch, whose result has been delivered.
+    /// The exit code of a program that a signal has stopped; `None` where there was none.
+    pub(crate) fn exit_code() -> Option<u8> {
+        STATE.lock().unwrap_or_else(PoisonError::into_inner).1.map(Signal::exit_code)
+    }
+
+    /// That no signal came on the way along a branch, whose result has been delivered.
     ///
     /// # Errors
     /// [`Failure::BranchInterrupted`].
     pub fn check_branch(self) -> Result<(), Failure> {
-        if self.0.load(Ordering::Relaxed) { Err(Failure::BranchInterrupted) } else { Ok(()) }
+        if STOP.load(Ordering::Relaxed) { Err(Failure::BranchInterrupted) } else { Ok(()) }
     }
+}
+
+fn enter(stage: Stage) {
+    STATE.lock().unwrap_or_else(PoisonError::into_inner).0 = stage;
+}
+
+/// What happens when a signal has come, on a thread of its own.
+fn received(signal: Signal) {
+    let stage = {
+        let mut state = STATE.lock().unwrap_or_else(PoisonError::into_inner);
+        state.1.get_or_insert(signal);
+        state.0
+    };
+    if stage == Stage::Analysis && !STOP.swap(true, Ordering::Relaxed) {
+        return;
+    }
+    // The program ends before anything else can be begun.
+    let _nothing_is_begun = abandon_unfinished();
+    say(
+        "error",
+        match stage {
+            Stage::Preparation => "interrupted; nothing was written",
+            Stage::Analysis => {
+                "interrupted again, ended at once: no result was written; what a journal has is kept"
+            }
+            Stage::Delivery => {
+                "interrupted while the result was written: files that were told of are whole, no other was touched"
+            }
+        },
+    );
+    std::process::exit(signal.exit_code().into());
 }

@@ -6,7 +6,8 @@ use crate::progress::ProgressDisplay;
 use crate::streams::{print, say};
 use arclength_analysis::Control;
 use clap::ValueEnum;
-use kingpin_report::{FileFormat, Report, ReportError, files, json};
+use kingpin_report::files::{self, Staged};
+use kingpin_report::{FileFormat, Report, ReportError, json};
 use std::path::{Path, PathBuf};
 
 /// Formats of standard output.
@@ -84,33 +85,27 @@ impl Output {
         }
     }
 
-    /// Runs an analysis under a control: its progress is shown, and Ctrl-C stops it. What it is about is said beside the
+    /// Runs an analysis under a control: its progress is shown, and a signal stops it. What it is about is said beside the
     /// progress.
-    ///
-    /// # Errors
-    /// [`Failure::Signals`].
     pub fn watch<T>(
         &self,
         progress: ProgressDisplay,
         analysis: impl FnOnce(&Control<'_>) -> T,
-    ) -> Result<(T, Interruption), Failure> {
-        let interruption = Interruption::watch()?;
+    ) -> (T, Interruption) {
+        let interruption = Interruption::of_analysis();
         let outcome = analysis(&Control::new(interruption.flag(), &|reached| progress.show(reached)));
         drop(progress);
-        Ok((outcome, interruption))
+        interruption.analysis_has_ended();
+        (outcome, interruption)
     }
 
-    /// Writes the files, then standard output; the latter not where there are files and quiet was asked for.
+    /// Writes the files, all or none, then standard output; the latter not where there are files and quiet was asked for.
     ///
     /// # Errors
     /// What the writers say.
     pub fn deliver<R: Report>(&self, result: &R) -> Result<(), Failure> {
-        for (path, format) in &self.files {
-            files::write_result(result, path, *format).map_err(Failure::of_output)?;
-            if !self.quiet {
-                say("wrote", &path.display().to_string());
-            }
-        }
+        let stage = |(path, format): &(PathBuf, FileFormat)| Staged::result(result, path, *format);
+        publish(self.files.iter().map(stage), self.quiet)?;
         if self.quiet && !self.files.is_empty() {
             return Ok(());
         }
@@ -127,4 +122,23 @@ impl Output {
             Format::Csv => result.columns().write_csv(out).map_err(encoding("CSV")),
         })
     }
+}
+
+/// Gives files their places when all of them are complete, and tells which unless that is unwanted.
+///
+/// # Errors
+/// What the writers say; then, as long as none has its place, no file is left behind.
+pub fn publish(
+    staged: impl Iterator<Item = Result<Staged, ReportError>>,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let complete = staged.collect::<Result<Vec<_>, _>>().map_err(Failure::of_output)?;
+    for file in complete {
+        let path = file.path().to_owned();
+        file.publish().map_err(Failure::of_output)?;
+        if !quiet {
+            say("wrote", &path.display().to_string());
+        }
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Standard output, which may be closed at any time, and standard error.
 
 use crate::failure::Failure;
+use crate::shortened::shortened;
 use kingpin_report::ReportError;
 use std::io::{self, BufWriter, Write};
 
@@ -15,8 +16,8 @@ pub fn print(write: impl FnOnce(&mut (dyn Write + Send)) -> Result<(), ReportErr
         .map_err(Failure::of_output)
 }
 
-/// Says something beside the result, on standard error.
+/// Says something beside the result, on standard error; the middle of what is too long to be read is left out.
 pub fn say(kind: &str, message: &str) {
     // Where standard error is closed there is nobody left to tell.
-    let _ = writeln!(io::stderr(), "{kind}: {message}");
+    let _ = writeln!(io::stderr(), "{kind}: {}", shortened(message));
 }

@@ -140,6 +140,31 @@ fn simulations_that_cannot_be_run() {
     fails("simulate --duration 1e6 -s v=8 --perturb Omega=200 -o a.json", 1, &["cannot be followed"]);
 }
 
+/// The slip of so short a motion is so small that its square is zero.
+#[test]
+fn the_friction_of_the_shortest_motions_is_finite() {
+    for duration in ["1e-20", "1e-160", "1e-200", "1e-300", "5e-324"] {
+        for perturbation in ["", "--perturb psi=0.1", "--perturb Omega=-3"] {
+            let command = format!(
+                "simulate --contact sliding --duration {duration} {perturbation} --points 5 --format csv"
+            );
+            let table = Folder::new().succeed(&command).output;
+            let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+            let [force, phase] = ["friction_force", "phase"]
+                .map(|name| names.iter().position(|other| *other == name).unwrap());
+            let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+            assert!(
+                rows.iter().flatten().all(|entry| entry.parse::<f64>().map_or(true, f64::is_finite)),
+                "{table}"
+            );
+            // mu_d N while it slides.
+            let end = rows.last().unwrap();
+            let value: f64 = end[force].parse().unwrap();
+            assert!(end[phase] == "sliding" && (value - 0.8 * 4.107447).abs() < 1e-12, "{command}: {table}");
+        }
+    }
+}
+
 #[test]
 fn no_hopf_point_on_the_way() {
     let words =

@@ -102,9 +102,11 @@ fn a_killed_run_is_resumed_without_computing_finished_cells_again() {
     assert_eq!(folder.files(), ["a.json", "whole.json"]);
 
     // What the journal says of a finished tile is believed, not computed again.
-    let (number, _) = serde_json::from_str::<(usize, Vec<String>)>(whole[1]).unwrap();
-    let told = vec!["shimmy"; 64];
-    let altered = format!("{}{}\n{}", whole[0], serde_json::json!([number, told]), whole[2..].concat());
+    let [header, part] = [whole[0], whole[1]].map(|line| line.trim_end().split_once(' ').unwrap().1);
+    let (number, _) = serde_json::from_str::<(usize, Vec<String>)>(part).unwrap();
+    let told = serde_json::json!([number, vec!["shimmy"; 64]]).to_string();
+    let checksum = crc32fast::hash(format!("{header}{told}").as_bytes());
+    let altered = format!("{}{checksum:08x} {told}\n{}", whole[0], whole[2..].concat());
     std::fs::write(folder.path("a.json.journal"), altered).unwrap();
     folder.succeed(&format!("{long} --resume"));
     let fates = |name: &str| {
@@ -114,6 +116,41 @@ fn a_killed_run_is_resumed_without_computing_finished_cells_again() {
     let mut expected = fates("whole.json");
     expected[64 * number..64 * (number + 1)].fill(Value::from("shimmy"));
     assert!(fates("a.json") == expected);
+}
+
+#[test]
+fn a_journal_that_was_changed_is_refused_with_line_and_remedy() {
+    let folder = Folder::new();
+    let long = "margin --along v=4:7:8 --kind release-angle --threads 1 -o a.csv";
+    let mut child = start(&folder, long, "a.csv.journal", 4);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = String::from_utf8(read(&folder.path("a.csv.journal"))).unwrap();
+    // One digit of the second part that was kept.
+    let line = kept.split_inclusive('\n').nth(2).unwrap();
+    let digit = line.rfind(|character: char| character.is_ascii_digit()).unwrap();
+    let other = if &line[digit..=digit] == "7" { "3" } else { "7" };
+    let changed = kept.replace(line, &format!("{}{other}{}", &line[..digit], &line[digit + 1..]));
+    std::fs::write(folder.path("a.csv.journal"), &changed).unwrap();
+    let refused = folder.run(&format!("{long} --resume"));
+    assert_eq!(refused.exit_code, 2, "{}", refused.messages);
+    for word in ["--resume a.csv.journal", "line 3 was changed", "delete line 3"] {
+        assert!(refused.messages.contains(word), "no `{word}` in {}", refused.messages);
+    }
+    assert_eq!(read(&folder.path("a.csv.journal")), changed.as_bytes());
+    // The remedy helps.
+    std::fs::write(folder.path("a.csv.journal"), kept.replace(line, "")).unwrap();
+    folder.succeed(&format!("{long} --resume"));
+    folder.succeed(&long.replace("a.csv", "whole.csv"));
+    assert!(read(&folder.path("a.csv")) == read(&folder.path("whole.csv")));
+    // What an earlier version kept has no checksums.
+    let old: String = kept.lines().map(|line| format!("{}\n", line.split_once(' ').unwrap().1)).collect();
+    std::fs::write(folder.path("a.csv.journal"), old).unwrap();
+    let refused = folder.run(&format!("{long} --resume"));
+    assert_eq!(refused.exit_code, 2, "{}", refused.messages);
+    for word in ["a.csv.journal", "line 1 has no checksum", "delete it", "without --resume"] {
+        assert!(refused.messages.contains(word), "no `{word}` in {}", refused.messages);
+    }
 }
 
 #[cfg(unix)]
@@ -126,7 +163,7 @@ fn an_interrupted_run_says_what_is_finished() {
     assert!(sent.success());
     let output = child.wait_with_output().unwrap();
     let messages = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(1), "{messages}");
+    assert_eq!(output.status.code(), Some(130), "{messages}");
     assert!(messages.contains("of 8 parts are finished, kept in a.csv.journal"), "{messages}");
     assert!(!folder.path("a.csv").exists());
     let resumed = folder.succeed(&format!("{long} --resume"));

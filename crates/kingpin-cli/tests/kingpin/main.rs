@@ -4,10 +4,12 @@ mod bad_input;
 mod basin;
 mod branches;
 mod curves;
+mod files;
 mod formats;
 #[cfg(unix)]
 mod interruption;
 mod lateral;
+mod long_values;
 mod studies;
 mod tables;
 mod verdicts;

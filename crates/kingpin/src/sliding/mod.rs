@@ -293,7 +293,7 @@ impl SlidingWheel {
         let mut solution = integrator.with_events(system, start, state, end, times, &mut events)?;
         let state = as_slip_state(&solution.state);
         if solution.ended_by != Some(1) {
-            let slips = slip_squared(&state) > 0.0;
+            let slips = state[S1] != 0.0 || state[S2] != 0.0;
             let contact = if slips { Contact::Sliding } else { Contact::Rolling };
             return Ok((solution, HybridState { contact, state }));
         }

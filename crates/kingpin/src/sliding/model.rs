@@ -118,8 +118,9 @@ impl<T: Scalar> Equations<T> {
         if self.sliding_friction.value() == 0.0 {
             return [T::zero(); 2];
         }
-        let factor = -self.sliding_friction / slip_squared(state).sqrt();
-        [factor * state[S1], factor * state[S2]]
+        let [along, across] = in_range_of_squares([state[S1], state[S2]]);
+        let factor = -self.sliding_friction / (along * along + across * across).sqrt();
+        [factor * along, factor * across]
     }
 
     /// The friction force that would keep the slip velocity as it is: the rolling force where there is no slip.
@@ -194,6 +195,21 @@ impl<T: Scalar> Equations<T> {
 #[inline]
 pub(crate) fn slip_squared<T: Scalar>(state: &[T]) -> T {
     state[S1] * state[S1] + state[S2] * state[S2]
+}
+
+/// A vector of the same direction whose square neither underflows nor overflows; nearly always the vector itself.
+#[inline]
+fn in_range_of_squares<T: Scalar>(vector: [T; 2]) -> [T; 2] {
+    /// 2^500: scaling by a power of two loses no digit.
+    const SCALE: f64 = f64::from_bits((1023 + 500) << 52);
+    let largest = vector[0].value().abs().max(vector[1].value().abs());
+    if largest < 1.0 / SCALE {
+        vector.map(|entry| entry * (SCALE * SCALE))
+    } else if largest > SCALE {
+        vector.map(|entry| entry * (1.0 / (SCALE * SCALE)))
+    } else {
+        vector
+    }
 }
 
 #[inline]

@@ -2,9 +2,14 @@
 //! killed, can be resumed.
 //!
 //! A journal is text: its first line says which computation it belongs to, every other line is a JSON array of the index
-//! of a part and its result. A last line that was torn is passed over. It goes when the result has been written.
+//! of a part and its result. Before each stands its [`checksum`], so that what was changed afterwards is refused and not believed. A
+//! last line that was torn is passed over. The journal goes when the result has been written.
+
+mod checksum;
 
 use crate::error::Error;
+use checksum::{Checked, Checksum};
+use kingpin_report::UnfinishedFile;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -22,6 +27,8 @@ const ENDING: &str = ".journal";
 #[derive(Debug)]
 pub struct Journal<Part> {
     place: Option<(PathBuf, Mutex<File>)>,
+    /// That of the first line, from which those of the parts go on.
+    checksum: Checksum,
     finished: BTreeMap<usize, Part>,
     /// Why a part could not be kept.
     lost: Mutex<Option<std::io::Error>>,
@@ -30,7 +37,8 @@ pub struct Journal<Part> {
 impl<Part: Clone + Serialize + DeserializeOwned> Journal<Part> {
     /// A journal that keeps nothing.
     pub fn none() -> Self {
-        Self { place: None, finished: BTreeMap::new(), lost: Mutex::default() }
+        let checksum = Checksum::of_nothing();
+        Self { place: None, checksum, finished: BTreeMap::new(), lost: Mutex::default() }
     }
 
     /// Starts a journal beside a result file, or goes on with the one that is there. Without a result file nothing is kept.
@@ -60,17 +68,15 @@ impl<Part: Clone + Serialize + DeserializeOwned> Journal<Part> {
             finished = read(&path, computation)?;
         }
         // Written anew, so that it ends with a whole line: as a temporary file first, the old one stays if that fails.
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let mut fresh = tempfile::Builder::new()
-            .prefix(".unfinished-")
-            .tempfile_in(folder.unwrap_or(Path::new(".")))
-            .map_err(failure)?;
-        writeln!(fresh, "{computation}").map_err(failure)?;
+        let mut fresh = UnfinishedFile::beside(&path).map_err(failure)?;
+        let header = computation.to_string();
+        let checksum = Checksum::of_nothing().and(header.as_bytes());
+        fresh.file().write_all(checksum.line(&header).as_bytes()).map_err(failure)?;
         if path.exists() {
-            copy_parts(&path, &mut fresh).map_err(failure)?;
+            copy_parts(&path, fresh.file()).map_err(failure)?;
         }
-        let file = fresh.persist(&path).map_err(|error| failure(error.error))?;
-        Ok(Self { place: Some((path, Mutex::new(file))), finished, lost: Mutex::default() })
+        let file = fresh.finish(&path).map_err(failure)?;
+        Ok(Self { place: Some((path, Mutex::new(file))), checksum, finished, lost: Mutex::default() })
     }
 
     /// The parts that were finished when it was opened, by index.
@@ -83,7 +89,8 @@ impl<Part: Clone + Serialize + DeserializeOwned> Journal<Part> {
         let Some((_, file)) = &self.place else { return };
         let line = serde_json::to_string(&(index, part)).map_err(std::io::Error::from);
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Err(error) = line.and_then(|line| file.write_all(format!("{line}\n").as_bytes())) {
+        let line = line.map(|line| self.checksum.and(line.as_bytes()).line(&line));
+        if let Err(error) = line.and_then(|line| file.write_all(line.as_bytes())) {
             *self.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
             stop.store(true, Ordering::Relaxed);
         }
@@ -139,7 +146,7 @@ fn beside(result: &Path) -> PathBuf {
 }
 
 /// The lines that are whole.
-fn lines(path: &Path) -> std::io::Result<Vec<String>> {
+fn lines(path: &Path) -> std::io::Result<Vec<Vec<u8>>> {
     let mut reader = BufReader::new(File::open(path)?);
     let mut lines = Vec::new();
     loop {
@@ -148,38 +155,57 @@ fn lines(path: &Path) -> std::io::Result<Vec<String>> {
         if line.pop() != Some(b'\n') {
             return Ok(lines);
         }
-        lines.push(String::from_utf8(line).map_err(std::io::Error::other)?);
+        lines.push(line);
     }
 }
 
 fn copy_parts(from: &Path, to: &mut impl Write) -> std::io::Result<()> {
-    lines(from)?.iter().skip(1).try_for_each(|line| writeln!(to, "{line}"))
+    lines(from)?.iter().skip(1).try_for_each(|line| to.write_all(line).and_then(|()| to.write_all(b"\n")))
 }
 
+/// The finished parts of a journal that belongs to a computation and is as it was kept.
 fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMap<usize, T>, Error> {
     let lines = lines(path).map_err(|source| Error::Journal { path: path.to_owned(), source })?;
-    let other = |problem: String| {
-        Error::invalid(
-            &["resume"],
-            path.display().to_string(),
-            &problem,
-            "the same command, or delete the journal",
-        )
+    let refused = |problem: String, remedy: &str| {
+        Error::invalid(&["resume"], path.display().to_string(), &problem, remedy)
     };
+    const ANOTHER: &str = "the same command, or delete the journal";
+    const ANEW: &str = "a journal as it was kept: delete it, and run the command without --resume";
     let Some(first) = lines.first() else {
-        return Err(other("it is empty: no computation was kept in it".to_owned()));
+        return Err(refused("it is empty: no computation was kept in it".to_owned(), ANOTHER));
     };
-    let header: Value = match serde_json::from_str(first) {
-        Ok(header @ Value::Object(_)) => header,
-        _ => return Err(other("its first line does not say which computation it belongs to".to_owned())),
+    let start = Checksum::of_nothing();
+    let (header, checksum) = match start.check(first) {
+        Checked::Fits(content) => (content, start.and(content)),
+        Checked::Differs => return Err(refused(changed(1), ANEW)),
+        Checked::Missing if first.first() == Some(&b'{') => {
+            let problem = "line 1 has no checksum: an earlier version kept it, and nothing shows whether its numbers are as they were";
+            return Err(refused(problem.to_owned(), ANEW));
+        }
+        Checked::Missing => {
+            let problem = "its first line does not say which computation it belongs to";
+            return Err(refused(problem.to_owned(), ANEW));
+        }
     };
+    let header: Value =
+        serde_json::from_slice(header).map_err(|error| refused(format!("line 1: {error}"), ANEW))?;
     if let Some(difference) = difference(&header, computation) {
-        return Err(other(format!("it is the journal of another computation: {difference}")));
+        return Err(refused(format!("it is the journal of another computation: {difference}"), ANOTHER));
     }
-    let part = |(number, line): (usize, &String)| {
-        serde_json::from_str(line).map_err(|error| other(format!("line {}: {error}", number + 2)))
+    let part = |(index, line): (usize, &Vec<u8>)| {
+        let number = index + 2;
+        let Checked::Fits(content) = checksum.check(line) else {
+            let remedy =
+                format!("a journal as it was kept: delete line {number}, and its part is computed again");
+            return Err(refused(changed(number), &remedy));
+        };
+        serde_json::from_slice(content).map_err(|error| refused(format!("line {number}: {error}"), ANEW))
     };
     lines.iter().skip(1).enumerate().map(part).collect()
+}
+
+fn changed(line: usize) -> String {
+    format!("line {line} was changed after it was kept: it does not fit its checksum")
 }
 
 /// The first field in which two computations differ.
@@ -227,9 +253,12 @@ mod tests {
         let other = json!({"command": "basin", "parameters": {"v": 5.0}});
         let refused = || Journal::<Vec<u8>>::open(Some(&result), &other, true).unwrap_err().to_string();
         assert!(refused().contains("v was 4.0, now it is 5.0"), "{}", refused());
-        for (content, reason) in
-            [("", "it is empty"), ("null\n", "its first line"), ("{\"comm", "it is empty")]
-        {
+        for (content, reason) in [
+            ("", "it is empty"),
+            ("null\n", "its first line"),
+            ("{\"comm", "it is empty"),
+            ("{\"command\":\"basin\"}\n[0,[1]]\n", "line 1 has no checksum"),
+        ] {
             std::fs::write(&path, content).unwrap();
             assert!(refused().contains(reason), "{content}: {}", refused());
         }
@@ -241,5 +270,48 @@ mod tests {
         assert_eq!(read::<Vec<u8>>(&path, &computation).unwrap()[&1], [9]);
         journal.finish().unwrap();
         assert!(!path.exists());
+    }
+
+    #[test]
+    fn whatever_is_changed_in_a_journal_is_refused_with_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let result = folder.path().join("a.json");
+        let computation = json!({"command": "margin", "parameters": {"v": 4.0}});
+        let never = AtomicBool::new(false);
+        let journal = Journal::<f64>::open(Some(&result), &computation, false).unwrap();
+        for part in 0..3 {
+            journal.keep(part, &(0.441_323_28 + part as f64), &never);
+        }
+        let path = beside(&result);
+        let kept = std::fs::read(&path).unwrap();
+        let mut tried = 0;
+        for place in 0..kept.len() {
+            // Another digit, a letter, and a byte that is no text.
+            for other in [b'0' + (kept[place].wrapping_sub(b'0').wrapping_add(1)) % 10, b'e', 0xff] {
+                let mut altered = kept.clone();
+                altered[place] = other;
+                // The last line without its end is a torn one.
+                if altered == kept || place + 1 == kept.len() {
+                    continue;
+                }
+                std::fs::write(&path, &altered).unwrap();
+                let line = 1 + kept[..place].iter().filter(|byte| **byte == b'\n').count();
+                let error = Journal::<f64>::open(Some(&result), &computation, true).unwrap_err().to_string();
+                let line = if line == 1 { "line".to_owned() } else { format!("line {line}") };
+                assert!(error.contains("a.json.journal") && error.contains("delete"), "{error}");
+                assert!(error.contains(&line), "{place} {other}: no {line} in {error}");
+                tried += 1;
+            }
+        }
+        assert!(tried > 2 * kept.len(), "{tried}");
+        // A part of the journal of another computation.
+        let other = folder.path().join("b.json");
+        let at_5 = json!({"command": "margin", "parameters": {"v": 5.0}});
+        Journal::<f64>::open(Some(&other), &at_5, false).unwrap().keep(0, &0.5, &never);
+        let foreign = std::fs::read_to_string(beside(&other)).unwrap();
+        let mixed = [&kept[..], foreign.lines().nth(1).unwrap().as_bytes(), b"\n"].concat();
+        std::fs::write(&path, mixed).unwrap();
+        let error = Journal::<f64>::open(Some(&result), &computation, true).unwrap_err().to_string();
+        assert!(error.contains("line 5 was changed"), "{error}");
     }
 }
