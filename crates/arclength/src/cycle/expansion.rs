@@ -25,7 +25,7 @@ pub(super) struct Expansion {
 
 impl Expansion {
     /// The expansion at a Hopf point; `None` where its normal form is not known or degenerate.
-    pub fn at(
+    pub(super) fn at(
         hopf: &HopfStart<'_>,
         field: ErasedField<'_>,
         parameters: &[f64],

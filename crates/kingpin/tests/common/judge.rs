@@ -103,7 +103,7 @@ fn sine_cosine(angle: Double) -> [Double; 2] {
 
 /// What the judge says.
 #[derive(Clone, Copy, Debug)]
-pub struct Judgement {
+pub(crate) struct Judgement {
     /// Whether the motion is stable, that of the lateral motion in rectilinear towing without longitudinal damping; `None` where even
     /// the judge cannot tell.
     pub stable: Option<bool>,
@@ -161,7 +161,7 @@ fn linearise(parameter: impl Fn(Key) -> Double, state: &Vector) -> (Vector, [Vec
 }
 
 /// Judges a motion; `None` for lateral elasticity only, and where Newton's method does not settle.
-pub fn of(motion: &UniformMotion) -> Option<Judgement> {
+pub(crate) fn of(motion: &UniformMotion) -> Option<Judgement> {
     let wheel = motion.wheel();
     if wheel.has_lateral_elasticity_only() {
         return None;
