@@ -58,6 +58,15 @@ pub fn tests<'a>(named: impl IntoIterator<Item = (&'a str, f64)>) -> NamedNumber
     NamedNumbers(finite.map(|(name, value)| (name.to_owned(), value)).collect())
 }
 
+/// Number of digits of a value that hold, given its error.
+pub fn certain_digits(value: f64, error: f64) -> usize {
+    const ALL: usize = 17;
+    if value == 0.0 || error == 0.0 || !error.is_finite() {
+        return ALL;
+    }
+    ((value / error).abs().log10().floor().max(1.0) as usize).min(ALL)
+}
+
 /// Stability as a word.
 pub fn stability(stable: Option<bool>, bifurcation: bool) -> &'static str {
     match stable {

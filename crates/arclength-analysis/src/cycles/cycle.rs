@@ -1,6 +1,6 @@
 //! A limit cycle in a result, of any model.
 
-use crate::branch::{pairs, tests};
+use crate::branch::{certain_digits, pairs, tests};
 use crate::normal_form;
 use arclength::cycle::{Branching, CyclePoint, Orbit};
 use kingpin_report::NamedNumbers;
@@ -91,12 +91,7 @@ impl CycleResult {
 
     /// Number of digits of the parameter value that hold.
     pub fn certain_digits(&self) -> usize {
-        match self.value_error {
-            Some(error) if error > 0.0 && self.value != 0.0 => {
-                (self.value.abs() / error).log10().floor().clamp(1.0, 17.0) as usize
-            }
-            _ => 17,
-        }
+        certain_digits(self.value, self.value_error.unwrap_or(0.0))
     }
 
     /// What its normal form says.

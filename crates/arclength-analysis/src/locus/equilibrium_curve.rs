@@ -1,7 +1,7 @@
 //! A curve of special equilibria in two parameters, of any model.
 
 use super::quantities::Quantities;
-use crate::branch::{Origin, pairs, shortened, tests};
+use crate::branch::{Origin, certain_digits, pairs, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::labels;
@@ -170,7 +170,11 @@ impl EquilibriumCurve {
         let mut table = Table::new(headings.chain(monitors.iter().copied()).chain([""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into()];
-            cells.extend(point.values.map(|value| Cell::Digits(value, DIGITS)));
+            let errors = point.special.as_ref().map_or([0.0; 2], |special| special.location_error);
+            let values = point.values.into_iter().zip(errors);
+            cells.extend(
+                values.map(|(value, error)| Cell::Digits(value, certain_digits(value, error).min(DIGITS))),
+            );
             cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
             if hopf {
                 cells.extend([point.frequency, point.first_lyapunov].map(Cell::from));

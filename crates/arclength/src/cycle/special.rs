@@ -61,13 +61,7 @@ pub(super) fn locate(
     }
     match newton(curve, defining, [before, after], rank)? {
         // The defining system may have a solution where the mesh does not resolve the multipliers: they have to agree.
-        Some(located)
-            if !is_critical(&located.solution.point.floquet, defining)
-                && !crosses([before, after].map(|node| &node.point.floquet), defining)
-                && (defining != Kind::Fold || !is_extreme(&located.solution, [before, after])) =>
-        {
-            Ok(Location::Missed)
-        }
+        Some(located) if !is_critical(&located.solution.point.floquet, defining) => Ok(Location::Missed),
         Some(located) => Ok(Location::At(describe(curve, located, defining)?)),
         None if defining == Kind::BranchPoint
             && along(curve, before, &after.unknown) > curve.settings.shortest_jump =>
@@ -91,29 +85,6 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
         // Next to a resonance two real ones may be a pair by rounding.
         (multiplier.is_real() == real || away < CRITICAL) && multiplier.log_modulus.abs().max(away) < CRITICAL
     })
-}
-
-/// Whether the parameter has an extreme value at a solution between two others. In the plane that is no witness, since the
-/// multiplier is known better than the parameter.
-fn is_extreme(solution: &Node, ends: [&Node; 2]) -> bool {
-    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
-    let [one, other] = ends.map(|end| value(solution) - value(end));
-    one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1
-}
-
-/// Whether the multipliers at both ends are resolved and one of the kind has crossed the circle between them. It may do so within
-/// the last digits of the parameter, next to homoclinic orbits for instance.
-fn crosses(ends: [&Floquet; 2], kind: Kind) -> bool {
-    let outside = |floquet: &Floquet| {
-        let outside = floquet.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0);
-        let counted = outside.filter(|multiplier| match kind {
-            Kind::Fold | Kind::BranchPoint | Kind::Cycle => multiplier.argument == 0.0,
-            Kind::Doubling => multiplier.argument == PI,
-            Kind::Torus => !multiplier.is_real(),
-        });
-        counted.count()
-    };
-    ends.iter().all(|floquet| !floquet.is_contradictory()) && outside(ends[0]) != outside(ends[1])
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.

@@ -85,6 +85,9 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     // worst: its slope along the bracket gives the error.
     let end = near.unknown.len() - 2;
     let part = LAST_BRACKET.max(smallest / ends.max(f64::MIN_POSITIVE));
+    // Where Newton's method fails the point is degenerate: its defining system has a double zero there at least, known to the
+    // root, and so has the curve on which it lies.
+    let part = if by_secant { part } else { part.powf(DEGENERATE) };
     let error = [0, 1].map(|index| {
         let change = (after.unknown[end + index] - before.unknown[end + index]).abs();
         (part * change).max(f64::EPSILON * near.unknown[end + index].abs())
@@ -98,6 +101,9 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     }
     Ok(Some(complete(curve, near, unknown, error, kind, by_secant)?))
 }
+
+/// Power of the part of a bracket that is left of it at a degenerate point.
+const DEGENERATE: f64 = 0.25;
 
 /// A solution close to the zero of a test function.
 fn near_zero<'a, K: LocusKind<'a>>(

@@ -41,6 +41,9 @@ pub(super) fn coefficients(
     }
 }
 
+/// Product of null vectors, as part of the size of its terms, below which zero is a double eigenvalue.
+const DOUBLE: f64 = 1e-6;
+
 fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -110,6 +113,11 @@ impl Singular {
 fn cusp(forms: &MultilinearForms<'_>, scales: &[f64]) -> Option<f64> {
     let singular = Singular::of(forms, scales)?;
     let q = &singular.right;
+    // Where zero is a double eigenvalue the coefficient does not exist; the size of the terms does not depend on units.
+    let size: f64 = singular.left.iter().zip(q).map(|(p, q)| (p * q).abs()).sum();
+    if inner(&singular.left, q).abs() < DOUBLE * size {
+        return None;
+    }
     let square: Vec<f64> = forms.real(&[q, q]).iter().map(|entry| -entry).collect();
     let second = singular.solve(&square);
     let cubic = inner(&singular.left, &forms.real(&[q, q, q]));

@@ -1,0 +1,99 @@
+//! Starts that were refused once, and equilibria and families that were taken for something else.
+
+use crate::found_by_users::{folder, number, points};
+use crate::labelled;
+
+fn states(model: &str, along: &str, rest: &str) -> serde_json::Value {
+    folder(model).json(&format!("equilibria model.ode --along {along} {rest}"))
+}
+
+#[test]
+fn a_stiff_equilibrium_is_no_branch_point() {
+    let stiff = "par p=1,k=1e9\ninit x=1,y=1\nx'=k*(p-x)\ny'=x-y\ndone\n";
+    for k in ["2e8", "1e9", "1e12"] {
+        let found = states(stiff, "p=0.5:2", &format!("-s k={k}"));
+        assert!(points(&found).iter().all(|point| point["stable"] == true), "k = {k}");
+    }
+}
+
+#[test]
+fn conserved_totals_are_named_and_kept() {
+    let enzyme = "par k1=1,k2=1,k3=1,k4=0.5\ninit e=1,s=1,c=0,p=0\ne'=-k1*e*s+(k2+k3)*c\ns'=-k1*e*s+k2*c+k4*p\n\
+                  c'=k1*e*s-(k2+k3)*c\np'=k3*c-k4*p\ndone\n";
+    let found = states(enzyme, "k1=0.1:10", "--at 1");
+    let totals: Vec<&str> =
+        found["conserved"].as_array().unwrap().iter().map(|kept| kept["total"].as_str().unwrap()).collect();
+    assert_eq!(totals, ["e + c", "s + c + p"]);
+    let at = &labelled(&found, "AT1")["state"];
+    let [e, s, c, p] = ["e", "s", "c", "p"].map(|name| number(&at[name]));
+    assert!((e + c - 1.0).abs() < 1e-12 && (s + c + p - 1.0).abs() < 1e-12);
+    assert!((e * s - 2.0 * c).abs() < 1e-12);
+    assert_eq!(labelled(&found, "AT1")["stable"], true);
+}
+
+#[test]
+fn the_flow_leads_to_an_equilibrium_that_newtons_method_misses() {
+    let morris_lecar = "par i=80\nminf(v)=.5*(1+tanh((v+1.2)/18))\nwinf(v)=.5*(1+tanh((v-12)/17.4))\n\
+                        v'=(i-2*(v+60)-8*w*(v+84)-4*minf(v)*(v-120))/20\n\
+                        w'=.0666666667*cosh((v-12)/34.8)*(winf(v)-w)\ninit v=-24.22, w=.305\ndone\n";
+    let found = states(morris_lecar, "i=0:200", "");
+    assert!(found["from"]["how"].as_str().unwrap().contains("flow"), "{}", found["from"]);
+    assert!((number(&labelled(&found, "HB1")["value"]) - 97.787888949).abs() < 1e-6);
+}
+
+#[test]
+fn the_time_can_be_frozen() {
+    let forced = "par a=1,w=2\nx'=a-x+cos(w*t)\ndone\n";
+    let folder = folder(forced);
+    let refused = folder.run("equilibria model.ode --along a=0:2");
+    assert!(refused.exit_code == 2 && refused.messages.contains("--freeze t=0"), "{}", refused.messages);
+    folder.succeed("equilibria model.ode --along a=0:2 --freeze t=0 --at 1 -q -o frozen.json");
+    let frozen = folder.json("equilibria --from frozen.json:AT1 --along a=0:2");
+    // The frozen time is kept with the model: x = a + cos(0).
+    assert!((number(&labelled(&frozen, "EP2")["state"]["x"]) - 3.0).abs() < 1e-12);
+    let wrong = folder.run("equilibria model.ode --along a=0:2 --freeze a=0");
+    assert!(wrong.exit_code == 2 && wrong.messages.contains("t=VALUE"), "{}", wrong.messages);
+}
+
+#[test]
+fn a_quotient_that_is_no_singularity_has_no_folds() {
+    let found = states("par p=0.5\ninit x=-1\nx'=p-x/(1-exp(-x))\ndone\n", "p=0.5:2", "-s p=1 --at 1");
+    assert!(points(&found).iter().all(|point| {
+        point["label"].as_str().is_none_or(|label| label.starts_with("EP") || label.starts_with("AT"))
+    }));
+    // x/(1 - exp(-x)) = 1 at x = 0, with slope 1/2.
+    let at = labelled(&found, "AT1");
+    assert!(number(&at["state"]["x"]).abs() < 1e-14);
+    assert!((number(&at["eigenvalues"][0][0]) + 0.5).abs() < 1e-13);
+}
+
+#[test]
+fn a_relaxation_oscillation_is_a_start() {
+    let folder = folder("par mu=1\ninit x=2,y=0\nx'=y\ny'=mu*(1-x^2)*y-x\ndone\n");
+    for mu in [20.0, 50.0] {
+        folder.succeed(&format!("simulate model.ode -s mu={mu} --duration 1000 -q -o history.json"));
+        let found = folder.json(&format!("cycles --from history.json:END --along mu=10:60 --at {mu}"));
+        let period = number(&labelled(&found, "AT1")["period"]);
+        // Dorodnitsyn (1947), to the order of the first neglected term.
+        let asymptotic =
+            (3.0 - 4_f64.ln()) * mu + 7.01432 * mu.powf(-1.0 / 3.0) - 22.0 / 9.0 * mu.ln() / mu + 0.0087 / mu;
+        assert!((period / asymptotic - 1.0).abs() < 2e-3, "mu = {mu}: {period}, {asymptotic}");
+        assert!(points(&found).iter().all(|point| point["stable"] == true));
+    }
+}
+
+#[test]
+fn a_conserved_quantity_makes_a_neutral_family() {
+    let folder = folder("par L=0.1\ninit x=1,y=1\nx'=x*(1-y)-L*x*(x-1)\ny'=y*(x-1)\ndone\n");
+    folder.succeed("equilibria model.ode --along L=-1:1 -q -o equilibria.json");
+    let found = folder.json("cycles --from equilibria.json:HB1 --along L=-1:1 --steps 15");
+    let cycles = points(&found);
+    assert!(cycles.iter().all(|cycle| cycle["neutral"] == true && cycle["stable"].is_null()));
+    assert!(cycles.iter().all(|cycle| number(&cycle["value"]).abs() < 1e-9));
+    // Lotka and Volterra's invariant x + y - ln(x y) is the same at the largest and the smallest x, where y = 1.
+    for cycle in cycles {
+        let [largest, smallest] = ["max", "min"].map(|end| number(&cycle[end]["x"]));
+        let [one, other] = [largest, smallest].map(|x| x - x.ln());
+        assert!((one - other).abs() < 1e-6 * one, "{largest} {smallest}");
+    }
+}
