@@ -231,8 +231,10 @@ impl Level {
         point.unstable_multipliers = outside;
         let mut decided = self.told.multipliers.iter().zip(before).zip(errors).map(|((now, then), error)| {
             let [now, then] = [now.log_modulus, then.log_modulus];
-            // One that moves away from the circle as the mesh gets finer is on its side of it.
-            now.abs() > MARGIN * error || (now * then > 0.0 && now.abs() >= then.abs())
+            // One that moves away from the circle as the mesh gets finer is on its side of it, and so is one that dies out.
+            now.abs() > MARGIN * error
+                || (now * then > 0.0 && now.abs() >= then.abs())
+                || now.max(then) < LOGARITHM
         });
         point.stable = (certain && !point.neutral && decided.all(|decided| decided)).then_some(outside == 0);
         let mut all = errors.to_vec();
