@@ -1,7 +1,7 @@
 //! Ctrl-C and the signal to terminate, from the first line of a program to its last.
 //!
-//! A signal stops an analysis under way, which then says what there is of its result. At any other time, and when it comes again, it
-//! ends the program at once. In no case is an unfinished file left.
+//! A signal stops an analysis under way, which then says what there is of its result; it lets a result be written that is written
+//! within a second. At any other time, and when it comes again, it ends the program at once. In no case is an unfinished file left.
 
 use crate::failure::Failure;
 use crate::signals::{self, Signal};
@@ -9,6 +9,10 @@ use crate::streams::say;
 use kingpin_report::abandon_unfinished;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+/// Time after which an analysis that a signal has not stopped yet is worth a word, and a result that is not written yet is given up.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What the program is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +25,7 @@ enum Stage {
     Delivery,
 }
 
-/// What the program is at, and the first signal that came.
+/// What the program is at, and the last signal that came.
 static STATE: Mutex<(Stage, Option<Signal>)> = Mutex::new((Stage::Preparation, None));
 /// The flag at which the analysis looks.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -73,15 +77,28 @@ fn enter(stage: Stage) {
     STATE.lock().unwrap_or_else(PoisonError::into_inner).0 = stage;
 }
 
+/// Says what can be done where an analysis does not stop soon.
+fn tell_patience() {
+    std::thread::sleep(PATIENCE);
+    if STATE.lock().unwrap_or_else(PoisonError::into_inner).0 == Stage::Analysis {
+        say("note", "it stops after the step that it is at; once more ends it at once, without a result");
+    }
+}
+
 /// What happens when a signal has come, on a thread of its own.
 fn received(signal: Signal) {
-    let stage = {
+    let (stage, is_first) = {
         let mut state = STATE.lock().unwrap_or_else(PoisonError::into_inner);
-        state.1.get_or_insert(signal);
-        state.0
+        (state.0, state.1.replace(signal).is_none())
     };
-    if stage == Stage::Analysis && !STOP.swap(true, Ordering::Relaxed) {
-        return;
+    match stage {
+        Stage::Analysis if !STOP.swap(true, Ordering::Relaxed) => {
+            std::thread::spawn(tell_patience);
+            return;
+        }
+        // A result that was computed is not thrown away where it is written soon.
+        Stage::Delivery if is_first => std::thread::sleep(PATIENCE),
+        _ => {}
     }
     // The program ends before anything else can be begun.
     let _nothing_is_begun = abandon_unfinished();

@@ -50,7 +50,9 @@ fn signals_end_every_command_soon() {
     use std::time::{Duration, Instant};
     let folder = one_result();
     folder.succeed("cycles --from equilibria.json:HB1 --along alpha=-1.5:1.5 -q -o cycles.json");
-    folder.write("slow.ode", "x'=y\ny'=-x\npar p=1\ninit x=1\n");
+    // So many oscillators that the most steps that are taken take long.
+    let oscillator = |index| format!("x{index}'=y{index}\ny{index}'=-x{index}\ninit x{index}=1\n");
+    folder.write("slow.ode", &(0..300).map(oscillator).collect::<String>());
     let before = files(&folder);
     for (signal, exit_code) in [("-INT", 130), ("-TERM", 143)] {
         for (command, said) in [
@@ -83,6 +85,45 @@ fn signals_end_every_command_soon() {
             assert_eq!(files(&folder), before, "{command}");
         }
     }
+}
+
+/// A step of so large a model takes long: the first signal waits for its end and says so, the second does not.
+#[cfg(unix)]
+#[test]
+fn a_second_signal_ends_a_command_at_once() {
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+    let count = 600;
+    let equation = |index: usize| {
+        let (left, right) = ((index + count - 1) % count, (index + 1) % count);
+        format!("x{index}'=p-x{index}^3+0.1*(x{right}-2*x{index}+x{left})\n")
+    };
+    let model: String = (0..count).map(equation).chain(["par p=1\n".to_owned()]).collect();
+    let folder = Folder::with_text("large.ode", &model);
+    let child = Command::new(env!("CARGO_BIN_EXE_arclength"))
+        .args("equilibria large.ode --along p=0:5 -o a.json".split_whitespace())
+        .current_dir(&folder.0)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let send = || {
+        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        std::thread::sleep(Duration::from_millis(1500));
+    };
+    std::thread::sleep(Duration::from_secs(2));
+    send();
+    let asked = Instant::now();
+    send();
+    let output = child.wait_with_output().unwrap();
+    let messages = String::from_utf8(output.stderr).unwrap();
+    assert!(asked.elapsed() < Duration::from_secs(5), "{:?}", asked.elapsed());
+    assert_eq!(output.status.code(), Some(130), "{messages}");
+    assert!(messages.contains("once more ends it at once"), "{messages}");
+    assert!(messages.contains("no result was written"), "{messages}");
+    assert_eq!(files(&folder), ["large.ode"]);
 }
 
 #[test]

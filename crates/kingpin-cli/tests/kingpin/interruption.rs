@@ -68,10 +68,10 @@ fn long_commands_end_soon_and_write_nothing() {
 #[test]
 fn branches_are_written_as_far_as_they_came() {
     let folder = Folder::new();
-    folder.succeed("hopf --along v=1:12 -q -o hopf.json");
+    folder.succeed("cycles --along v=0.2:20 -s l=0.08 -s r=0.4 -s c_q=0.1 -q -o cycles.json");
     for (signal, exit_code) in SIGNALS {
         let long =
-            "locus --from hopf.json:HB1 --in v=1:12,c_q=0:0.2 --finer 1000 --steps 100000 -o curve.json";
+            "locus --from cycles.json:PD1 --in v=0.2:20,r=0.2:1 --finer 1000 --steps 100000 -o curve.json";
         let child = start(&folder, long);
         std::thread::sleep(UNDER_WAY);
         send(signal, &child);
@@ -82,7 +82,7 @@ fn branches_are_written_as_far_as_they_came() {
         let curve: serde_json::Value =
             serde_json::from_slice(&crate::read(&folder.path("curve.json"))).unwrap();
         assert!(curve["points"].as_array().unwrap().len() > 10);
-        assert_eq!(folder.files(), ["curve.json", "hopf.json"]);
+        assert_eq!(folder.files(), ["curve.json", "cycles.json"]);
         std::fs::remove_file(folder.path("curve.json")).unwrap();
     }
 }
