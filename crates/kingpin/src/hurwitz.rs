@@ -58,11 +58,6 @@ pub fn is_stable(coefficients: &[f64; 5]) -> bool {
     [c1, c3, c5, second, fourth].into_iter().all(|condition| condition > 0.0)
 }
 
-/// Whether all roots of the cubic lie in the open left half-plane.
-pub fn is_stable_cubic(&[c1, c2, c3]: &[f64; 3]) -> bool {
-    c1 > 0.0 && c3 > 0.0 && c1 * c2 > c3
-}
-
 /// The characteristic polynomial at the uniform motion of the plain wheel, the odd coefficients divided by `V0`.
 ///
 /// `yaw_rate_squared` is `omega^2`; the stiffness is `k_q`.
