@@ -34,11 +34,10 @@ pub struct CriticalSpeed {
 }
 
 impl Wheel {
-    /// The smallest towing speed, from 1 mm/s to 10 km/s, at which the uniform motion changes its stability; `None` where no such
-    /// speed is found.
+    /// The smallest towing speed at which the uniform motion changes its stability; `None` where no such speed is found.
     ///
-    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds up to the largest at which the motion exists,
-    /// and at its extrema between them; its first zero is found by bisection.
+    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
+    /// exists, and at its extrema between them; its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
         let radius = self.get(Key::TurningRadius);
         let speed = if radius.is_infinite() {
