@@ -17,8 +17,9 @@ const SPEEDS: usize = 400;
 const TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// Relative distances from a critical speed, one after the other, at which the stability on both sides is compared.
 const SIDES: [f64; 3] = [1e-10, 1e-8, 1e-6];
-/// Growth rate, relative to the largest eigenvalue, that is zero but for rounding.
-const NEUTRAL: f64 = 1e-9;
+/// So many times as far from it the growth rate changes by more than ten times as much, unless it jumps.
+const FARTHER: f64 = 100.0;
+const CONTINUOUS: f64 = 0.1;
 /// Steps of the golden section by which an extremum of the growth rate between three speeds is narrowed down.
 const GOLDEN_STEPS: usize = 60;
 
@@ -34,11 +35,10 @@ pub struct CriticalSpeed {
 }
 
 impl Wheel {
-    /// The smallest towing speed, from 1 mm/s to 10 km/s, at which the uniform motion changes its stability; `None` where no such
-    /// speed is found.
+    /// The smallest towing speed at which the uniform motion changes its stability; `None` where no such speed is found.
     ///
-    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds up to the largest at which the motion exists,
-    /// and at its extrema between them; its first zero is found by bisection.
+    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
+    /// exists, and at its extrema between them; its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
         let radius = self.get(Key::TurningRadius);
         let speed = if radius.is_infinite() {
@@ -62,21 +62,21 @@ impl Wheel {
         self.with(Key::V, speed).ok()?.uniform_motion().ok()?.is_stable()
     }
 
-    /// Whether the growth rate passes through zero at the speed, and does not jump from one uniform motion to another.
-    fn is_neutral_at(&self, speed: f64) -> bool {
-        let motion = self.with(Key::V, speed).ok().and_then(|wheel| wheel.uniform_motion().ok());
-        motion.is_some_and(|motion| {
-            let moduli = motion.eigenvalues().into_iter().map(|eigenvalue| eigenvalue.norm());
-            motion.growth_rate().abs() <= NEUTRAL * moduli.fold(0.0, f64::max)
-        })
-    }
-
-    /// Whether the uniform motion is neutral at the speed, and certain to be stable on one side of it and unstable on the other.
+    /// Whether the uniform motion is certain to be stable on one side of the speed and unstable on the other, and its growth rate
+    /// passes through zero there: where it jumps, one uniform motion only takes the place of another.
     fn changes_stability_at(&self, speed: f64) -> bool {
-        let sides =
-            |part: f64| self.is_stable_at(speed * (1.0 - part)).zip(self.is_stable_at(speed * (1.0 + part)));
-        self.is_neutral_at(speed)
-            && SIDES.into_iter().find_map(sides).is_some_and(|(below, above)| below != above)
+        let sides = |part: f64| {
+            let [below, above] = [1.0 - part, 1.0 + part].map(|factor| self.is_stable_at(speed * factor));
+            Some((part, below? != above?))
+        };
+        let change = |part: f64| {
+            let [below, above] = [1.0 - part, 1.0 + part].map(|factor| self.growth_rate_at(speed * factor));
+            Some((above? - below?).abs())
+        };
+        SIDES.into_iter().find_map(sides).is_some_and(|(part, differs)| {
+            let changes = change(part).zip(change(FARTHER * part));
+            differs && changes.is_some_and(|(near, far)| near < CONTINUOUS * far)
+        })
     }
 
     /// In rectilinear towing, the positive roots of the Hopf condition of the lateral motion, which is quadratic in the speed,

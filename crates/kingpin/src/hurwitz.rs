@@ -51,18 +51,6 @@ pub(crate) fn surely<const S: usize, const N: usize>(
     sufficient.iter().all(|condition| condition.is_positive()).then_some(true)
 }
 
-/// Whether all roots of the quintic lie in the open left half-plane.
-pub fn is_stable(coefficients: &[f64; 5]) -> bool {
-    let [c1, _, c3, _, c5] = *coefficients;
-    let [second, fourth] = determinants(*coefficients);
-    [c1, c3, c5, second, fourth].into_iter().all(|condition| condition > 0.0)
-}
-
-/// Whether all roots of the cubic lie in the open left half-plane.
-pub fn is_stable_cubic(&[c1, c2, c3]: &[f64; 3]) -> bool {
-    c1 > 0.0 && c3 > 0.0 && c1 * c2 > c3
-}
-
 /// The characteristic polynomial at the uniform motion of the plain wheel, the odd coefficients divided by `V0`.
 ///
 /// `yaw_rate_squared` is `omega^2`; the stiffness is `k_q`.
@@ -123,9 +111,11 @@ mod tests {
             }
             [1, 2, 3, 4, 5].map(|index: usize| coefficients[index])
         };
-        assert!(is_stable(&product(1.0)));
-        assert!(!is_stable(&product(-0.01)));
+        let stable = |coefficients: [f64; 5]| is_surely_stable(&coefficients.map(Bounded::read));
+        assert_eq!(stable(product(1.0)), Some(true));
+        assert_eq!(stable(product(-0.01)), Some(false));
         assert!(determinants(product(0.0))[1].abs() < 1e-9);
-        assert!(!is_stable(&[5.0, 10.0, 10.0, 5.0, -1.0]));
+        assert_eq!(stable([5.0, 10.0, 10.0, 5.0, -1.0]), Some(false));
+        assert_eq!(stable(product(1e-16)), None);
     }
 }

@@ -31,7 +31,7 @@ pub mod contact;
 mod critical_speed;
 pub mod ensemble;
 pub mod error;
-pub mod hurwitz;
+mod hurwitz;
 mod keys;
 pub mod lateral;
 pub mod linear_stability;

@@ -29,6 +29,9 @@ const NEWTON_STEPS: usize = 20;
 /// The homotopy in `k_u` gives up when its step, as a part of the way, falls below this.
 const SHORTEST_HOMOTOPY_STEP: f64 = 1e-6;
 
+/// Largest change of the caster angle in rad in a step of the homotopy.
+const LARGEST_TURN: f64 = 0.2;
+
 /// The uniform motion of a wheel, and what follows from it.
 ///
 /// ```
@@ -150,7 +153,12 @@ impl Wheel {
             let next = f64::min(part + step, 1.0);
             let mut wheel = *self;
             wheel.set_value(Key::KU, if next < 1.0 { stiffness_at(next) } else { target }).ok();
-            match newton(&wheel, &state) {
+            // A long way to the next motion leads to another one, with the caster turned round or with many turns of its spring.
+            let near = |found: [f64; 5]| {
+                let is_near = (found[2] - state[2]).abs() < LARGEST_TURN;
+                if is_near { Ok(found) } else { Err(largest(&derivative(&wheel, &state))) }
+            };
+            match newton(&wheel, &state).and_then(near) {
                 Ok(found) => (state, part, step) = (found, next, 2.0 * step),
                 Err(residual) if step < SHORTEST_HOMOTOPY_STEP => {
                     let longitudinal_stiffness = stiffness_at(part);
