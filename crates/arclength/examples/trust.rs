@@ -238,6 +238,9 @@ fn hopf_points(random: &mut Random, count: usize) -> Counts {
     counts
 }
 
+/// Draws so many systems of a kind and judges them.
+type Judge = fn(&mut Random, usize) -> Counts;
+
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1).map(|argument| argument.parse::<u64>());
     let (Ok(count), Ok(seed)) = (arguments.next().unwrap_or(Ok(8)), arguments.next().unwrap_or(Ok(1))) else {
@@ -247,7 +250,7 @@ fn main() -> ExitCode {
     println!("{count} systems of every kind, seed {seed}");
     println!("kind                      judged  wrong  undecided  refused   median      95%");
     let mut random = Random(seed);
-    let kinds: [(&str, fn(&mut Random, usize) -> Counts); 3] = [
+    let kinds: [(&str, Judge); 3] = [
         ("cycles, stretched circle", circles),
         ("cycles, state near zero", logarithms),
         ("branches with Hopf points", hopf_points),
