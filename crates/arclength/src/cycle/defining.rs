@@ -10,6 +10,7 @@ use super::limit_cycle::phase_integrand;
 use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar, JacobianScalar};
+use crate::linear::multiplier::Multiplier;
 use crate::parameters::with_parameters;
 
 /// Which special cycle a defining system is for.
@@ -39,6 +40,16 @@ impl Kind {
             Self::BranchPoint => 2,
             Self::Torus => 3,
         }
+    }
+
+    /// The real multiplier that a cycle of this kind has.
+    pub(crate) fn critical(self) -> Option<Multiplier> {
+        let argument = match self {
+            Self::Fold | Self::BranchPoint => 0.0,
+            Self::Doubling => std::f64::consts::PI,
+            Self::Torus | Self::Cycle => return None,
+        };
+        Some(Multiplier { log_modulus: 0.0, argument })
     }
 
     /// Number of real eigenfunctions.

@@ -103,6 +103,21 @@ impl Floquet {
         (product, undecided)
     }
 
+    /// The multipliers at a special cycle, one of which is known: of two the integral of the divergence gives the other.
+    pub(crate) fn with_critical(&self, critical: Multiplier) -> Option<Self> {
+        let nontrivial = match self.nontrivial.len() {
+            1 => vec![critical],
+            2 => {
+                // Their product is positive.
+                let other = Multiplier { log_modulus: self.divergence, argument: critical.argument };
+                let is_larger = other.log_modulus > critical.log_modulus;
+                if is_larger { vec![other, critical] } else { vec![critical, other] }
+            }
+            _ => return None,
+        };
+        Some(Self { nontrivial, ..self.clone() })
+    }
+
     fn margin(&self) -> f64 {
         self.trivial_error.max(f64::EPSILON)
     }

@@ -61,7 +61,18 @@ pub(super) fn locate(
     }
     match newton(curve, defining, [before, after], rank)? {
         // The defining system may have a solution where the mesh does not resolve the multipliers: they have to agree.
-        Some(located) if !is_critical(&located.solution.point.floquet, defining) => Ok(Location::Missed),
+        Some(mut located) if !is_critical(&located.solution.point.floquet, defining) => {
+            let known = is_passed(&located.solution, [before, after], defining)
+                .then(|| located.solution.point.floquet.with_critical(defining.critical()?))
+                .flatten();
+            match known {
+                Some(floquet) => {
+                    located.solution.point.floquet = floquet;
+                    Ok(Location::At(describe(curve, located, defining)?))
+                }
+                None => Ok(Location::Missed),
+            }
+        }
         Some(located) => Ok(Location::At(describe(curve, located, defining)?)),
         None if defining == Kind::BranchPoint
             && along(curve, before, &after.unknown) > curve.settings.shortest_jump =>
@@ -85,6 +96,23 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
         // Next to a resonance two real ones may be a pair by rounding.
         (multiplier.is_real() == real || away < CRITICAL) && multiplier.log_modulus.abs().max(away) < CRITICAL
     })
+}
+
+/// Whether something else than the multipliers at the point itself shows that it is passed between two others: next to homoclinic
+/// orbits multipliers change by orders of magnitude within the last digits of the parameter. Multipliers of the kind have crossed the circle
+/// between both ends, or the parameter has an extreme value.
+fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
+    let outside = |node: &Node| {
+        let floquet = &node.point.floquet;
+        let argument = kind.critical().map(|critical| critical.argument);
+        let outside = floquet.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0);
+        let count = outside.filter(|multiplier| Some(multiplier.argument) == argument).count();
+        (!floquet.is_contradictory()).then_some(count)
+    };
+    let crosses = matches!(ends.map(outside), [Some(one), Some(other)] if one != other);
+    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
+    let [one, other] = ends.map(|end| value(solution) - value(end));
+    crosses || (kind == Kind::Fold && one * other >= 0.0)
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.

@@ -49,17 +49,18 @@ const MARGIN: f64 = 0.5;
 ///
 /// ```
 /// use arclength::{Scalar, VectorField, equilibrium::{FoundBy, seek_equilibrium}};
-/// /// Newton's method does not leave the local extremum of the first equation.
-/// struct Hump;
-/// impl VectorField for Hump {
+/// struct Decay;
+/// impl VectorField for Decay {
 ///     fn state_names(&self) -> Vec<String> { vec!["x".into()] }
-///     fn parameter_names(&self) -> Vec<String> { vec![] }
-///     fn evaluate<T: Scalar>(&self, x: &[T], _: &[T], derivative: &mut [T]) {
-///         derivative[0] = (x[0] * x[0] - 1.0).powi(2) + 0.1 - x[0] * 0.01;
+///     fn parameter_names(&self) -> Vec<String> { vec!["p".into()] }
+///     fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], derivative: &mut [T]) {
+///         derivative[0] = p[0] - x[0] * x[0] * x[0];
 ///     }
 /// }
-/// let found = seek_equilibrium(&Hump, &[-1.0], &[]);
-/// assert!(found.is_ok_and(|found| found.by != FoundBy::Newton));
+/// let found = seek_equilibrium(&Decay, &[3.0], &[8.0])?;
+/// assert_eq!(found.by, FoundBy::Newton);
+/// assert!((found.state[0] - 2.0).abs() < 1e-15);
+/// # Ok::<(), arclength::Error>(())
 /// ```
 ///
 /// # Errors
