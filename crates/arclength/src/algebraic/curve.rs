@@ -4,7 +4,7 @@ use super::fold::fold_near;
 use super::{AlgebraicProblem, DenseSystem};
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
-use crate::continuation::{Adaptation, Curve, Settings, Solution, locate_by_defining_system};
+use crate::continuation::{Adaptation, Curve, Discretised, Settings, Solution, locate_by_defining_system};
 use crate::error::Error;
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -140,26 +140,22 @@ impl<'a, P: AlgebraicProblem> AlgebraicCurve<'a, P> {
     }
 }
 
+impl<P: AlgebraicProblem> Discretised for AlgebraicCurve<'_, P> {
+    type System = DenseSystem<P>;
+
+    fn system(&self) -> &Self::System {
+        &self.system
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.system
+    }
+}
+
 impl<P: AlgebraicProblem> Curve for AlgebraicCurve<'_, P> {
     type Point = AlgebraicPoint;
     type Kind = SpecialKind;
     type Reason = Infallible;
-
-    fn unknowns(&self) -> usize {
-        self.system.problem.unknowns()
-    }
-
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.system.residual(unknown, residual);
-    }
-
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.system.factorize(unknown, border, residual)
-    }
-
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.system.solve(right_hand_side);
-    }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.system.apply_metric(vector, image);

@@ -1,7 +1,7 @@
 //! The linear algebra that a curve of solutions of an algebraic problem asks for.
 
 use super::{AlgebraicEquations, Differentiator, ScaledLu};
-use crate::continuation::Solution;
+use crate::continuation::{Equations, Solution};
 use crate::error::Error;
 
 /// A problem with one unknown more than equations, the scales of its unknowns, and memory.
@@ -33,22 +33,6 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
         }
     }
 
-    /// As [`Curve::residual`](crate::continuation::Curve::residual).
-    pub fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        let equations = self.problem.equations();
-        self.problem.evaluate(unknown, &mut residual[..equations]);
-    }
-
-    /// As [`Curve::factorize`](crate::continuation::Curve::factorize).
-    pub fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        let n = unknown.len();
-        self.differentiator.jacobian(&self.problem, unknown, residual, &mut self.matrix, n);
-        for (column, &entry) in border.iter().enumerate() {
-            self.matrix[n - 1 + n * column] = entry;
-        }
-        self.lu.factorize(n, &self.matrix, &self.scales)
-    }
-
     /// Evaluates the Jacobian without factorising it; the border is left as it was.
     pub fn linearize(&mut self, unknown: &[f64], residual: &mut [f64]) {
         let n = unknown.len();
@@ -58,11 +42,6 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
     /// Modulus of the determinant of the last factorised matrix after scaling of rows and columns.
     pub fn determinant_size(&self) -> f64 {
         self.lu.determinant_size()
-    }
-
-    /// As [`Curve::solve`](crate::continuation::Curve::solve).
-    pub fn solve(&self, vector: &mut [f64]) {
-        self.lu.solve(vector);
     }
 
     /// As [`Curve::apply_metric`](crate::continuation::Curve::apply_metric).
@@ -107,6 +86,30 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
             tangent.iter_mut().for_each(|entry| *entry /= length);
         }
         Ok(tangent)
+    }
+}
+
+impl<P: AlgebraicEquations> Equations for DenseSystem<P> {
+    fn unknowns(&self) -> usize {
+        self.problem.unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        let equations = self.problem.equations();
+        self.problem.evaluate(unknown, &mut residual[..equations]);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        let n = unknown.len();
+        self.differentiator.jacobian(&self.problem, unknown, residual, &mut self.matrix, n);
+        for (column, &entry) in border.iter().enumerate() {
+            self.matrix[n - 1 + n * column] = entry;
+        }
+        self.lu.factorize(n, &self.matrix, &self.scales)
+    }
+
+    fn solve(&mut self, vector: &mut [f64]) {
+        self.lu.solve(vector);
     }
 }
 

@@ -9,7 +9,7 @@ use super::problem::BoundaryValueProblem;
 use super::resolution::Resolution;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Location, Reading, TestFunction};
-use crate::continuation::{Adaptation, Curve, Settings, Solution, locate_by_defining_system};
+use crate::continuation::{Adaptation, Curve, Discretised, Settings, Solution, locate_by_defining_system};
 use crate::error::Error;
 use std::borrow::Cow;
 use std::convert::Infallible;
@@ -150,26 +150,22 @@ impl<P: BoundaryValueProblem> BoundaryValueCurve<P> {
     }
 }
 
+impl<P: BoundaryValueProblem> Discretised for BoundaryValueCurve<P> {
+    type System = Collocation<P>;
+
+    fn system(&self) -> &Self::System {
+        &self.collocation
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.collocation
+    }
+}
+
 impl<P: BoundaryValueProblem> Curve for BoundaryValueCurve<P> {
     type Point = BoundaryValuePoint;
     type Kind = SpecialKind;
     type Reason = Infallible;
-
-    fn unknowns(&self) -> usize {
-        self.collocation.unknowns()
-    }
-
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.collocation.residual(unknown, residual);
-    }
-
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.collocation.factorize(unknown, border, residual)
-    }
-
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.collocation.solve(right_hand_side);
-    }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.collocation.apply_metric(&self.sizes, vector, image);

@@ -13,6 +13,7 @@ use super::condensation::Condensation;
 use super::gauss::Gauss;
 use super::polynomials::{Polynomials, combine};
 use super::problem::{BoundaryValueEquations, Reference};
+use crate::continuation::Equations;
 use crate::error::Error;
 
 /// A discretised problem with the factors of its last linearisation.
@@ -307,5 +308,23 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     pub fn set_mesh(&mut self, mesh: Vec<f64>, unknown: &[f64]) {
         self.mesh = mesh;
         self.set_reference(unknown);
+    }
+}
+
+impl<P: BoundaryValueEquations> Equations for Collocation<P> {
+    fn unknowns(&self) -> usize {
+        Self::unknowns(self)
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        Self::residual(self, unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        Self::factorize(self, unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        Self::solve(self, right_hand_side);
     }
 }

@@ -13,7 +13,7 @@
 
 use super::equations::Collocation;
 use super::problem::{BoundaryValueEquations, BoundaryValueProblem, Reference};
-use crate::continuation::{Adaptation, Curve, Settings, correct};
+use crate::continuation::{Adaptation, Curve, Discretised, Settings, correct};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::JacobianScalar;
 use crate::error::Error;
@@ -115,23 +115,23 @@ struct Alone<P> {
     sizes: Vec<f64>,
 }
 
+impl<P: BoundaryValueEquations> Discretised for Alone<P> {
+    type System = Collocation<P>;
+
+    fn system(&self) -> &Self::System {
+        &self.collocation
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.collocation
+    }
+}
+
 impl<P: BoundaryValueEquations> Curve for Alone<P> {
     type Point = ();
     type Kind = Infallible;
     type Reason = Infallible;
 
-    fn unknowns(&self) -> usize {
-        self.collocation.unknowns()
-    }
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.collocation.residual(unknown, residual);
-    }
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.collocation.factorize(unknown, border, residual)
-    }
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.collocation.solve(right_hand_side);
-    }
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.collocation.apply_metric(&self.sizes, vector, image);
     }

@@ -7,18 +7,9 @@ use crate::error::Error;
 use num_complex::Complex64;
 use std::borrow::Cow;
 
-/// A curve of solutions `F(z) = 0`, `F: R^N -> R^(N-1)`, that [`follow`](super::follow) can trace.
-pub trait Curve {
-    /// What is known about a solution beyond its unknowns: test functions, stability.
-    type Point: Clone;
-
-    /// Kinds of special points.
-    type Kind: Copy + PartialEq + std::fmt::Debug + 'static;
-
-    /// Reasons of the problem's own for which a curve ends.
-    type Reason: Reason;
-
-    /// Number of unknowns `N`, one more than the equations. It may change in [`adapt`](Self::adapt).
+/// The equations of a curve, `F(z) = 0`, `F: R^N -> R^(N-1)`, with their linear algebra.
+pub trait Equations {
+    /// Number of unknowns `N`, one more than the equations. It may change in [`Curve::adapt`].
     fn unknowns(&self) -> usize;
 
     /// Writes `F(unknown)` into the first `N - 1` entries of `residual` (length `N`).
@@ -33,6 +24,48 @@ pub trait Curve {
     /// Solves with the matrix of the last [`factorize`](Self::factorize), in place; the last entry
     /// belongs to the border.
     fn solve(&mut self, right_hand_side: &mut [f64]);
+}
+
+/// A curve whose equations are those of a system that it owns.
+pub trait Discretised {
+    /// The system.
+    type System: Equations;
+
+    /// The system.
+    fn system(&self) -> &Self::System;
+
+    /// The system, to be evaluated and factorised.
+    fn system_mut(&mut self) -> &mut Self::System;
+}
+
+impl<C: Discretised> Equations for C {
+    fn unknowns(&self) -> usize {
+        self.system().unknowns()
+    }
+
+    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
+        self.system_mut().residual(unknown, residual);
+    }
+
+    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
+        self.system_mut().factorize(unknown, border, residual)
+    }
+
+    fn solve(&mut self, right_hand_side: &mut [f64]) {
+        self.system_mut().solve(right_hand_side);
+    }
+}
+
+/// A curve of solutions of [`Equations`] that [`follow`](super::follow) can trace.
+pub trait Curve: Equations {
+    /// What is known about a solution beyond its unknowns: test functions, stability.
+    type Point: Clone;
+
+    /// Kinds of special points.
+    type Kind: Copy + PartialEq + std::fmt::Debug + 'static;
+
+    /// Reasons of the problem's own for which a curve ends.
+    type Reason: Reason;
 
     /// Writes `W vector` into `image`, where `W` is the positive definite matrix of the metric.
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]);

@@ -27,7 +27,7 @@ pub(crate) use bracket::Bracket;
 pub use bracket::{locate, locate_by_defining_system};
 pub(crate) use corrector::finish;
 pub use corrector::{Correction, correct};
-pub use curve::{Adaptation, Curve, Ending, EventOf};
+pub use curve::{Adaptation, Curve, Discretised, Ending, Equations, EventOf};
 pub(crate) use follow::exact_start;
 pub use follow::{Followed, FollowedCurve, Observer, Request, follow};
 pub(crate) use metric::{along, distance, norm};

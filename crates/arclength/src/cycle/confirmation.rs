@@ -12,7 +12,7 @@ use super::orbit::Orbit;
 use super::start::Asked;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
-use crate::continuation::{Curve, Settings, Stop, correct};
+use crate::continuation::{Curve, Equations, Settings, Stop, correct};
 use crate::linear::multiplier::Multiplier;
 
 /// Times that the intervals are halved at most.

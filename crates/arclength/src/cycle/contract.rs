@@ -4,13 +4,15 @@ use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
 use super::extrema::ranges;
 use super::floquet::floquet;
+use super::limit_cycle::LimitCycle;
 use super::special;
 use crate::branch::SpecialKind;
+use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::{error_profile, fit_mesh};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::events::{Event, Location, Reading, Spectrum, TestFunction};
-use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop};
+use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop};
 use crate::error::{CorrectionFailure, Error};
 use std::borrow::Cow;
 
@@ -51,26 +53,22 @@ const UNBOUNDED_GROWTH: f64 = 1e6;
 /// Difference of the arguments of two pairs of multipliers.
 const DISTINCT: f64 = 1e-6;
 
+impl<'f> Discretised for CycleCurve<'f> {
+    type System = Collocation<LimitCycle<'f>>;
+
+    fn system(&self) -> &Self::System {
+        &self.collocation
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.collocation
+    }
+}
+
 impl Curve for CycleCurve<'_> {
     type Point = CycleInspection;
     type Kind = SpecialKind;
     type Reason = CycleEnd;
-
-    fn unknowns(&self) -> usize {
-        self.collocation.unknowns()
-    }
-
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.collocation.residual(unknown, residual);
-    }
-
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.collocation.factorize(unknown, border, residual)
-    }
-
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.collocation.solve(right_hand_side);
-    }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         let end = vector.len() - 2;

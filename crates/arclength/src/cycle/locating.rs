@@ -11,7 +11,7 @@ use crate::collocation::gauss::Gauss;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::linear_problem::Nodes;
 use crate::collocation::problem::BoundaryValueEquations;
-use crate::continuation::{Adaptation, Curve, Settings, Solution, correct, finish};
+use crate::continuation::{Adaptation, Curve, Discretised, Equations, Settings, Solution, correct, finish};
 use crate::error::Error;
 
 /// A curve made of a defining system, as far as Newton's method needs it.
@@ -68,23 +68,23 @@ impl DefiningCurve<'_> {
     }
 }
 
+impl<'f> Discretised for DefiningCurve<'f> {
+    type System = Collocation<Defining<'f>>;
+
+    fn system(&self) -> &Self::System {
+        &self.collocation
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.collocation
+    }
+}
+
 impl Curve for DefiningCurve<'_> {
     type Point = ();
     type Kind = std::convert::Infallible;
     type Reason = std::convert::Infallible;
 
-    fn unknowns(&self) -> usize {
-        self.collocation.unknowns()
-    }
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.collocation.residual(unknown, residual);
-    }
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.collocation.factorize(unknown, border, residual)
-    }
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.collocation.solve(right_hand_side);
-    }
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.collocation.apply_metric(&self.scales, vector, image);
         let end = vector.len() - self.collocation.problem.scalars();

@@ -16,8 +16,8 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::events::around_start;
 use crate::continuation::{
-    BothWays, Bound, Curve, Followed, Observer, Origin, Request, Settings, Solution, Stop, both_ways,
-    exact_start, follow,
+    BothWays, Bound, Curve, Equations, Followed, Observer, Origin, Request, Settings, Solution, Stop,
+    both_ways, exact_start, follow,
 };
 use crate::equilibrium::HopfPoint;
 use crate::equilibrium::problem::EquilibriumProblem;

@@ -3,10 +3,12 @@
 use super::curve::{EquilibriumCurve, Inspection};
 use super::end::EquilibriumEnd;
 use super::locating;
+use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
+use crate::algebraic::DenseSystem;
 use crate::branch::{SpecialKind, Stability};
 use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
-use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, distance, events};
+use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop, distance, events};
 use crate::error::Error;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -37,26 +39,22 @@ const UNBOUNDED_GROWTH: f64 = 1e6;
 const IDLE: f64 = 1e-13;
 const LONGEST_IDLE_WAY: f64 = 5.0;
 
+impl<'f> Discretised for EquilibriumCurve<'f> {
+    type System = DenseSystem<EquilibriumProblem<'f>>;
+
+    fn system(&self) -> &Self::System {
+        &self.system
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.system
+    }
+}
+
 impl Curve for EquilibriumCurve<'_> {
     type Point = Inspection;
     type Kind = SpecialKind;
     type Reason = EquilibriumEnd;
-
-    fn unknowns(&self) -> usize {
-        self.dimension() + 1
-    }
-
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.system.residual(unknown, residual);
-    }
-
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.system.factorize(unknown, border, residual)
-    }
-
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.system.solve(right_hand_side);
-    }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.system.apply_metric(vector, image);

@@ -3,9 +3,10 @@
 use super::curve::{Inspection, LocusCurve};
 use super::kind::{Linearized, LocusKind};
 use super::locating;
+use crate::algebraic::DenseSystem;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{self, Location, Reading, TestFunction};
-use crate::continuation::{Adaptation, Curve, Ending, Solution, Stop, distance};
+use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop, distance};
 use crate::equilibrium::spectrum::without;
 use crate::error::Error;
 use std::borrow::Cow;
@@ -17,26 +18,22 @@ const UNPERTURBED: f64 = 1e-8;
 /// to another bifurcation eigenvalues are known to the root of rounding only.
 const UNDECIDED: f64 = 1e-7;
 
+impl<'a, K: LocusKind<'a>> Discretised for LocusCurve<'a, K> {
+    type System = DenseSystem<K>;
+
+    fn system(&self) -> &Self::System {
+        &self.system
+    }
+
+    fn system_mut(&mut self) -> &mut Self::System {
+        &mut self.system
+    }
+}
+
 impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
     type Point = Inspection;
     type Kind = SpecialKind;
     type Reason = Infallible;
-
-    fn unknowns(&self) -> usize {
-        self.system.problem.unknowns()
-    }
-
-    fn residual(&mut self, unknown: &[f64], residual: &mut [f64]) {
-        self.system.residual(unknown, residual);
-    }
-
-    fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.system.factorize(unknown, border, residual)
-    }
-
-    fn solve(&mut self, right_hand_side: &mut [f64]) {
-        self.system.solve(right_hand_side);
-    }
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.system.apply_metric(vector, image);

@@ -11,7 +11,7 @@ use crate::parameters::Key;
 use crate::sliding::model::SlipState;
 use arclength::branch::SpecialKind;
 use arclength::continuation::events::{Location, Reading, Spectrum, TestFunction};
-use arclength::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use arclength::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate};
 use arclength::control::Control;
 use arclength::error::Error;
 use arclength::linear::lu;
@@ -269,11 +269,7 @@ impl Refusal {
     }
 }
 
-impl Curve for SlidingCurve<'_> {
-    type Point = CurvePoint;
-    type Kind = SpecialKind;
-    type Reason = Infallible;
-
+impl Equations for SlidingCurve<'_> {
     fn unknowns(&self) -> usize {
         self.map.free().len() + 2
     }
@@ -311,6 +307,12 @@ impl Curve for SlidingCurve<'_> {
         }
         lu::solve(&self.matrix, right_hand_side.len(), &self.pivots, right_hand_side);
     }
+}
+
+impl Curve for SlidingCurve<'_> {
+    type Point = CurvePoint;
+    type Kind = SpecialKind;
+    type Reason = Infallible;
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         image.copy_from_slice(vector);

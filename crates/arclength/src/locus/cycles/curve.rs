@@ -8,7 +8,7 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::{error_profile, fit_mesh};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
-use crate::continuation::{Adaptation, Curve, Ending, Settings, Solution, Stop, locate};
+use crate::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate};
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
 use crate::cycle::extrema::{Range, ranges};
@@ -325,11 +325,7 @@ fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64>
     solution.point.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
 }
 
-impl Curve for CycleLocusCurve<'_> {
-    type Point = Inspection;
-    type Kind = SpecialKind;
-    type Reason = CycleLocusEnd;
-
+impl Equations for CycleLocusCurve<'_> {
     fn unknowns(&self) -> usize {
         self.system.unknowns()
     }
@@ -354,6 +350,12 @@ impl Curve for CycleLocusCurve<'_> {
             Some(hold) => hold.solve(&mut self.system, right_hand_side),
         }
     }
+}
+
+impl Curve for CycleLocusCurve<'_> {
+    type Point = Inspection;
+    type Kind = SpecialKind;
+    type Reason = CycleLocusEnd;
 
     fn apply_metric(&self, vector: &[f64], image: &mut [f64]) {
         self.system.apply_metric(vector, image);

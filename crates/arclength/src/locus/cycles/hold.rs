@@ -5,7 +5,7 @@
 //! scalars, and corrected by what the quantity says along the direction in which only that condition changes.
 
 use super::held::Held;
-use crate::continuation::{Curve, norm};
+use crate::continuation::{Equations, norm};
 use crate::cycle::Orbit;
 use crate::cycle::locating::DefiningCurve;
 
