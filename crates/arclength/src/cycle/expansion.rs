@@ -5,7 +5,7 @@
 //! rate hardly depends on the parameter, what the first order leaves out moves the parameter further than the range of Newton's
 //! method.
 
-use super::switching::HopfStart;
+use super::hopf_start::HopfStart;
 use crate::equilibrium::hopf::{CriticalPair, inner};
 use crate::erased::ErasedField;
 use num_complex::Complex64;

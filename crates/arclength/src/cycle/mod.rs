@@ -12,6 +12,7 @@ mod ending;
 mod expansion;
 pub(crate) mod extrema;
 pub(crate) mod floquet;
+mod hopf_start;
 pub(crate) mod limit_cycle;
 pub(crate) mod locating;
 pub(crate) mod normal_form;

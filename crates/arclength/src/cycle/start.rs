@@ -4,9 +4,10 @@ use super::branch::{CycleBranch, CyclePoint};
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::expansion::Expansion;
+use super::hopf_start::HopfStart;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
-use super::switching::{Branching, Departure, HopfStart};
+use super::switching::{Branching, Departure};
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::branch::{
