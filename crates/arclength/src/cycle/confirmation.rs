@@ -27,6 +27,8 @@ const LOGARITHM: f64 = -18.0;
 /// Part of the change that is left as the error on the finer mesh, where it is not measured: polynomials of degree 3 leave a
 /// sixteenth, others less.
 const LEFT: f64 = 1.0 / 16.0;
+/// A change of a solution from mesh to mesh that is at most this many times the estimate of its error confirms it.
+const AS_ESTIMATED: f64 = 3.0;
 /// Newton's method is at its end where its last step is rounding; its size counts this many times.
 const ROUNDING: f64 = 3.0;
 /// Relative error of a cycle that no finer mesh confirms.
@@ -60,6 +62,8 @@ struct Level {
     sizes: Vec<f64>,
     /// Part of period and extremes that is rounding.
     rounding: f64,
+    /// What the defect says of the error.
+    estimate: f64,
 }
 
 impl Asked<'_> {
@@ -89,6 +93,7 @@ impl Asked<'_> {
         unknown.extend([point.period, point.value]);
         let mut mesh = point.orbit.mesh.clone();
         let mut before = Told::of(point);
+        let mut estimated = point.error_estimate;
         let mut last_change = None;
         for _ in 0..MOST_HALVINGS {
             if 2 * (mesh.len() - 1) > self.resolution.most_intervals {
@@ -102,8 +107,14 @@ impl Asked<'_> {
             };
             let change = level.change_from(&before);
             let errors = level.multiplier_changes(&before.multipliers);
-            let left = last_change.map_or(LEFT, |last: f64| (change / last).clamp(LEFT, 1.0));
-            let error = (change * left).max(ROUNDING * level.rounding).max(LEAST_ERROR);
+            // Where the change is what was estimated the estimate on the finer mesh holds too, else what the change leaves.
+            let error = if change <= AS_ESTIMATED * estimated {
+                level.estimate
+            } else {
+                change * last_change.map_or(LEFT, |last: f64| (change / last).clamp(LEFT, 1.0))
+            };
+            let error = error.max(ROUNDING * level.rounding).max(LEAST_ERROR);
+            estimated = level.estimate;
             level.tell(point, error, &errors, &before.multipliers);
             let counted = errors.iter().zip(&level.told.multipliers);
             let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
@@ -155,6 +166,9 @@ impl Asked<'_> {
         *update.last_mut()? = 0.0;
         curve.solve(&mut update);
         let inspection = curve.inspect(&unknown, &border, 0.0).ok()?;
+        // The border of a parameter that is held stands for a tangent along which nothing else changes.
+        let [fixed, across] = curve.errors(&unknown, &border);
+        let estimate = if neutral { across } else { fixed };
         let extremes: Vec<[f64; 2]> =
             inspection.ranges.iter().map(|range| [range.largest, range.smallest]).collect();
         // A state counts as what it is, or as its amplitude where that is more.
@@ -176,6 +190,7 @@ impl Asked<'_> {
             floquet: inspection.floquet,
             sizes,
             rounding,
+            estimate,
         })
     }
 }

@@ -196,20 +196,31 @@ impl<'a> CycleCurve<'a> {
         if solution.point.turn_is_reversed { -turn } else { turn }
     }
 
-    /// Relative errors of period and states of a cycle at which the collocation was linearised last: of the cycle with the same
-    /// parameter value, and across the tangent.
+    /// Relative errors of a cycle at which the collocation was linearised last: of the period and the extremes of the cycle with
+    /// the same parameter value, and across the tangent of the period and all states at all times.
     pub(super) fn errors(&mut self, unknown: &[f64], tangent: &[f64]) -> [f64; 2] {
         let error = self.global_error.of(&mut self.collocation, unknown);
         let (states, scalars) = error.split_at(error.len() - 2);
         let (along_states, along) = tangent.split_at(tangent.len() - 2);
         let shift = scalars[1] / along[1];
         let period = unknown[unknown.len() - 2].abs();
-        let sizes = || self.amplitudes.iter().cycle().take(states.len()).chain([&period]);
-        let entries = || states.iter().chain(&scalars[..1]).zip(along_states.iter().chain(&along[..1]));
-        let fixed =
-            entries().zip(sizes()).map(|((error, along), size)| ((error - shift * along) / size).abs());
-        let across = entries().zip(sizes()).map(|((error, _), size)| (error / size).abs());
-        [largest(fixed), largest(across)]
+        let sizes = self.amplitudes.iter().cycle().take(states.len()).chain([&period]);
+        let across = states.iter().chain(&scalars[..1]).zip(sizes).map(|(error, size)| (error / size).abs());
+        let across = largest(across);
+        let n = self.amplitudes.len();
+        let nodes = states.len() / n;
+        let mut fixed = largest([((scalars[0] - shift * along[0]) / period).abs()].into_iter());
+        for (component, size) in self.amplitudes.iter().enumerate() {
+            let value = |node: usize| unknown[node * n + component];
+            let by_value = |a: &usize, b: &usize| value(*a).total_cmp(&value(*b));
+            let ends = [(0..nodes).max_by(by_value), (0..nodes).min_by(by_value)];
+            // Around the extreme node, so that a zero of the error there does not count.
+            let around = ends.into_iter().flatten().flat_map(|node| [node + nodes - 1, node, node + 1]);
+            let errors = around.map(|node| (node % nodes) * n + component);
+            let errors = errors.map(|place| ((states[place] - shift * along_states[place]) / size).abs());
+            fixed = fixed.max(largest(errors));
+        }
+        [fixed, across]
     }
 
     /// Estimates the error of a cycle on the mesh as it is.

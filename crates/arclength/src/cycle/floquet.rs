@@ -28,6 +28,9 @@ const DEAD: f64 = -30.0;
 /// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
 const CONTRADICTION: f64 = 0.05;
 
+/// Errors of multipliers over what their product shows of them.
+const CANCELLATION: f64 = 10.0;
+
 /// Floquet multipliers of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Floquet {
@@ -118,8 +121,10 @@ impl Floquet {
         Some(Self { nontrivial, ..self.clone() })
     }
 
+    /// Within this of zero the logarithm of a multiplier may have either sign: errors of the multipliers are of the size of those
+    /// that their product and the trivial one show, and may cancel there in part.
     fn margin(&self) -> f64 {
-        self.trivial_error.max(f64::EPSILON)
+        self.trivial_error.max(CANCELLATION * self.defect()).max(f64::EPSILON)
     }
 
     /// Whether a positive multiplier, or a pair with a positive real part, may be one next to this cycle. In the plane the only one

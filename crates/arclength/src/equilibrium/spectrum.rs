@@ -20,6 +20,8 @@ const SATURATION: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub(crate) struct Spectrum {
     pub eigenvalues: Vec<Complex64>,
+    /// For each the largest modulus in its block of the Jacobian: rounding errors are parts of it.
+    pub sizes: Vec<f64>,
     pub stability: Stability,
     /// Number with positive real part, decided or not.
     pub unstable: usize,
@@ -40,28 +42,33 @@ impl Spectrum {
             .eigenvalues(matrix)
             .map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?
             .to_vec();
-        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let sizes = workspace.sizes().to_vec();
         let unstable = eigenvalues.iter().filter(|value| value.re > 0.0).count();
-        let stability = if eigenvalues.iter().any(|value| value.re.abs() <= UNDECIDED * largest) {
+        let mut sized = eigenvalues.iter().zip(&sizes);
+        let stability = if sized.any(|(value, size)| value.re.abs() <= UNDECIDED * size) {
             Stability::Undecided
         } else if unstable > 0 {
             Stability::Unstable { dimension: unstable }
         } else {
             Stability::Stable
         };
-        let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } = HopfTest::of(&eigenvalues);
+        let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } =
+            HopfTest::of(&eigenvalues, &sizes);
         let hopf_closest = closest.copysign(hopf_test);
-        Ok(Self { eigenvalues, stability, unstable, hopf_test, hopf_closest, hopf_undecided })
+        Ok(Self { eigenvalues, sizes, stability, unstable, hopf_test, hopf_closest, hopf_undecided })
     }
 
     /// What the search for special points compares from solution to solution.
     pub(crate) fn growth(&self) -> events::Spectrum {
-        let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let beyond_rounding = |(value, size): (&Complex64, &f64)| {
+            let real = if value.re.abs() <= UNDECIDED * size { 0.0 } else { value.re };
+            Complex64::new(real, value.im)
+        };
         events::Spectrum {
-            exponents: self.eigenvalues.clone(),
+            exponents: self.eigenvalues.iter().zip(&self.sizes).map(beyond_rounding).collect(),
             unstable: self.unstable,
             decided: self.stability != Stability::Undecided,
-            noise: UNDECIDED * largest,
+            noise: 0.0,
             is_periodic: false,
         }
     }
@@ -88,13 +95,13 @@ pub(crate) struct HopfTest {
 }
 
 impl HopfTest {
-    pub(crate) fn of(eigenvalues: &[Complex64]) -> Self {
+    /// `sizes` are those of which rounding errors are parts.
+    pub(crate) fn of(eigenvalues: &[Complex64], sizes: &[f64]) -> Self {
         let mut test = Self { product: 1.0, closest: 1.0, undecided: 0 };
-        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
-        for_each_pair(eigenvalues, |one, other| {
+        for_each_pair(eigenvalues, |[first, second], one, other| {
             let ratio = sum_ratio(one, other);
             // Of slow eigenvalues beside fast ones the real parts are rounding long before their sum is small beside them.
-            let rounding = 2.0 * UNDECIDED * largest;
+            let rounding = UNDECIDED * (sizes[first] + sizes[second]);
             if ratio.abs() <= UNDECIDED_SUM || ratio.abs() * (one.norm() + other.norm()) <= rounding {
                 test.undecided += 1;
                 return;
@@ -106,6 +113,12 @@ impl HopfTest {
         });
         test
     }
+
+    /// Of eigenvalues of one block.
+    pub(crate) fn of_one_block(eigenvalues: &[Complex64]) -> Self {
+        let largest = eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        Self::of(eigenvalues, &vec![largest; eigenvalues.len()])
+    }
 }
 
 /// The two eigenvalues, complex conjugate or both real, whose sum is closest to zero.
@@ -116,7 +129,7 @@ pub(crate) fn critical_pair(eigenvalues: &[Complex64]) -> Option<[Complex64; 2]>
 /// All pairs that are complex conjugate or both real, the sum closest to zero first.
 pub(crate) fn critical_pairs(eigenvalues: &[Complex64]) -> Vec<[Complex64; 2]> {
     let mut pairs = Vec::new();
-    for_each_pair(eigenvalues, |one, other| {
+    for_each_pair(eigenvalues, |_, one, other| {
         if belong_together(one, other) {
             pairs.push((sum_ratio(one, other).abs(), [one, other]));
         }
@@ -154,10 +167,10 @@ fn belong_together(one: Complex64, other: Complex64) -> bool {
     one.im == -other.im && (one.im == 0.0 || one.re == other.re)
 }
 
-fn for_each_pair(eigenvalues: &[Complex64], mut visit: impl FnMut(Complex64, Complex64)) {
-    for (index, &one) in eigenvalues.iter().enumerate() {
-        for &other in &eigenvalues[index + 1..] {
-            visit(one, other);
+fn for_each_pair(eigenvalues: &[Complex64], mut visit: impl FnMut([usize; 2], Complex64, Complex64)) {
+    for (first, &one) in eigenvalues.iter().enumerate() {
+        for (offset, &other) in eigenvalues[first + 1..].iter().enumerate() {
+            visit([first, first + 1 + offset], one, other);
         }
     }
 }

@@ -10,6 +10,7 @@ use num_complex::Complex64;
 
 use super::balancing::{isolate, largest_exponent, power_of_two, scale};
 use super::reflector::{SmallReflector, householder};
+use super::strong_components::strong_components;
 
 /// QR sweeps allowed for one window, per row of the matrix (at least ten rows are counted).
 const SWEEPS_PER_ROW: usize = 30;
@@ -114,6 +115,7 @@ pub struct EigenvalueWorkspace {
     matrix: Vec<f64>,
     scales: Vec<f64>,
     values: Vec<Complex64>,
+    sizes: Vec<f64>,
 }
 
 impl EigenvalueWorkspace {
@@ -124,16 +126,51 @@ impl EigenvalueWorkspace {
             matrix: vec![0.0; n * n],
             scales: vec![1.0; n],
             values: vec![Complex64::ZERO; n],
+            sizes: vec![0.0; n],
         }
     }
 
-    /// As the function [`eigenvalues`], without allocating.
+    /// As the function [`eigenvalues`], without allocating unless the matrix is block triangular: then each block is on its own,
+    /// so that fast ones do not spoil the digits of slow ones.
     ///
     /// # Errors
     /// As [`eigenvalues`].
     pub fn eigenvalues(&mut self, matrix: &[f64]) -> Result<&[Complex64], EigenvalueError> {
         let n = self.n;
         check(matrix, n, 1)?;
+        let (group, groups) = strong_components(matrix, n);
+        if groups <= 1 {
+            self.of_one_block(matrix)?;
+            let largest = self.values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+            self.sizes.fill(largest);
+            return Ok(&self.values);
+        }
+        let mut found: Vec<(Complex64, f64)> = Vec::with_capacity(n);
+        for block in 0..groups {
+            let members: Vec<usize> = (0..n).filter(|&index| group[index] == block).collect();
+            let entries = members.iter().flat_map(|column| members.iter().map(move |row| row + n * column));
+            let part: Vec<f64> = entries.map(|entry| matrix[entry]).collect();
+            let mut workspace = Self::new(members.len());
+            workspace.of_one_block(&part)?;
+            let largest = workspace.values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+            found.extend(workspace.values.iter().map(|value| (*value, largest)));
+        }
+        found.sort_by(|(a, _), (b, _)| b.re.total_cmp(&a.re).then(a.im.total_cmp(&b.im)));
+        for ((value, size), (found, largest)) in self.values.iter_mut().zip(&mut self.sizes).zip(found) {
+            (*value, *size) = (found, largest);
+        }
+        Ok(&self.values)
+    }
+
+    /// For each of the eigenvalues that were computed last the largest modulus in its block: its rounding error is a part of
+    /// that.
+    pub fn sizes(&self) -> &[f64] {
+        &self.sizes
+    }
+
+    /// Eigenvalues of a matrix that is taken as a whole.
+    fn of_one_block(&mut self, matrix: &[f64]) -> Result<(), EigenvalueError> {
+        let n = self.n;
         self.matrix.copy_from_slice(matrix);
         let exponent = match largest_exponent(matrix) {
             Some(exponent) if exponent.abs() > UNSCALED_EXPONENT => exponent,
@@ -159,7 +196,7 @@ impl EigenvalueWorkspace {
         // Adding zero turns -0 into 0, which the total order tells apart.
         self.values.iter_mut().for_each(|value| *value = Complex64::new(value.re + 0.0, value.im + 0.0));
         self.values.sort_unstable_by(|a, b| b.re.total_cmp(&a.re).then(a.im.total_cmp(&b.im)));
-        Ok(&self.values)
+        Ok(())
     }
 }
 

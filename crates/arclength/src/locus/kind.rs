@@ -169,7 +169,7 @@ impl<'a> LocusKind<'a> for FoldSystem<'a> {
         if n > 1 {
             tests.push((SpecialKind::BogdanovTakens, double));
         }
-        let pairs = HopfTest::of(&rest);
+        let pairs = HopfTest::of_one_block(&rest);
         if n > 2 && pairs.undecided == 0 {
             tests.push((SpecialKind::ZeroHopf, pairs.closest.copysign(pairs.product)));
         }
@@ -267,7 +267,7 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
         if n > 2 {
             monitor.tests.push((SpecialKind::ZeroHopf, zero_test(&rest, largest)));
         }
-        let pairs = HopfTest::of(&rest);
+        let pairs = HopfTest::of_one_block(&rest);
         if n > 3 && pairs.undecided == 0 {
             monitor.tests.push((SpecialKind::HopfHopf, pairs.closest.copysign(pairs.product)));
         }
@@ -339,7 +339,7 @@ impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
         if n > 1 {
             monitor.tests.push((SpecialKind::BogdanovTakens, zero_test(&rest, largest)));
         }
-        let pairs = HopfTest::of(&rest);
+        let pairs = HopfTest::of_one_block(&rest);
         if n > 2 {
             // The secant method may hit the point itself.
             let value = if pairs.undecided == 0 { pairs.closest.copysign(pairs.product) } else { 0.0 };
