@@ -134,7 +134,8 @@ fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
             let model = wheel.rolling_model(&[]).unwrap();
             let initial = model.full_state(&cycle.orbit.state_at(0.0), &[]);
             let history = wheel.simulate_from(&initial, cycle.period, 20_001, &Control::none()).unwrap();
-            let allowed = f64::max(10.0 * cycle.error_estimate, 1e-8);
+            // The estimate is that of the extremes; the state elsewhere is known to the tolerance, and returns multiplied.
+            let allowed = f64::max(10.0 * cycle.error_estimate, 1e-7);
             for index in 0..5 {
                 let values: Vec<f64> = history.states.iter().map(|state| state[index]).collect();
                 let size = values.iter().fold(1e-3, |size: f64, value| size.max(value.abs()));

@@ -107,7 +107,7 @@ fn bautin() {
     );
     let cycles = study.cycles_from(&branch, 0, "beta1=-1:1", &[0.5]);
     let folds = special(&cycles, |special| special == SpecialKind::FoldOfCycles);
-    page.row("fold of cycles: beta1", -0.25, closed("-beta2^2/4"), LOCATED, folds[0].value);
+    page.row("fold of cycles: beta1", -0.25, closed("-beta2^2/4"), CYCLE, folds[0].value);
     page.row("its largest x", 0.5_f64.sqrt(), closed("sqrt(beta2/2)"), CYCLE, folds[0].max[0]);
     let radius = (0.5 + 0.75_f64.sqrt()).sqrt();
     page.row(

@@ -23,12 +23,23 @@ struct Product {
 impl Graph {
     /// The quotient of two nodes where it has a removable `0/0`.
     pub(super) fn removable_quotient(&mut self, numerator: NodeId, denominator: NodeId) -> Option<NodeId> {
-        if let Some((sign, exponent)) = self.exponential_less_one(denominator)
-            && let Some(others) = self.ratio(numerator, exponent)
-        {
-            let relative = self.unary(UnaryOperation::RelativeExponential, exponent);
-            let quotient = self.binary(BinaryOperation::Divide, others, relative);
-            return Some(self.signed(sign, quotient));
+        let below = self.product(denominator);
+        for place in 0..below.numerators.len() {
+            if let Some((sign, exponent)) = self.exponential_less_one(below.numerators[place])
+                && let Some(others) = self.ratio(numerator, exponent)
+            {
+                let relative = self.unary(UnaryOperation::RelativeExponential, exponent);
+                let mut quotient = self.binary(BinaryOperation::Divide, others, relative);
+                let factor = self.constant(sign / below.number);
+                quotient = self.binary(BinaryOperation::Multiply, factor, quotient);
+                for (_, node) in below.numerators.iter().enumerate().filter(|(other, _)| *other != place) {
+                    quotient = self.binary(BinaryOperation::Divide, quotient, *node);
+                }
+                for node in &below.denominators {
+                    quotient = self.binary(BinaryOperation::Multiply, quotient, *node);
+                }
+                return Some(quotient);
+            }
         }
         let (sign, exponent) = self.exponential_less_one(numerator)?;
         let others = self.ratio(denominator, exponent)?;

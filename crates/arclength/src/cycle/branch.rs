@@ -77,7 +77,7 @@ impl CyclePoint {
     ) -> Self {
         let inspection = &solution.point;
         let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
-        let (outside, certain) = inspection.floquet.unstable();
+        let (outside, _) = inspection.floquet.unstable();
         let is_special = label.is_some_and(|label| label.kind != SpecialKind::Requested);
         let turn = solution.tangent.last().map_or(0.0, |rate| rate / range);
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
@@ -91,7 +91,7 @@ impl CyclePoint {
             trivial_multiplier_error: inspection.floquet.trivial_error,
             unstable_multipliers: outside,
             // At a bifurcation a multiplier is on the unit circle by definition.
-            stable: if is_special || !certain || inspection.is_neutral { None } else { Some(outside == 0) },
+            stable: if is_special || inspection.is_neutral { None } else { inspection.floquet.is_stable() },
             neutral: inspection.is_neutral,
             error_estimate: inspection.error_estimate,
             value_error: inspection.parameter_error,

@@ -96,7 +96,7 @@ impl Asked<'_> {
         let mut estimated = point.error_estimate;
         let mut last_change = None;
         for _ in 0..MOST_HALVINGS {
-            if 2 * (mesh.len() - 1) > self.resolution.most_intervals {
+            if mesh.len() - 1 > self.resolution.most_intervals {
                 break;
             }
             let Some(level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
@@ -119,7 +119,8 @@ impl Asked<'_> {
             let counted = errors.iter().zip(&level.told.multipliers);
             let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
             let enough = CHANGE.max(ACCEPTED * self.resolution.tolerance);
-            if change < enough && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
+            let is_consistent = level.floquet.defect() < MULTIPLIER_CHANGE;
+            if change < enough && is_consistent && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
                 break;
             }
             last_change = Some(change);
@@ -242,16 +243,24 @@ impl Level {
         point.error_estimate = error;
         point.multipliers = self.floquet.multipliers();
         point.trivial_multiplier_error = self.floquet.trivial_error;
-        let (outside, certain) = self.floquet.unstable();
+        let (outside, _) = self.floquet.unstable();
         point.unstable_multipliers = outside;
-        let mut decided = self.told.multipliers.iter().zip(before).zip(errors).map(|((now, then), error)| {
+        let sides = self.told.multipliers.iter().zip(before).zip(errors).map(|((now, then), error)| {
             let [now, then] = [now.log_modulus, then.log_modulus];
             // One that moves away from the circle as the mesh gets finer is on its side of it, and so is one that dies out.
-            now.abs() > MARGIN * error
+            let is_decided = now.abs() > MARGIN * error
                 || (now * then > 0.0 && now.abs() >= then.abs())
-                || now.max(then) < LOGARITHM
+                || now.max(then) < LOGARITHM;
+            is_decided.then_some(now < 0.0)
         });
-        point.stable = (certain && !point.neutral && decided.all(|decided| decided)).then_some(outside == 0);
+        let sides: Vec<Option<bool>> = sides.collect();
+        point.stable = if point.neutral || self.floquet.is_contradictory() {
+            None
+        } else if sides.contains(&Some(false)) {
+            Some(false)
+        } else {
+            sides.iter().all(|side| *side == Some(true)).then_some(true)
+        };
         let mut all = errors.to_vec();
         let trivial =
             self.told.multipliers.partition_point(|one| one.log_modulus > self.floquet.trivial.abs().ln());

@@ -30,6 +30,8 @@ const REFINEMENT: (f64, f64) = (0.1, 0.5);
 const FINEST_TOLERANCE_OF_CYCLES: f64 = 1e-12;
 /// Ratio of the error of a cycle to the local estimate above which the linearised equations multiply it.
 const MULTIPLIED: f64 = 2.0;
+/// Logarithm of a multiplier next to one.
+const NEARLY_SINGULAR: f64 = 0.1;
 /// Where the error is less than this part of what is allowed, the factor of the tolerance grows by `RELAXATION` from point to
 /// point.
 const MUCH_LESS: f64 = 0.01;
@@ -136,7 +138,12 @@ impl Curve for CycleCurve<'_> {
             (floquet.trivial_error / allowed).max(floquet.defect() / DEFECT)
         };
         // Where the local estimate is the larger one it has placed the mesh points already.
-        let is_multiplied = point.error_across > MULTIPLIED * self.error_estimate;
+        // Next to a branch point, where a multiplier is one, no mesh helps, and one that changes breaks a symmetry.
+        let is_singular = floquet
+            .nontrivial
+            .iter()
+            .any(|multiplier| multiplier.argument == 0.0 && multiplier.log_modulus.abs() < NEARLY_SINGULAR);
+        let is_multiplied = !is_singular && point.error_across > MULTIPLIED * self.error_estimate;
         let cycle = if is_multiplied { point.error_across / tolerance } else { 0.0 };
         let excess = multipliers.max(cycle);
         if excess <= 1.0 {

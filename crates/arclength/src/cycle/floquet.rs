@@ -64,6 +64,20 @@ impl Floquet {
         (outside, certain && !self.is_contradictory())
     }
 
+    /// Whether the cycle is stable, where that is certain: one multiplier that is outside for certain decides it.
+    pub(crate) fn is_stable(&self) -> Option<bool> {
+        // Errors of the multipliers are of the size of those that their product shows, and may cancel there in part.
+        let margin = self.margin().max(CANCELLATION * self.defect());
+        let logarithms = || self.nontrivial.iter().map(|multiplier| multiplier.log_modulus);
+        if self.is_contradictory() {
+            None
+        } else if logarithms().any(|logarithm| logarithm > margin) {
+            Some(false)
+        } else {
+            logarithms().all(|logarithm| logarithm < -margin).then_some(true)
+        }
+    }
+
     /// What the search for special cycles compares from cycle to cycle: logarithms of the multipliers.
     pub(crate) fn growth(&self) -> Spectrum {
         let (unstable, decided) = self.unstable();
@@ -121,10 +135,8 @@ impl Floquet {
         Some(Self { nontrivial, ..self.clone() })
     }
 
-    /// Within this of zero the logarithm of a multiplier may have either sign: errors of the multipliers are of the size of those
-    /// that their product and the trivial one show, and may cancel there in part.
     fn margin(&self) -> f64 {
-        self.trivial_error.max(CANCELLATION * self.defect()).max(f64::EPSILON)
+        self.trivial_error.max(f64::EPSILON)
     }
 
     /// Whether a positive multiplier, or a pair with a positive real part, may be one next to this cycle. In the plane the only one

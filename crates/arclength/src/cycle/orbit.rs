@@ -28,7 +28,7 @@ const HISTORY_TOLERANCE: f64 = 1e-9;
 /// (a harmonic motion has 6.5), and most intervals.
 const HISTORY_DEGREE: usize = 7;
 const FEWEST_INTERVALS: usize = 40;
-const INTERVALS_PER_UNIT: f64 = 6.0;
+const INTERVALS_PER_UNIT: f64 = 12.0;
 const MOST_INTERVALS: usize = 400;
 /// Agreement of the state after one period, relative to the size of the motion.
 const HISTORY_CLOSURE: f64 = 0.05;

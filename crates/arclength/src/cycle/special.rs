@@ -39,9 +39,6 @@ fn defining(kind: SpecialKind) -> Option<Kind> {
     }
 }
 
-/// Part of a parameter by which it has to change from an extreme value for that to be one.
-const ROUNDING: f64 = 1e-13;
-
 /// Distance of the logarithm of a multiplier from that of a special cycle beyond which it is another one.
 const CRITICAL: f64 = 0.05;
 
@@ -115,9 +112,8 @@ fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
     let crosses = matches!(ends.map(outside), [Some(one), Some(other)] if one != other);
     let value = |node: &Node| node.unknown[node.unknown.len() - 1];
     let [one, other] = ends.map(|end| value(solution) - value(end));
-    // On the explosion of a canard the parameter varies by its rounding.
-    let is_extreme =
-        one.signum() == other.signum() && one.abs().min(other.abs()) > ROUNDING * value(solution).abs();
+    // In the plane that is no witness, since the multiplier is known better than the parameter.
+    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
     crosses || (kind == Kind::Fold && is_extreme)
 }
 

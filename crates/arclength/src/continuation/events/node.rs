@@ -3,8 +3,9 @@
 use super::path::partners;
 use super::spectrum::Spectrum;
 use super::test_function::Reading;
-use crate::continuation::metric::{distance, metric_image, norm};
-use crate::continuation::{Curve, Solution};
+use crate::continuation::corrector::across;
+use crate::continuation::metric::{distance, norm};
+use crate::continuation::{Curve, Settings, Solution};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -44,8 +45,7 @@ pub(super) struct Rates {
 }
 
 /// Displacement along the tangent, as part of a step, from which rates are computed: the solution itself may be known on an
-/// older mesh, whose error must not count against the difference. The curve leaves its tangent with the square of it, which
-/// matters less than what a step leaves unknown.
+/// older mesh, whose error must not count against the difference.
 const DISPLACEMENT: f64 = 0.05;
 
 impl<C: Curve> Node<C> {
@@ -61,7 +61,7 @@ impl<C: Curve> Node<C> {
     }
 
     /// Rates along the curve, computed once; `step` is a length on which the solution is resolved.
-    pub(super) fn rates(&mut self, curve: &mut C, step: f64) -> Option<&Rates> {
+    pub(super) fn rates(&mut self, curve: &mut C, step: f64, settings: &Settings) -> Option<&Rates> {
         if self.rates.is_none() {
             self.rates = Some(match curve.exponent_rates(&self.solution) {
                 Some(mut exponents) => {
@@ -70,7 +70,7 @@ impl<C: Curve> Node<C> {
                     exponents.iter_mut().for_each(|rate| *rate /= stretch);
                     Some(Rates { exponents, readings: vec![None; self.readings.len()] })
                 }
-                None => self.differences(curve, step),
+                None => self.differences(curve, step, settings),
             });
         }
         self.rates.as_ref().and_then(Option::as_ref)
@@ -100,17 +100,10 @@ impl<C: Curve> Node<C> {
         norm(curve, tangent, &mut vec![0.0; tangent.len()])
     }
 
-    fn differences(&self, curve: &mut C, step: f64) -> Option<Rates> {
-        let unknown = self.solution.ahead(DISPLACEMENT * step);
-        let tangent = self.solution.tangent.clone();
-        let border = metric_image(curve, &tangent);
-        let orientation = curve.factorize(&unknown, &border, &mut vec![0.0; unknown.len()]);
-        if orientation == 0.0 {
-            return None;
-        }
-        let point = curve.inspect(&unknown, &tangent, orientation).ok()?;
-        let length = distance(curve, &self.solution.unknown, &unknown);
-        let there = Node::new(curve, Solution { unknown, tangent, orientation, point });
+    fn differences(&self, curve: &mut C, step: f64, settings: &Settings) -> Option<Rates> {
+        let there = across(curve, &self.solution, self.solution.ahead(DISPLACEMENT * step), settings).ok()?;
+        let length = distance(curve, &self.solution.unknown, &there.unknown);
+        let there = Node::new(curve, there);
         let partners = partners(&self.spectrum, &there.spectrum, None);
         let exponents = self.spectrum.exponents.iter().zip(partners).map(|(here, partner)| {
             let mut change = there.spectrum.exponents[partner] - here;

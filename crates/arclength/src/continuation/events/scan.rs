@@ -120,7 +120,7 @@ impl<'s, C: Curve> Scan<'s, C> {
             let largest = changed.iter().filter_map(|&index| tests[index].changes.iter().max());
             let (pairs, single): (Vec<usize>, Vec<usize>) = largest.partition(|change| **change > 1);
             let most = [single.iter().sum(), pairs.iter().sum()];
-            suspicious(self.curve, [before, after], length, self.memory, most)
+            suspicious(self.curve, [before, after], length, self.memory, (most, self.settings))
         };
         let smallest =
             if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };

@@ -8,7 +8,7 @@
 use super::memory::Memory;
 use super::node::Node;
 use super::path::{Path, partners};
-use crate::continuation::Curve;
+use crate::continuation::{Curve, Settings};
 use num_complex::Complex64;
 
 /// Exponents of multipliers below this at both ends are those of directions that die out in one period.
@@ -23,7 +23,7 @@ pub(super) fn suspicious<C: Curve>(
     [before, after]: [&mut Node<C>; 2],
     length: f64,
     memory: &Memory,
-    most_crossings: [usize; 2],
+    (most_crossings, settings): ([usize; 2], &Settings),
 ) -> Option<f64> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
@@ -34,11 +34,11 @@ pub(super) fn suspicious<C: Curve>(
         }
         if !rates_cost_nothing || own {
             // Both are computed before either is used, so that what is found does not depend on which is looked at first.
-            before.rates(curve, length)?;
-            after.rates(curve, length)?;
+            before.rates(curve, length, settings)?;
+            after.rates(curve, length, settings)?;
         }
-        exponents_hide(curve, before, after, length, most_crossings)
-            .or_else(|| tests_hide(curve, before, after, length))
+        exponents_hide(curve, before, after, length, (most_crossings, settings))
+            .or_else(|| tests_hide(curve, before, after, length, settings))
     })
 }
 
@@ -64,13 +64,13 @@ fn exponents_hide<C: Curve>(
     before: &mut Node<C>,
     after: &mut Node<C>,
     length: f64,
-    most_crossings: [usize; 2],
+    (most_crossings, settings): ([usize; 2], &Settings),
 ) -> Option<f64> {
     let noise = before.spectrum.noise.max(after.spectrum.noise);
     let per_step =
         |rates: &[Complex64]| -> Vec<Complex64> { rates.iter().map(|rate| rate * length).collect() };
-    let ahead = per_step(&before.rates(curve, length)?.exponents);
-    let behind = per_step(&after.rates(curve, length)?.exponents);
+    let ahead = per_step(&before.rates(curve, length, settings)?.exponents);
+    let behind = per_step(&after.rates(curve, length, settings)?.exponents);
     let (one, other) = (&before.spectrum, &after.spectrum);
     let indices = partners(one, other, Some((&ahead, &behind)));
     let mut crossings = [0, 0];
@@ -101,6 +101,7 @@ fn tests_hide<C: Curve>(
     before: &mut Node<C>,
     after: &mut Node<C>,
     length: f64,
+    settings: &Settings,
 ) -> Option<f64> {
     let tests = curve.test_functions();
     let own: Vec<usize> =
@@ -111,8 +112,8 @@ fn tests_hide<C: Curve>(
         if here.class != there.class || here.value.abs() <= noise || there.value.abs() <= noise {
             return None;
         }
-        let ahead = length * before.rates(curve, length)?.readings[index]?;
-        let behind = length * after.rates(curve, length)?.readings[index]?;
+        let ahead = length * before.rates(curve, length, settings)?.readings[index]?;
+        let behind = length * after.rates(curve, length, settings)?.readings[index]?;
         Path::new([here.value, there.value], [ahead, behind]).suspicious()
     })
 }
