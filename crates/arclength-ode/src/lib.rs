@@ -43,17 +43,20 @@ mod declarations;
 mod error;
 mod expand;
 mod expression;
+mod interval;
 mod model;
 mod options;
 mod quantity;
 mod source;
 mod statement;
+mod switches;
 mod tape;
 
 pub use error::{OdeError, Place, Warning};
 pub use model::{Model, NamedSet};
 pub use options::{OptionEntry, Options};
 pub use quantity::Quantity;
+pub use switches::{GivenUp, Switch};
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

@@ -6,6 +6,7 @@ use crate::error::{OdeError, Place, Warning};
 use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
 use crate::source::{decode, physical_lines};
+use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
 use arclength::{Scalar, VectorField};
 
@@ -29,6 +30,7 @@ pub struct Model {
     warnings: Vec<Warning>,
     time: Option<Place>,
     frozen: Option<f64>,
+    switches: TimeSwitches,
     field: Tape,
     auxiliary: Tape,
     derivation: Tape,
@@ -159,6 +161,15 @@ impl Model {
         self.field.evaluate(time, state, parameters, derivative);
     }
 
+    /// The first time in `from..=until` at which the right-hand side at these parameters jumps or has a kink, because of something
+    /// that depends on the time alone.
+    ///
+    /// # Errors
+    /// [`GivenUp`] where the times cannot be told apart from others.
+    pub fn next_switch(&self, from: f64, until: f64, parameters: &[f64]) -> Result<Option<Switch>, GivenUp> {
+        self.switches.next(from, until, parameters)
+    }
+
     /// Names of the auxiliary quantities (`aux`), without those that are not supported, of which a warning tells.
     pub fn auxiliary_names(&self) -> &[String] {
         &self.auxiliaries
@@ -270,6 +281,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
             limit: MAXIMUM_REGISTERS,
         })
     };
+    let switches = TimeSwitches::of(&lowering.graph, &field);
     let field = compile(&field, states)?;
     let time =
         if field.uses_time() { lowering.time.map(|span| filled(span.into(), source_lines)) } else { None };
@@ -317,6 +329,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         warnings,
         time,
         frozen: None,
+        switches,
         field,
         auxiliary,
         derivation,

@@ -341,10 +341,10 @@ fn tables_of_a_formula_are_functions() {
     let values = field(&model);
     assert!((values[0] - 0.27).abs() < 1e-15);
     assert!((values[1] - (12.0 + 2.0 * slope)).abs() < 1e-12);
-    assert!((values[2] - 27.0 - 0.0).abs() > 1.0);
+    assert!((values[2] - (12.0 + slope)).abs() < 1e-12);
     let mut derivative = [0.0; 3];
     model.evaluate(&[0.3, 4.0, 1.0], &[-1.0], &mut derivative);
-    assert!((derivative[2] - 0.2 * -1.0 * -1.0 * 1.0).abs() < 1e-12, "{derivative:?}");
+    assert!((derivative[2] - 0.2).abs() < 1e-15, "{derivative:?}");
     assert!(model.warnings()[0].message.contains("11 points"));
     assert!(model.is_autonomous());
 }
