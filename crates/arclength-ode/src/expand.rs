@@ -84,7 +84,7 @@ impl Output {
 /// The line `done`, which XPPAUT knows by its first letter.
 fn is_done(line: &Text) -> bool {
     let start = line.skip_blanks(0);
-    let end = line.identifier_end(start);
+    let end = line.find(start, |c| c.is_whitespace() || matches!(c, '=' | '\'' | '(' | '/'));
     let next = line.at(line.skip_blanks(end));
     line.lower_at(start) == 'd' && !matches!(next, '=' | '\'' | '(' | '/')
 }

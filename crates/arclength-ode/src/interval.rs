@@ -12,7 +12,7 @@ pub(crate) struct Interval {
 }
 
 impl Interval {
-    const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
+    pub(crate) const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY };
     const TRUTH: Self = Self { low: 0.0, high: 1.0 };
 
     pub(crate) fn point(value: f64) -> Self {

@@ -35,8 +35,10 @@ enum Trigger {
 /// Everything of a field that depends on the time alone, as far as it switches.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TimeSwitches {
-    /// Nothing in place of an operation that depends on a state.
-    operations: Vec<Option<Operation>>,
+    /// What the triggers need, operands before what uses them.
+    operations: Vec<(NodeId, Operation)>,
+    /// Number of nodes of the graph.
+    nodes: usize,
     triggers: Vec<Trigger>,
 }
 
@@ -77,8 +79,19 @@ impl TimeSwitches {
         if triggers.is_empty() {
             return Self::default();
         }
-        let needed = |(index, operation): (usize, &Operation)| (!of_state[index]).then_some(*operation);
-        Self { operations: all.iter().enumerate().map(needed).collect(), triggers }
+        let mut needed = vec![false; all.len()];
+        triggers.iter().flat_map(|trigger| trigger.nodes()).for_each(|node| needed[node as usize] = true);
+        for index in (0..all.len()).rev() {
+            if needed[index] {
+                all[index].operands().for_each(|operand| needed[operand as usize] = true);
+            }
+        }
+        let operations = (0..).zip(all).filter(|(node, _)| needed[*node as usize]);
+        Self {
+            operations: operations.map(|(node, operation)| (node, *operation)).collect(),
+            nodes: all.len(),
+            triggers,
+        }
     }
 
     /// The first time in `from..=until` at which something may switch; one that lies at `from` counts.
@@ -88,7 +101,7 @@ impl TimeSwitches {
         }
         let finest = FINEST * (until - from);
         let mut looked_at = 0;
-        let mut values = vec![Interval::point(0.0); self.operations.len()];
+        let mut values = vec![Interval::point(0.0); self.nodes];
         let mut may_switch = |low: f64, high: f64| {
             looked_at += 1;
             if looked_at > MOST_INTERVALS {
@@ -125,10 +138,9 @@ impl TimeSwitches {
     }
 
     fn evaluate(&self, time: Interval, parameters: &[f64], values: &mut [Interval]) {
-        for (index, operation) in self.operations.iter().enumerate() {
-            let Some(operation) = operation else { continue };
+        for &(node, operation) in &self.operations {
             let value = |node: NodeId| values[node as usize];
-            values[index] = match *operation {
+            values[node as usize] = match operation {
                 Operation::Constant(bits) => Interval::point(f64::from_bits(bits)),
                 Operation::Time => time,
                 Operation::Parameter(parameter) => Interval::point(parameters[parameter as usize]),
@@ -140,7 +152,8 @@ impl TimeSwitches {
                     Some(false) => value(no),
                     None => value(yes).hull(value(no)),
                 },
-                Operation::State(_) => continue,
+                // No trigger depends on a state.
+                Operation::State(_) => Interval::ALL,
             };
         }
     }
@@ -168,6 +181,15 @@ fn trigger(operation: Operation) -> Option<Trigger> {
 }
 
 impl Trigger {
+    /// What it depends on.
+    fn nodes(self) -> impl Iterator<Item = NodeId> {
+        let (first, second) = match self {
+            Self::Zero(a) | Self::Whole(a) => (a, None),
+            Self::Equal(a, b) | Self::WholeQuotient(a, b) => (a, Some(b)),
+        };
+        std::iter::once(first).chain(second)
+    }
+
     fn may_switch(self, values: &[Interval]) -> bool {
         let value = |node: NodeId| values[node as usize];
         let varying = |interval: Interval| !interval.is_point();

@@ -292,6 +292,7 @@ fn directives_are_known_by_their_first_letters() {
     let model = read("x'=1\ndendrite of the cell\ny'=1\n");
     assert_eq!((model.states().len(), model.warnings().len()), (1, 1));
     assert!(read("x'=1\ndone here y\ny'=1\n").warnings().is_empty());
+    assert_eq!(read("dk[1..2]=[j]\ndx/dt=dk1+dk2\n").states(), ["x"]);
 }
 
 #[test]
