@@ -29,20 +29,19 @@ impl AlongCycle {
     pub fn auxiliary(chosen: &ChosenModel, point: &CyclePoint, parameters: &[f64]) -> Self {
         let names = chosen.auxiliary_names();
         let time = chosen.stored.frozen_time.unwrap_or(f64::NAN);
-        let of = |taken: &dyn Fn(&dyn Fn(&[f64]) -> f64) -> f64| {
-            let value = |index: usize| taken(&|state| chosen.auxiliary(time, state, parameters)[index]);
-            named(&names, &(0..names.len()).map(value).collect::<Vec<f64>>())
-        };
-        if point.orbit.mesh.len() < 2 {
+        let quantity = |index: usize| move |state: &[f64]| chosen.auxiliary(time, state, parameters)[index];
+        let all =
+            |taken: &dyn Fn(usize) -> f64| named(&names, &(0..names.len()).map(taken).collect::<Vec<f64>>());
+        let orbit = &point.orbit;
+        if orbit.mesh.len() < 2 {
             // A Hopf point: the cycle is an equilibrium.
-            let here = of(&|quantity| quantity(&point.max));
+            let here = all(&|index| quantity(index)(&point.max));
             return Self { max: here.clone(), min: here.clone(), mean: here };
         }
-        let orbit = &point.orbit;
         Self {
-            max: of(&|quantity| orbit.maximum(quantity)),
-            min: of(&|quantity| orbit.minimum(quantity)),
-            mean: of(&|quantity| orbit.mean(quantity)),
+            max: all(&|index| orbit.maximum(quantity(index))),
+            min: all(&|index| orbit.minimum(quantity(index))),
+            mean: all(&|index| orbit.mean(quantity(index))),
         }
     }
 }
