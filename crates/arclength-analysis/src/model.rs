@@ -141,6 +141,28 @@ impl ChosenModel {
         }
     }
 
+    /// Names of the auxiliary quantities as columns: one that a state, the time or an earlier one has is told by `aux_`.
+    pub fn auxiliary_names(&self) -> Vec<String> {
+        let mut taken: Vec<String> = self.model.states().to_vec();
+        taken.push("t".to_owned());
+        let states = taken.len();
+        for name in self.model.auxiliary_names() {
+            let mut name = name.clone();
+            while taken.iter().any(|other| other.eq_ignore_ascii_case(&name)) {
+                name.insert_str(0, "aux_");
+            }
+            taken.push(name);
+        }
+        taken.split_off(states)
+    }
+
+    /// The auxiliary quantities at a state, in the order of their names; not a number where they have no value.
+    pub fn auxiliary(&self, time: f64, state: &[f64], parameters: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.model.auxiliary_names().len()];
+        self.model.evaluate_auxiliary(time, state, parameters, &mut values);
+        values
+    }
+
     fn parameter(&self, fields: &'static [&'static str], key: &str) -> Result<usize, Error> {
         let index = self.model.parameter_index(key);
         index.ok_or_else(|| unknown(fields, key, "parameter", self.model.parameters()))

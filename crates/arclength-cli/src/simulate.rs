@@ -6,20 +6,42 @@ use clap::Args;
 use kingpin_terminal::{Failure, OutputOptions};
 
 /// Time history from the initial state of the model
+///
+/// What is not said here is as the model says in its lines @.
 #[derive(Args, Debug)]
 #[command(after_help = "Example: arclength simulate model.ode --duration 100 --start x=1 -o history.svg")]
 pub(crate) struct Simulate {
     #[command(flatten)]
     model: ModelOptions,
 
-    /// Time
+    /// How long the motion lasts [default: the model's @ total]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
-    duration: f64,
+    duration: Option<f64>,
 
-    /// Number of samples, at equal distances from 0 to T
-    #[arg(long, value_name = "N", default_value_t = SimulateRequest::default_points(),
-          value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
-    points: u64,
+    /// Number of samples, at equal distances to the end [default: one for every @ dt of the model, or 1001]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
+    points: Option<u64>,
+
+    /// Time at which it starts [default: the model's @ t0, or 0]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    t0: Option<f64>,
+
+    /// Time before which there are no samples [default: the model's @ trans]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    transient: Option<f64>,
+
+    /// Magnitude of a state at which it stops [default: the model's @ bound]
+    #[arg(long, value_name = "X")]
+    bound: Option<f64>,
+
+    /// Relative error allowed in a step; the absolute one is a hundredth of it, times the size of a state smaller than 0.01
+    /// [default: the model's @ toler where that is smaller than 1e-10, or 1e-10]
+    #[arg(long, value_name = "X")]
+    tolerance: Option<f64>,
+
+    /// Largest step; what switches on a state for a shorter time may be missed. What switches on the time is always met
+    #[arg(long, value_name = "T")]
+    max_step: Option<f64>,
 
     #[command(flatten)]
     output: OutputOptions,
@@ -32,10 +54,20 @@ impl Simulate {
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
-        let request =
-            SimulateRequest { model: self.model.request()?, duration: self.duration, points: self.points };
+        let request = SimulateRequest {
+            model: self.model.request()?,
+            duration: self.duration,
+            points: self.points,
+            t0: self.t0,
+            transient: self.transient,
+            bound: self.bound,
+            tolerance: self.tolerance,
+            max_step: self.max_step,
+        };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());
-        output.deliver(&analysis.run()?)
+        let result = analysis.run()?;
+        output.warn_of(&result.warnings);
+        output.deliver(&result)
     }
 }

@@ -1,9 +1,10 @@
 //! Collects the statements of a model into one table of names.
 
 use crate::assignments::{Assignment, assignments};
-use crate::compile::{FunctionDefinition, Lowering, QuantityDefinition, Symbol, Symbols};
+use crate::compile::{FunctionDefinition, Lowering, QuantityDefinition, Symbol, Symbols, TableDefinition};
 use crate::error::{OdeError, Span, Warning, nearest};
-use crate::expression::{Expression, parse_expression, parse_number, reserved};
+use crate::expand::expanded_lines;
+use crate::expression::{Expression, Node, parse_expression, parse_number, reserved};
 use crate::options::Options;
 use crate::source::Text;
 use crate::statement::{Name, Statement, classify};
@@ -39,10 +40,10 @@ pub(crate) struct Declarations {
 }
 
 impl Declarations {
-    /// Reads all lines, which are already expanded.
-    pub(crate) fn read(lines: &[Text]) -> Result<Self, OdeError> {
+    /// Reads the text of a model.
+    pub(crate) fn read(source: &str) -> Result<Self, OdeError> {
         let mut declarations = Self::default();
-        for line in lines {
+        for line in &expanded_lines(source, &mut declarations.warnings)? {
             if line.skip_blanks(0) < line.len() {
                 declarations.statement(line, classify(line)?)?;
             }
@@ -60,7 +61,7 @@ impl Declarations {
             }
             Statement::Fixed(name, right) => {
                 self.declare(&name, Symbol::Fixed(self.symbols.fixed.len()))?;
-                let expression = self.expression(line, right)?;
+                let expression = self.perhaps_unused(line, right)?;
                 self.symbols.fixed.push(QuantityDefinition { name, expression });
             }
             Statement::Derived(name, right) => {
@@ -70,11 +71,23 @@ impl Declarations {
             }
             Statement::Function(name, arguments, right) => {
                 self.declare(&name, Symbol::Function(self.symbols.functions.len()))?;
-                let expression = self.expression(line, right)?;
+                let expression = self.perhaps_unused(line, right)?;
                 self.symbols.functions.push(FunctionDefinition { name, arguments, expression });
             }
-            Statement::Auxiliary(name, right) => {
+            Statement::Table(name, range, right) => {
+                self.declare(&name, Symbol::Table(self.symbols.tables.len()))?;
                 let expression = self.expression(line, right)?;
+                self.warnings.push(Warning::new(
+                    name.span,
+                    format!(
+                        "the table `{}` is taken as its formula from {} to {}, where XPPAUT draws straight lines between {} points",
+                        name.text, range.low, range.high, range.points
+                    ),
+                ));
+                self.symbols.tables.push(TableDefinition { name, range, expression });
+            }
+            Statement::Auxiliary(name, right) => {
+                let expression = self.perhaps_unused(line, right)?;
                 self.auxiliaries.push(QuantityDefinition { name, expression });
             }
             Statement::InitialFormula(name, right) => {
@@ -124,8 +137,19 @@ impl Declarations {
         parse_expression(line, start, line.len(), &mut self.warnings)
     }
 
+    /// An expression that the equations need not depend on: what is not supported in it is refused where they do.
+    fn perhaps_unused(&mut self, line: &Text, start: usize) -> Result<Expression, OdeError> {
+        match self.expression(line, start) {
+            Err(error @ OdeError::Unsupported { .. }) => {
+                let span = line.span(start, line.len());
+                Ok(Expression { nodes: vec![(Node::Refused(Box::new(error)), span)] })
+            }
+            read => read,
+        }
+    }
+
     /// The number that an assignment gives. XPPAUT reads it up to the first character that does not
-    /// belong to a number; here `1/3` is a third, with a warning.
+    /// belong to a number; here `1/3` is a third, with a warning that says both.
     fn value(&mut self, line: &Text, assignment: &Assignment) -> Result<f64, OdeError> {
         if !assignment.has_value() {
             let message = format!("`{}` is given no value: it is 0", assignment.name.text);
@@ -139,12 +163,16 @@ impl Declarations {
         let (start, end) = (assignment.value_start, assignment.value_end);
         let expression = parse_expression(line, start, end, &mut self.warnings)?;
         let value = Lowering::new(&self.symbols).lower_constant(&expression, "the value")?;
-        self.warnings.push(Warning::new(
-            line.span(start, end),
+        let leading = leading_number(&text);
+        let message = if leading == value {
+            format!("`{text}` is a formula; it is taken as {value}, as XPPAUT reads it")
+        } else {
             format!(
-                "`{text}` is a formula where XPPAUT reads only the leading number; it is taken as {value}"
-            ),
-        ));
+                "`{text}` is a formula: it is taken as {value}, but XPPAUT reads only the number at its beginning, {leading}; \
+                 write the number that is meant"
+            )
+        };
+        self.warnings.push(Warning::new(line.span(start, end), message));
         Ok(value)
     }
 
@@ -155,10 +183,12 @@ impl Declarations {
             name: name.text.clone(),
             as_what,
         };
-        if !name.text.chars().all(crate::source::is_identifier_part)
-            || !name.text.starts_with(crate::source::is_identifier_start)
-        {
+        if !name.text.chars().all(crate::source::is_identifier_part) {
             let message = format!("`{}` is not a name; names hold letters, digits and _", name.text);
+            return Err(OdeError::syntax(name.span, message));
+        }
+        if name.text.starts_with(|first: char| first.is_ascii_digit()) && parse_number(&name.text).is_some() {
+            let message = format!("`{}` is a number, not a name", name.text);
             return Err(OdeError::syntax(name.span, message));
         }
         if reserved(&key) {
@@ -185,4 +215,10 @@ impl Declarations {
             }),
         }
     }
+}
+
+/// What XPPAUT reads of a value: the longest beginning that is a number, or 0.
+fn leading_number(text: &str) -> f64 {
+    let ends = text.char_indices().map(|(index, character)| index + character.len_utf8());
+    ends.rev().find_map(|end| parse_number(&text[..end])).unwrap_or(0.0)
 }

@@ -3,7 +3,7 @@
 //! XPPAUT expands arrays as text, once for each value of the index `j`, and so does this module;
 //! `x[j-1]` with `j = 3` is the name `x2`. Expansion stops at the line `done`.
 
-use crate::error::{OdeError, Span};
+use crate::error::{OdeError, Span, Warning};
 use crate::source::{Text, is_identifier_part, logical_lines};
 
 /// Largest number of lines after expansion.
@@ -12,15 +12,22 @@ const MAXIMUM_LINES: usize = 50_000;
 const MAXIMUM_CHARACTERS: usize = 4_000_000;
 
 /// All lines of the model with arrays expanded; comments, empty lines and what follows `done` are gone.
-pub(crate) fn expanded_lines(source: &str) -> Result<Vec<Text>, OdeError> {
+pub(crate) fn expanded_lines(source: &str, warnings: &mut Vec<Warning>) -> Result<Vec<Text>, OdeError> {
     let mut output = Output::default();
-    let mut lines = logical_lines(source).into_iter();
+    let mut lines = logical_lines(source, warnings).into_iter();
     while let Some(line) = lines.next() {
         let start = line.skip_blanks(0);
-        if is_comment(&line) {
+        if line.is_remark() {
             continue;
         }
         if is_done(&line) {
+            if line.skip_blanks(line.identifier_end(start)) < line.len()
+                && !line.string(start, line.identifier_end(start)).eq_ignore_ascii_case("done")
+            {
+                let message =
+                    "the model ends here: XPPAUT takes a line that begins with a word in d for `done`";
+                warnings.push(Warning::new(line.span(start, line.len()), message));
+            }
             break;
         }
         if line.at(start) == '%' {
@@ -33,7 +40,7 @@ pub(crate) fn expanded_lines(source: &str) -> Result<Vec<Text>, OdeError> {
             let block: Vec<Text> = lines
                 .by_ref()
                 .take_while(|line| line.at(line.skip_blanks(0)) != '%')
-                .filter(|line| !is_comment(line))
+                .filter(|line| !line.is_remark())
                 .collect();
             for index in range.indices() {
                 for line in &block {
@@ -74,23 +81,12 @@ impl Output {
     }
 }
 
-fn is_comment(line: &Text) -> bool {
-    let start = line.skip_blanks(0);
-    start == line.len() || matches!(line.at(start), '#' | '"') && !is_include(line, start)
-}
-
-fn is_include(line: &Text, start: usize) -> bool {
-    let word = line.string(start, start + "#include".len());
-    word.eq_ignore_ascii_case("#include")
-}
-
 /// The line `done`, which XPPAUT knows by its first letter.
 fn is_done(line: &Text) -> bool {
     let start = line.skip_blanks(0);
-    let end = line.identifier_end(start);
-    let word = line.string(start, end).to_ascii_lowercase();
+    let end = line.find(start, |c| c.is_whitespace() || matches!(c, '=' | '\'' | '(' | '/'));
     let next = line.at(line.skip_blanks(end));
-    word == "done" && !matches!(next, '=' | '\'' | '(' | '/') || word.starts_with('d') && next == '\0'
+    line.lower_at(start) == 'd' && !matches!(next, '=' | '\'' | '(' | '/')
 }
 
 /// `first..last` in brackets; runs downwards when `last < first`.
@@ -112,7 +108,7 @@ impl Range {
 fn find_range(line: &Text) -> Result<Option<Range>, OdeError> {
     let mut found: Option<Range> = None;
     let mut index = 0;
-    while index < line.len() {
+    while index < line.len() && (line.at(index) != '#' || line.is_include(index)) {
         if line.at(index) != '[' {
             index += 1;
             continue;
@@ -121,6 +117,8 @@ fn find_range(line: &Text) -> Result<Option<Range>, OdeError> {
         let inside = line.string(index + 1, close);
         if let Some((first, last)) = inside.split_once("..") {
             let span = line.span(index, close + 1);
+            // XPPAUT takes the last two of several points.
+            let last = last.trim_start_matches('.');
             let bound = |text: &str| -> Result<i64, OdeError> {
                 text.trim().parse::<i32>().map(i64::from).map_err(|_| {
                     OdeError::syntax(span, "the ends of an array range must be whole numbers, as in [1..5]")
@@ -150,7 +148,7 @@ fn substitute(line: &Text, index: Option<i64>, range: Option<&Range>) -> Result<
     let mut position = 0;
     while position < line.len() {
         let character = line.at(position);
-        if character == '#' && !is_include(line, position) {
+        if character == '#' && !line.is_include(position) {
             break;
         }
         // `int[a]{...}` is a kernel, not an array; the expression parser refuses it by name.

@@ -27,9 +27,13 @@
 //! The language is that of B. Ermentrout, *Simulating, Analyzing, and Animating Dynamical Systems*
 //! (2002), with the precedence of XPPAUT 6.11: `^` associates to the left, and comparisons bind as
 //! tightly as `^`, more tightly than `*` and `+` (a [`Warning`] points at every place where that
-//! matters). What makes a model something else than a smooth system of ordinary differential
-//! equations (delays, algebraic equations, noise, tables, integral equations, Markov variables,
-//! events, maps, external libraries) is refused with an [`OdeError::Unsupported`] that says what to do.
+//! matters). Directives are known by their first letters, names may begin with a digit, and a line that
+//! begins with no directive is left out, all as in XPPAUT. A table of a formula is a function.
+//!
+//! What makes a model something else than a smooth system of ordinary differential equations (delays,
+//! algebraic equations, noise, tables from files, integral equations, Markov variables, events, boundary
+//! conditions, maps, external libraries) is refused with an [`OdeError::Unsupported`] that says what to do.
+//! Where only outputs (`aux`) depend on it, they are left out with a warning.
 
 #![warn(unreachable_pub)]
 
@@ -39,17 +43,20 @@ mod declarations;
 mod error;
 mod expand;
 mod expression;
+mod interval;
 mod model;
 mod options;
 mod quantity;
 mod source;
 mod statement;
+mod switches;
 mod tape;
 
 pub use error::{OdeError, Place, Warning};
 pub use model::{Model, NamedSet};
 pub use options::{OptionEntry, Options};
 pub use quantity::Quantity;
+pub use switches::{GivenUp, Switch};
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

@@ -3,10 +3,10 @@
 use crate::compile::{Lowering, Scope, Symbol};
 use crate::declarations::{Declarations, SetDefinition};
 use crate::error::{OdeError, Place, Warning};
-use crate::expand::expanded_lines;
 use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
 use crate::source::{decode, physical_lines};
+use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
 use arclength::{Scalar, VectorField};
 
@@ -20,6 +20,8 @@ pub struct Model {
     parameters: Vec<String>,
     defaults: Vec<f64>,
     auxiliaries: Vec<String>,
+    /// Auxiliary quantities that are not supported, and why.
+    left_out: Vec<(String, OdeError)>,
     derived: Vec<String>,
     functions: Vec<String>,
     numbers: Vec<(String, f64)>,
@@ -28,6 +30,7 @@ pub struct Model {
     warnings: Vec<Warning>,
     time: Option<Place>,
     frozen: Option<f64>,
+    switches: TimeSwitches,
     field: Tape,
     auxiliary: Tape,
     derivation: Tape,
@@ -158,7 +161,16 @@ impl Model {
         self.field.evaluate(time, state, parameters, derivative);
     }
 
-    /// Names of the auxiliary quantities (`aux`).
+    /// The first time in `from..=until` at which the right-hand side at these parameters jumps or has a kink, because of something
+    /// that depends on the time alone.
+    ///
+    /// # Errors
+    /// [`GivenUp`] where the times cannot be told apart from others.
+    pub fn next_switch(&self, from: f64, until: f64, parameters: &[f64]) -> Result<Option<Switch>, GivenUp> {
+        self.switches.next(from, until, parameters)
+    }
+
+    /// Names of the auxiliary quantities (`aux`), without those that are not supported, of which a warning tells.
     pub fn auxiliary_names(&self) -> &[String] {
         &self.auxiliaries
     }
@@ -166,6 +178,11 @@ impl Model {
     /// Writes the auxiliary quantities into `values`, in the order of [`Model::auxiliary_names`].
     pub fn evaluate_auxiliary<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], values: &mut [T]) {
         self.auxiliary.evaluate(time, state, parameters, values);
+    }
+
+    /// Why the auxiliary quantity of that name is left out, if it is.
+    pub(crate) fn left_out(&self, name: &str) -> Option<&OdeError> {
+        self.left_out.iter().find(|(left, _)| left == name).map(|(_, error)| error)
     }
 
     /// Names of the derived parameters (`!name=...`).
@@ -212,7 +229,7 @@ fn position(names: &[String], name: &str) -> Option<usize> {
 }
 
 fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
-    let mut declarations = Declarations::read(&expanded_lines(source)?)?;
+    let mut declarations = Declarations::read(source)?;
     if declarations.equations.is_empty() {
         return Err(OdeError::NoEquations);
     }
@@ -232,11 +249,19 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         .iter()
         .map(|equation| lowering.lower(equation, Scope::Field))
         .collect::<Result<Vec<_>, _>>()?;
-    let auxiliary = declarations
-        .auxiliaries
-        .iter()
-        .map(|definition| lowering.lower(&definition.expression, Scope::Field))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut auxiliary = Vec::new();
+    let mut auxiliaries = Vec::new();
+    let mut left_out = Vec::new();
+    for definition in &declarations.auxiliaries {
+        let name = definition.name.text.clone();
+        match lowering.output(definition)? {
+            Ok(node) => {
+                auxiliary.push(node);
+                auxiliaries.push(name);
+            }
+            Err(error) => left_out.push((name, error)),
+        }
+    }
     let derivation = (0..declarations.symbols.derived.len())
         .map(|index| lowering.derived_parameter(index))
         .collect::<Result<Vec<_>, _>>()?;
@@ -256,6 +281,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
             limit: MAXIMUM_REGISTERS,
         })
     };
+    let switches = TimeSwitches::of(&lowering.graph, &field);
     let field = compile(&field, states)?;
     let time =
         if field.uses_time() { lowering.time.map(|span| filled(span.into(), source_lines)) } else { None };
@@ -293,7 +319,8 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         states: symbols.states.into_iter().map(|name| name.text).collect(),
         defaults: declarations.parameters.iter().map(|parameter| parameter.value).collect(),
         parameters: declarations.parameters.into_iter().map(|parameter| parameter.name.text).collect(),
-        auxiliaries: declarations.auxiliaries.into_iter().map(|definition| definition.name.text).collect(),
+        auxiliaries,
+        left_out,
         derived: symbols.derived.into_iter().map(|definition| definition.name.text).collect(),
         functions: symbols.functions.iter().map(|function| function.signature()).collect(),
         numbers,
@@ -302,6 +329,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         warnings,
         time,
         frozen: None,
+        switches,
         field,
         auxiliary,
         derivation,

@@ -39,7 +39,13 @@ impl Model {
                 Err(OdeError::NameTaken { name: taken, .. }) if taken.eq_ignore_ascii_case(&name) => {
                     name.push('_');
                 }
-                parsed => return Ok(Quantity { model: parsed? }),
+                parsed => {
+                    let model = parsed?;
+                    return match model.left_out(&name) {
+                        Some(error) => Err(error.clone()),
+                        None => Ok(Quantity { model }),
+                    };
+                }
             }
         }
     }

@@ -4,7 +4,7 @@
 //! ending. A logical line remembers where each of its characters was, through continuation and
 //! array expansion, so that errors point at what the author wrote.
 
-use crate::error::Span;
+use crate::error::{Span, Warning};
 
 /// Text of the model, whatever its encoding: UTF-8, or else Latin-1.
 pub(crate) fn decode(bytes: &[u8]) -> String {
@@ -80,11 +80,47 @@ impl Text {
     }
 
     /// End of the identifier that starts at `start`; `start` itself when there is none.
+    ///
+    /// XPPAUT looks for names before numbers, so that `2b` is a name; `1e5` and the beginning of `2.5` are numbers.
     pub(crate) fn identifier_end(&self, start: usize) -> usize {
-        if !is_identifier_start(self.at(start)) {
-            return start;
+        let first = self.at(start);
+        let end = self.find(start, |character| !is_identifier_part(character));
+        let is_name = is_identifier_start(first) || first.is_ascii_digit() && self.number_end(start) < end;
+        if is_name { end } else { start }
+    }
+
+    /// End of the number that starts at `start`: digits, a point, digits, and an exponent if it has digits.
+    pub(crate) fn number_end(&self, start: usize) -> usize {
+        let digits = |from: usize| self.find(from, |character| !character.is_ascii_digit());
+        let mut end = digits(start);
+        if self.at(end) == '.' {
+            end = digits(end + 1);
         }
-        self.find(start, |character| !is_identifier_part(character))
+        if self.lower_at(end) == 'e' {
+            let sign = usize::from(matches!(self.at(end + 1), '+' | '-'));
+            let exponent_end = digits(end + 1 + sign);
+            if exponent_end > end + 1 + sign {
+                return exponent_end;
+            }
+        }
+        end
+    }
+
+    /// Whether the line is a remark: empty, or begun by `#`, `"`, or a `%` that begins no block.
+    pub(crate) fn is_remark(&self) -> bool {
+        let start = self.skip_blanks(0);
+        match self.at(start) {
+            '#' => !self.is_include(start),
+            '%' => self.at(self.skip_blanks(start + 1)) != '[',
+            '"' => true,
+            _ => start == self.len(),
+        }
+    }
+
+    /// Whether `#include` stands at `start`.
+    pub(crate) fn is_include(&self, start: usize) -> bool {
+        let word = self.string(start, start + "#include".len());
+        word.eq_ignore_ascii_case("#include")
     }
 }
 
@@ -96,19 +132,28 @@ pub(crate) fn is_identifier_part(character: char) -> bool {
     character.is_ascii_alphanumeric() || character == '_'
 }
 
-/// Lines joined by a backslash, as XPPAUT does: what follows the backslash on its line is dropped.
-pub(crate) fn logical_lines(source: &str) -> Vec<Text> {
+/// Lines joined by a backslash, as XPPAUT does: what follows the backslash on its line is dropped. In a remark on the first line
+/// the backslash has no meaning; further down it makes the next line a part of the remark, which earns a warning.
+pub(crate) fn logical_lines(source: &str, warnings: &mut Vec<Warning>) -> Vec<Text> {
     let mut lines = Vec::new();
     let mut current = Text::default();
     let mut continued = false;
     for (number, line) in physical_lines(source).enumerate() {
-        continued = false;
+        let begins = !std::mem::take(&mut continued);
         for (column, character) in line.chars().enumerate() {
+            let place = (number as u32 + 1, column as u32 + 1);
             if character == '\\' {
-                continued = true;
+                let remark = begins && current.is_remark();
+                continued = !(remark && number == 0);
+                if remark && continued {
+                    warnings.push(Warning::new(
+                        Span { line: place.0, column: place.1, length: 1 },
+                        "the backslash makes the next line a part of this remark, as in XPPAUT",
+                    ));
+                }
                 break;
             }
-            current.push(character, (number as u32 + 1, column as u32 + 1));
+            current.push(character, place);
         }
         if !continued {
             lines.push(std::mem::take(&mut current));

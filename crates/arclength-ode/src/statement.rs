@@ -5,6 +5,7 @@
 //! equation is refused here, by name.
 
 use crate::error::{OdeError, Span, nearest};
+use crate::expression::parse_number;
 use crate::source::Text;
 
 /// A name as written, and where.
@@ -46,18 +47,25 @@ pub(crate) enum Statement {
     Set(Name, usize, usize),
     /// `@ total=100, dt=.1`
     Options(usize),
-    /// A directive that has no meaning here, with what to say about it.
-    Ignored(Span, &'static str),
+    /// `table f % 101 0 1 sin(t)`: the name, number of points and their range, and where the formula starts.
+    Table(Name, TableRange, usize),
+    /// A line that has no meaning here, with what to say about it.
+    Ignored(Span, String),
 }
 
-/// Directives as XPPAUT knows them, for suggestions.
-const DIRECTIVES: [&str; 9] = ["par", "number", "init", "aux", "set", "options", "bdry", "only", "done"];
+/// Directives that are understood, for suggestions.
+const DIRECTIVES: [&str; 8] = ["par", "number", "init", "aux", "set", "table", "only", "done"];
+
+/// Where the points of a table lie.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TableRange {
+    pub points: u32,
+    pub low: f64,
+    pub high: f64,
+}
 
 /// Largest number of arguments of a function.
 const MAXIMUM_ARGUMENTS: usize = 100;
-
-/// Spellings of the directive that gives a boundary condition.
-const BOUNDARY: [&str; 4] = ["b", "bdry", "bndry", "boundary"];
 
 /// Says what a non-empty line is.
 pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
@@ -82,7 +90,7 @@ pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
                 "paste the text of the included file here",
             ));
         }
-        first if first.is_ascii_digit() => {
+        _ if line.skip_blanks(line.number_end(start)) == line.len() => {
             return Err(OdeError::unsupported(
                 line.span(start, line.len()),
                 "statements that start with a number (the format of XPP before 1997) are",
@@ -90,6 +98,13 @@ pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
             ));
         }
         _ => {}
+    }
+    // XPPAUT ends the first word of a line at these.
+    let word_end = line.find(start, |c| c.is_whitespace() || matches!(c, '=' | '/' | '\'' | '('));
+    let ends_in_blank = line.at(word_end) == '\0' || line.at(word_end).is_whitespace();
+    if ends_in_blank && word_end > line.identifier_end(start) && line.at(line.skip_blanks(word_end)) != '=' {
+        let word = Name { text: line.string(start, word_end), span: line.span(start, word_end) };
+        return directive(line, word, line.skip_blanks(word_end));
     }
     let (name, end) = name_at(line, start)?;
     let next = line.skip_blanks(end);
@@ -103,7 +118,7 @@ pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
         '\'' => Ok(Statement::Equation(name, after_equals(line, next + 1)?)),
         '/' if line.lower_at(start) == 'd' && end > start + 1 => leibniz(line, start, end, next),
         // `b (x-1)` is a boundary condition, `f (x)=...` a function.
-        '(' if next > end && BOUNDARY.contains(&name.key().as_str()) => directive(line, name, next),
+        '(' if next > end && !defines(line, next) => directive(line, name, next),
         '(' => with_parentheses(line, name, next),
         _ => directive(line, name, next),
     }
@@ -117,6 +132,12 @@ fn leibniz(line: &Text, start: usize, end: usize, slash: usize) -> Result<Statem
     }
     let name = Name { text: line.string(start + 1, end), span: line.span(start + 1, end) };
     Ok(Statement::Equation(name, after_equals(line, after)?))
+}
+
+/// Whether an equals sign follows the parenthesis that opens at `open`.
+fn defines(line: &Text, open: usize) -> bool {
+    let close = line.find(open, |character| character == ')');
+    line.at(line.skip_blanks(close + 1)) == '='
 }
 
 /// `x(0)=`, `x(t+1)=`, `x(t)=` with an integral, or the definition of a function.
@@ -179,81 +200,118 @@ fn has_integral(line: &Text, start: usize) -> bool {
     text.contains("int{") || text.contains("int[")
 }
 
+/// A line whose first word is a directive, which XPPAUT knows by its first letter or two. Other lines it drops.
 fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError> {
     let key = word.key();
     let refuse = |feature: &str, remedy: &str| Err(OdeError::unsupported(word.span, feature, remedy));
-    match key.as_str() {
-        "p" | "par" | "pars" | "para" | "param" | "params" | "parameter" | "parameters" => {
-            Ok(Statement::Parameters(rest))
-        }
-        "n" | "num" | "nums" | "number" | "numbers" => Ok(Statement::Numbers(rest)),
-        "i" | "ic" | "init" | "initial" => Ok(Statement::Initial(rest)),
-        "a" | "au" | "aux" | "auxiliary" => {
+    let is_vectorizer = key.starts_with("ve") && key.as_bytes().get(5) == Some(&b'r');
+    let is_special = key.starts_with("sp") && key.as_bytes().get(5) == Some(&b'a');
+    match key.as_bytes() {
+        [b'p', ..] => Ok(Statement::Parameters(rest)),
+        [b'n', ..] => Ok(Statement::Numbers(rest)),
+        [b'i', ..] => Ok(Statement::Initial(rest)),
+        [b'a'] | [b'a', b'u', ..] => {
             // Nothing refers to an auxiliary quantity, so its name may hold any character.
             let end = line.find(rest, |character| character == '=' || character.is_whitespace());
             let name = Name { text: line.string(rest, end), span: line.span(rest, end) };
             Ok(Statement::Auxiliary(name, after_equals(line, end)?))
         }
-        "set" => set(line, rest),
-        key if BOUNDARY.contains(&key) => Ok(Statement::Ignored(
+        [b's', b'e', ..] => set(line, rest),
+        [b't', b'a', ..] => table(line, &word, rest),
+        [b'b', ..] => refuse(
+            "boundary conditions are",
+            "remove the lines of boundary conditions to follow the motion from the initial values, which is another problem",
+        ),
+        [b'o', b'n', ..] => Ok(Statement::Ignored(
             word.span,
-            "boundary conditions are ignored: equilibria and cycles have none",
+            format!("`{}` chooses columns of XPPAUT's output: ignored", word.text),
         )),
-        "only" => Ok(Statement::Ignored(word.span, "`only` chooses columns of XPPAUT's output: ignored")),
-        "o" | "opt" | "option" | "options" => {
-            Ok(Statement::Ignored(word.span, "a file of options is not read: give the options on a line @"))
-        }
-        "g" | "global" => refuse(
+        [b'o', ..] => Ok(Statement::Ignored(
+            word.span,
+            "a file of options is not read: give the options on a line @".to_owned(),
+        )),
+        [b'g', b'r', ..] => refuse("a group is", "write its parts as plain equations"),
+        [b'g', ..] => refuse(
             "events that reset the state (global) are",
             "only smooth systems can be continued; remove the line to follow the flow between events",
         ),
-        "w" | "wie" | "wien" | "wiener" => {
+        [b'w', ..] => {
             refuse("noise (wiener) is", "remove the line and declare the noise as a parameter with value 0")
         }
-        "m" | "markov" => {
+        [b'm', b'a', ..] => {
             refuse("a Markov variable is", "replace it by the differential equation of its mean")
         }
-        "t" | "tab" | "table" | "tabular" => {
-            refuse("a table is", "write the tabulated function as a formula, f(x)=...")
+        _ if is_vectorizer => {
+            refuse("an external library is", "write its function as a formula in the model")
         }
-        "v" | "volt" | "volterra" => refuse(
+        [b'v', ..] => refuse(
             "an integral equation is",
             "replace an exponential kernel by a differential equation (the linear chain trick)",
         ),
-        "s" | "so" | "sol" | "solv" | "solve" => refuse(
+        [b's', b'o', ..] => refuse(
             "an algebraic equation (solve) is",
             "solve the equation by hand, or give its variable fast dynamics of its own",
         ),
-        "sp" | "spec" | "special" => {
+        _ if is_special => {
             refuse("a network operator (special) is", "write it with sum(a,b)of(...) and shift(x,i')")
         }
-        "ex" | "export" | "vector" => {
-            refuse("an external library is", "write its function as a formula in the model")
-        }
-        "group" => refuse("a group is", "write its parts as plain equations"),
+        [b'e', b'x', ..] => refuse("an external library is", "write its function as a formula in the model"),
         _ => {
-            let next = line.at(rest);
-            if nearest(&key, DIRECTIVES).is_none()
-                && next != '\0'
-                && !crate::source::is_identifier_start(next)
-            {
-                let message = format!("expected = after `{}`, found `{next}`", word.text);
-                return Err(OdeError::syntax(line.span(rest, rest + 1), message));
-            }
-            let nearest = nearest(&key, DIRECTIVES);
-            Err(OdeError::UnknownName {
-                place: word.span.into(),
-                kind: "directive",
-                name: word.text.clone(),
-                nearest,
-            })
+            let guess = nearest(&key, DIRECTIVES);
+            let guess = guess.map(|guess| format!("; did you mean `{guess}`?")).unwrap_or_default();
+            let message =
+                format!("`{}` begins no statement: the line is left out, as by XPPAUT{guess}", word.text);
+            Ok(Statement::Ignored(word.span, message))
         }
     }
 }
 
+/// `table f % 101 0 1 sin(t)`
+fn table(line: &Text, word: &Name, rest: usize) -> Result<Statement, OdeError> {
+    let mut position = rest;
+    let mut next = || {
+        let start = line.skip_blanks(position);
+        position = line.find(start, char::is_whitespace);
+        (line.string(start, position), line.span(start, position))
+    };
+    let (name, name_span) = next();
+    let (kind, _) = next();
+    if kind != "%" {
+        return Err(OdeError::unsupported(
+            word.span,
+            "a table that is read from a file is",
+            format!(
+                "write the tabulated function as a formula, {name}(x)=..., or as a table of a formula, table {name} % POINTS LOW HIGH f(t)"
+            ),
+        ));
+    }
+    let mut number = |what: &str| {
+        let (text, span) = next();
+        let number = parse_number(&text).filter(|number| number.is_finite());
+        number.map(|number| (number, span)).ok_or_else(|| {
+            let message = format!("expected {what} in table {name} % POINTS LOW HIGH f(t), found `{text}`");
+            OdeError::syntax(span, message)
+        })
+    };
+    let (points, points_span) = number("the number of points")?;
+    let (low, _) = number("the lower end")?;
+    let (high, high_span) = number("the upper end")?;
+    if !(points.fract() == 0.0 && (2.0..=f64::from(u32::MAX)).contains(&points)) {
+        return Err(OdeError::syntax(points_span, "a table has two points or more"));
+    }
+    if high <= low {
+        return Err(OdeError::syntax(high_span, "the upper end of a table lies above its lower end"));
+    }
+    let range = TableRange { points: points as u32, low, high };
+    Ok(Statement::Table(Name { text: name, span: name_span }, range, position))
+}
+
 fn set(line: &Text, rest: usize) -> Result<Statement, OdeError> {
-    let end = line.find(rest, |character| character == '{' || character.is_whitespace());
-    let open = line.skip_blanks(end);
+    let open = line.find(rest, |character| character == '{');
+    let mut end = open;
+    while end > rest && line.at(end - 1).is_whitespace() {
+        end -= 1;
+    }
     let close = line.find(open, |character| character == '}');
     if end == rest || line.at(open) != '{' || close == line.len() {
         let message = "a named set is written set name {x=1,a=2}";

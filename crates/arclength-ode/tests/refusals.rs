@@ -21,11 +21,16 @@ fn refused(source: &str, line: usize, column: usize, words: &str) {
 #[test]
 fn what_is_not_an_ordinary_differential_equation() {
     refused("x'=-delay(x,tau)\npar tau=1\n", 1, 5, "delays are not supported; approximate the delay");
+    refused("m=2*k\nk=x-delay(x,1)\nx'=m\n", 2, 5, "delays are not supported");
+    refused("f(x)=ran(1)\nx'=f(x)\n", 1, 6, "random numbers");
     refused("x'=y\n0=x+y^3\n", 2, 1, "algebraic equations");
     refused("x'=y\nsolve y=1\n", 2, 1, "algebraic");
     refused("wiener n\nx'=n\n", 1, 1, "noise");
     refused("x'=ran(1)\n", 1, 4, "random numbers");
-    refused("table w % 3 0 1 t\nx'=w(x)\n", 1, 1, "table");
+    refused("table w weights.tab\nx'=w(x)\n", 1, 1, "as a formula, w(x)=...");
+    refused("x'=1\nbndry x-1\n", 2, 1, "boundary conditions are not supported; remove the lines");
+    refused("x'=1\nb (x-1)\n", 2, 1, "boundary conditions");
+    refused("x'=1\nboundry x'\n", 2, 1, "boundary conditions");
     refused("volt x=1+int{1#x}\n", 1, 1, "integral equation");
     refused("x(t)=int{exp(-t)#x}\n", 1, 1, "integral equations");
     refused("x'=-x+int{exp(-t)#x}\n", 1, 7, "integrals over the past");
@@ -45,9 +50,16 @@ fn what_is_not_an_ordinary_differential_equation() {
 fn slips_of_the_pen() {
     refused("x' = -gama*x\npar gamma=1\n", 1, 7, "unknown name `gama`; did you mean `gamma`?");
     refused("x'=sni(x)\n", 1, 4, "unknown function `sni`; did you mean `sin`?");
-    refused("x'=1\npamar a=1\n", 2, 1, "unknown directive `pamar`; did you mean `par`?");
     refused("voltage'=1\ninit votlage=2\n", 2, 6, "unknown state `votlage`; did you mean `voltage`?");
     refused("x'=2x\n", 1, 5, "products are written with *");
+    refused("x'=20sin(x)\n", 1, 6, "products are written with *");
+    refused("x'=1\npar 1e5=2\n", 2, 5, "`1e5` is a number, not a name");
+    refused("table w % 1 0 1 t\nx'=w(x)\n", 1, 11, "two points or more");
+    refused("table w % 5 1 0 t\nx'=w(x)\n", 1, 15, "above its lower end");
+    refused("table w % 5 0 x t\nx'=w(x)\n", 1, 15, "expected the upper end");
+    refused("table w % 5 0 1 t*x\nx'=w(x)\n", 1, 19, "depends on `x`");
+    refused("table w % 5 0 1 w(t)\nx'=w(x)\n", 1, 17, "defined through itself");
+    refused("table w % 5 0 1 t\nx'=w(x,1)\n", 2, 4, "takes 1 argument, not 2");
     refused("x'=(x+1\n", 1, 8, "expected ) to close the parenthesis, found the end of the line");
     refused("x'=x+1)\n", 1, 7, "never opened");
     refused("x'=x+\n", 1, 6, "ends where a number or name was expected");

@@ -1,10 +1,50 @@
 //! A limit cycle in a result, of any model.
 
 use crate::branch::{certain_digits, pairs, tests};
+use crate::model::ChosenModel;
+use crate::monitor::named;
 use crate::normal_form;
 use arclength::cycle::{Branching, CyclePoint, Orbit};
 use kingpin_report::NamedNumbers;
 use serde::{Deserialize, Serialize};
+
+/// What becomes of quantities along a cycle, by name, where they have a value.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AlongCycle {
+    /// Largest values.
+    pub max: NamedNumbers,
+    /// Smallest values.
+    pub min: NamedNumbers,
+    /// Means over the period.
+    pub mean: NamedNumbers,
+}
+
+impl AlongCycle {
+    /// Whether there are no quantities.
+    pub fn is_empty(&self) -> bool {
+        self.max.is_empty() && self.min.is_empty() && self.mean.is_empty()
+    }
+
+    /// The auxiliary quantities of a model along a cycle at these parameters.
+    pub fn auxiliary(chosen: &ChosenModel, point: &CyclePoint, parameters: &[f64]) -> Self {
+        let names = chosen.auxiliary_names();
+        let time = chosen.stored.frozen_time.unwrap_or(f64::NAN);
+        let quantity = |index: usize| move |state: &[f64]| chosen.auxiliary(time, state, parameters)[index];
+        let all =
+            |taken: &dyn Fn(usize) -> f64| named(&names, &(0..names.len()).map(taken).collect::<Vec<f64>>());
+        let orbit = &point.orbit;
+        if orbit.mesh.len() < 2 {
+            // A Hopf point: the cycle is an equilibrium.
+            let here = all(&|index| quantity(index)(&point.max));
+            return Self { max: here.clone(), min: here.clone(), mean: here };
+        }
+        Self {
+            max: all(&|index| orbit.maximum(quantity(index))),
+            min: all(&|index| orbit.minimum(quantity(index))),
+            mean: all(&|index| orbit.mean(quantity(index))),
+        }
+    }
+}
 
 /// A cycle in a result.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -18,6 +58,9 @@ pub struct CycleResult {
     pub max: NamedNumbers,
     /// Smallest value of every state.
     pub min: NamedNumbers,
+    /// The auxiliary quantities of the model along the cycle.
+    #[serde(default, skip_serializing_if = "AlongCycle::is_empty")]
+    pub aux: AlongCycle,
     /// Floquet multipliers, the largest modulus first.
     pub multipliers: Vec<[Option<f64>; 2]>,
     /// Relative errors of the multipliers, measured on two meshes at cycles that were asked for and at the ends.
@@ -67,6 +110,7 @@ impl CycleResult {
             period: point.period,
             max: named(&point.max),
             min: named(&point.min),
+            aux: AlongCycle::default(),
             multipliers: pairs(&point.multipliers),
             // One without a finite error keeps its place.
             multiplier_errors: point

@@ -6,7 +6,7 @@ mod result;
 mod story;
 
 pub use crate::unlocated::{UnlocatedResult, warnings};
-pub use cycle::CycleResult;
+pub use cycle::{AlongCycle, CycleResult};
 pub use request::{CyclesAnalysis, CyclesRequest};
 pub use result::CyclesResult;
 pub use story::tell;

@@ -1,6 +1,6 @@
 //! A branch of limit cycles as a result.
 
-use super::cycle::CycleResult;
+use super::cycle::{AlongCycle, CycleResult};
 use super::story::tell;
 use crate::branch::{Origin, parameters, stability};
 use crate::end::End;
@@ -60,7 +60,14 @@ impl CyclesResult {
                 let own = point.label.map(|label| label.to_string());
                 let label = own.or_else(|| labels::of_end(index, count));
                 let monitors = named(monitors, &point.monitors);
-                CycleResult { monitors, ..CycleResult::new(point, label, |state| chosen.named_state(state)) }
+                let mut parameters = chosen.parameters.clone();
+                parameters[active] = point.value;
+                let aux = AlongCycle::auxiliary(chosen, &point, &parameters);
+                CycleResult {
+                    monitors,
+                    aux,
+                    ..CycleResult::new(point, label, |state| chosen.named_state(state))
+                }
             })
             .collect();
         let last = |point: Option<&CycleResult>| {
@@ -170,6 +177,12 @@ impl Report for CyclesResult {
             columns = columns
                 .optional_numbers(format!("max_{name}"), points().map(|point| point.max.get(index)))
                 .optional_numbers(format!("min_{name}"), points().map(|point| point.min.get(index)));
+        }
+        for name in monitored(points().map(|point| &point.aux.max)) {
+            columns = columns
+                .optional_numbers(format!("max_{name}"), points().map(|point| point.aux.max.named(name)))
+                .optional_numbers(format!("min_{name}"), points().map(|point| point.aux.min.named(name)))
+                .optional_numbers(format!("mean_{name}"), points().map(|point| point.aux.mean.named(name)));
         }
         columns
             .complex_numbers("multiplier", states.len(), points().map(|point| &point.multipliers))

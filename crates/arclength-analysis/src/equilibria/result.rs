@@ -31,6 +31,9 @@ pub struct EquilibriumResult {
     pub value: f64,
     /// The equilibrium.
     pub state: NamedNumbers,
+    /// The auxiliary quantities of the model, where they have a value.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub aux: NamedNumbers,
     /// Eigenvalues by descending real part.
     pub eigenvalues: Vec<[Option<f64>; 2]>,
     /// Nothing where that is not decided.
@@ -93,9 +96,18 @@ impl EquilibriaResult {
         branch: &EquilibriumBranch,
     ) -> Self {
         let count = branch.points.len();
+        let auxiliary = chosen.auxiliary_names();
+        // What depends on the time has no value of its own, unless the time is frozen.
+        let time = chosen.stored.frozen_time.unwrap_or(f64::NAN);
+        let parameters = |value: f64| {
+            let mut parameters = chosen.parameters.clone();
+            branch.active.iter().for_each(|&active| parameters[active] = value);
+            parameters
+        };
         let point = |(index, point): (usize, &EquilibriumPoint)| EquilibriumResult {
             value: point.value,
             state: chosen.named_state(&point.state),
+            aux: named(&auxiliary, &chosen.auxiliary(time, &point.state, &parameters(point.value))),
             eigenvalues: pairs(&point.eigenvalues),
             stable: point.stability.is_stable(),
             label: point.label.map(|label| label.to_string()).or_else(|| labels::of_end(index, count)),
@@ -170,11 +182,15 @@ impl Report for EquilibriaResult {
         writeln!(out)?;
         let states = self.states().into_iter().take(SHOWN_STATES);
         let headings = ["label", self.along.key.as_str()].into_iter().chain(states);
+        let auxiliary: Vec<&str> =
+            monitored(self.points.iter().map(|point| &point.aux)).into_iter().take(SHOWN_STATES).collect();
+        let headings = headings.chain(auxiliary.iter().copied());
         let monitors: Vec<&str> = monitored(self.points.iter().map(|point| &point.monitors));
         let mut table = Table::new(headings.chain(monitors.iter().copied()).chain(["", ""]));
         for point in self.points.iter().filter(|point| point.label.is_some()) {
             let mut cells: Vec<Cell> = vec![point.label.clone().into(), Cell::Digits(point.value, DIGITS)];
             cells.extend(point.state.0.iter().take(SHOWN_STATES).map(|(_, value)| Cell::from(*value)));
+            cells.extend(auxiliary.iter().map(|name| Cell::from(point.aux.named(name))));
             cells.extend(monitors.iter().map(|name| Cell::from(point.monitors.named(name))));
             cells.push(stability(point.stable, is_bifurcation(point.label.as_deref())).into());
             cells.push(point.special.as_ref().map(normal_form::of_equilibrium).unwrap_or_default().into());
@@ -192,6 +208,9 @@ impl Report for EquilibriaResult {
         let states = self.states();
         for (index, name) in states.iter().enumerate() {
             columns = columns.optional_numbers(*name, points().map(|point| point.state.get(index)));
+        }
+        for name in monitored(points().map(|point| &point.aux)) {
+            columns = columns.optional_numbers(name, points().map(|point| point.aux.named(name)));
         }
         columns
             .complex_numbers("eigenvalue", states.len(), points().map(|point| &point.eigenvalues))

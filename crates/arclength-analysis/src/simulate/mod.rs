@@ -1,5 +1,6 @@
 //! A time history of a model.
 
+mod motion;
 mod request;
 mod result;
 

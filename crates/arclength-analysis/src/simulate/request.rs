@@ -1,26 +1,54 @@
 //! What a time history is asked for by, and how it is computed.
 
+use super::motion::{Accuracy, Course, Motion};
 use super::result::HistoryResult;
 use crate::error::Error;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
-use arclength::integration::{Integrator, from_fn};
+use arclength::integration::IntegrationError;
+use arclength_ode::{NamedSet, Options};
+use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Relative tolerance; the absolute one is a hundredth of it.
+/// Relative tolerance where none was given.
 const TOLERANCE: f64 = 1e-10;
+/// The absolute tolerance of a state of size 1, in relative tolerances.
+const ABSOLUTE: f64 = 0.01;
+/// Size of a state below which its absolute tolerance is measured by its size.
+const SMALL: f64 = 0.01;
+/// Most steps.
+const MOST_STEPS: usize = 1_000_000;
+/// How often a motion is followed again with the tolerances that the sizes of its states ask for.
+const REPETITIONS: usize = 3;
 
-/// A time history from the initial state of the model.
+/// A time history from the initial state of the model. What is not given is as the model has it in its lines `@`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateRequest {
     /// The model, or the labelled point.
     pub model: ModelRequest,
-    /// Time.
-    pub duration: f64,
-    /// Number of samples, at equal distances from 0 to the end.
-    #[serde(default = "SimulateRequest::default_points")]
-    pub points: u64,
+    /// How long it lasts, or the model's `total`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration: Option<f64>,
+    /// Number of samples, at equal distances to the end; or as many as the model's `dt` and `nout` ask for, or
+    /// [`default_points`](Self::default_points).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<u64>,
+    /// Time at which it starts, or the model's `t0`, or 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub t0: Option<f64>,
+    /// Time before which there are no samples, or the model's `trans`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transient: Option<f64>,
+    /// Magnitude of a state at which it stops, or the model's `bound`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
+    /// Relative tolerance, or the model's `toler` where that is smaller than 1e-10.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Largest step of the integrator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_step: Option<f64>,
 }
 
 /// A request that makes sense, with its model.
@@ -28,21 +56,42 @@ pub struct SimulateRequest {
 pub struct SimulateAnalysis {
     chosen: ChosenModel,
     warnings: Vec<String>,
+    start: f64,
     times: Vec<f64>,
+    bound: f64,
+    /// The largest absolute tolerance that is allowed.
+    absolute: f64,
+    accuracy: Accuracy,
 }
 
 impl SimulateRequest {
     /// Numbers of samples that are allowed.
     pub const POINTS: RangeInclusive<u64> = 2..=1_000_000;
+    /// Relative tolerances that are allowed.
+    pub const TOLERANCES: RangeInclusive<f64> = 1e-14..=0.1;
 
-    /// Number of samples where none was given.
+    /// Number of samples where neither the request nor the model gives one.
     pub const fn default_points() -> u64 {
         1001
     }
 
     /// A request with the default of everything else.
     pub fn new(model: ModelRequest, duration: f64) -> Self {
-        Self { model, duration, points: Self::default_points() }
+        Self { duration: Some(duration), ..Self::of(model) }
+    }
+
+    /// A request for what the model itself asks for.
+    pub fn of(model: ModelRequest) -> Self {
+        Self {
+            model,
+            duration: None,
+            points: None,
+            t0: None,
+            transient: None,
+            bound: None,
+            tolerance: None,
+            max_step: None,
+        }
     }
 
     /// Reads the model and checks every field.
@@ -50,18 +99,115 @@ impl SimulateRequest {
     /// # Errors
     /// What is wrong with the model or a field.
     pub fn validate(&self) -> Result<SimulateAnalysis, Error> {
-        if !(self.duration > 0.0 && self.duration.is_finite()) {
-            let given = self.duration.to_string();
-            return Err(Error::invalid(&["duration"], given, "not a duration", "positive and finite"));
-        }
-        if !Self::POINTS.contains(&self.points) {
+        check(&["duration"], self.duration, "positive and finite", |value| value > 0.0 && value.is_finite())?;
+        check(&["t0"], self.t0, "a finite time", f64::is_finite)?;
+        check(&["bound"], self.bound, "a positive number", |value| value > 0.0)?;
+        check(&["max_step"], self.max_step, "a positive number", |value| value > 0.0)?;
+        check(&["tolerance"], self.tolerance, "from 1e-14 to 0.1", |value| {
+            Self::TOLERANCES.contains(&value)
+        })?;
+        if let Some(points) = self.points.filter(|points| !Self::POINTS.contains(points)) {
             let allowed = format!("{} to {}", Self::POINTS.start(), Self::POINTS.end());
-            return Err(Error::invalid(&["points"], self.points.to_string(), "too few or too many", allowed));
+            return Err(Error::invalid(&["points"], points.to_string(), "too few or too many", allowed));
         }
-        let OpenedModel { chosen, warnings, .. } = self.model.open()?;
-        let last = (self.points - 1) as f64;
-        let times = (0..self.points).map(|index| self.duration * (index as f64 / last)).collect();
-        Ok(SimulateAnalysis { chosen, warnings, times })
+        let OpenedModel { chosen, mut warnings, .. } = self.model.open()?;
+        let set = self.model.named_set.as_ref().map(|name| chosen.named_set(name)).transpose()?;
+        let file = FileSettings { options: chosen.model.options(), set };
+
+        let duration = self.duration.or_else(|| file.number("total"));
+        let Some(duration) = duration.filter(|duration| *duration > 0.0 && duration.is_finite()) else {
+            let given = duration.map_or("nothing".to_owned(), |duration| format!("(@ total={duration})"));
+            let problem = "the model does not say how long the motion lasts";
+            return Err(Error::invalid(&["duration"], given, problem, "a positive time"));
+        };
+        let start = self.t0.or_else(|| file.number("t0").filter(|time| time.is_finite())).unwrap_or(0.0);
+        let end = start + duration;
+        if end <= start {
+            return Err(Error::invalid(
+                &["duration"],
+                duration.to_string(),
+                "lost beside the start",
+                "a longer one",
+            ));
+        }
+        check(&["transient"], self.transient, &format!("less than {end}, where the motion ends"), |time| {
+            time < end
+        })?;
+        let transient = self.transient.or_else(|| {
+            let time = file.number("trans")?;
+            if time < end {
+                return Some(time);
+            }
+            warnings.push(format!("the model's transient of {time} is ignored: the motion ends at {end}"));
+            None
+        });
+        let first = transient.map_or(start, |time| time.max(start));
+        let points = self.points.or_else(|| file.points(end - first)).unwrap_or(Self::default_points());
+        let last = (points - 1) as f64;
+        let mut times: Vec<f64> =
+            (0..points).map(|index| first + (end - first) * (index as f64 / last)).collect();
+        times[points as usize - 1] = end;
+
+        let tighter = |name: &str, default: f64| {
+            file.number(name).filter(|value| *value > 0.0).map_or(default, |value| value.min(default))
+        };
+        let relative =
+            self.tolerance.unwrap_or_else(|| tighter("tol", TOLERANCE).max(*Self::TOLERANCES.start()));
+        let absolute = tighter("atol", ABSOLUTE * relative);
+        let largest_step = self.max_step.unwrap_or(f64::INFINITY);
+        let bound =
+            self.bound.or_else(|| file.number("bound").filter(|bound| *bound > 0.0)).unwrap_or(f64::INFINITY);
+        let states = chosen.model.states().len();
+        let accuracy =
+            Accuracy { relative, absolute: vec![absolute; states], largest_step, most_steps: MOST_STEPS };
+        Ok(SimulateAnalysis { chosen, warnings, start, times, bound, absolute, accuracy })
+    }
+}
+
+/// Refuses a value that was given and is not as it has to be.
+fn check(
+    fields: &'static [&'static str],
+    value: Option<f64>,
+    allowed: &str,
+    is_allowed: impl Fn(f64) -> bool,
+) -> Result<(), Error> {
+    match value.filter(|value| !is_allowed(*value)) {
+        Some(value) => Err(Error::invalid(fields, value.to_string(), "out of range", allowed)),
+        None => Ok(()),
+    }
+}
+
+/// What the text of a model says of its simulation, a named set before the lines `@`.
+struct FileSettings<'a> {
+    options: &'a Options,
+    set: Option<&'a NamedSet>,
+}
+
+impl FileSettings<'_> {
+    fn number(&self, name: &str) -> Option<f64> {
+        let of_set =
+            self.set.and_then(|set| set.options.iter().rev().find(|entry| entry.name.starts_with(name)));
+        if let Some(number) = of_set.and_then(|entry| entry.value.parse().ok()) {
+            return Some(number);
+        }
+        match name {
+            "total" => self.options.total,
+            "dt" => self.options.dt,
+            "t0" => self.options.t0,
+            "trans" => self.options.transient,
+            "bound" => self.options.bound,
+            "tol" => self.options.tolerance,
+            "atol" => self.options.absolute_tolerance,
+            other => self.options.get(other)?.parse().ok(),
+        }
+    }
+
+    /// The samples of a time that the step and the number of steps between outputs ask for.
+    fn points(&self, time: f64) -> Option<u64> {
+        let between = ["nout", "njmp"].iter().find_map(|name| self.number(name)).unwrap_or(1.0);
+        let points = (time / (self.number("dt")? * between).abs()).round() + 1.0;
+        let range = SimulateRequest::POINTS;
+        (*range.start() as f64 <= points && points <= *range.end() as f64).then_some(points as u64)
     }
 }
 
@@ -74,15 +220,81 @@ impl SimulateAnalysis {
     /// Integrates the motion.
     ///
     /// # Errors
-    /// [`Error::Integration`].
+    /// [`Error::Integration`]; a motion that leaves the bound before its first sample.
     pub fn run(&self) -> Result<HistoryResult, Error> {
         let chosen = &self.chosen;
-        let system = from_fn(chosen.model.states().len(), |time, state, derivative| {
-            chosen.model.evaluate_at(time, state, &chosen.parameters, derivative);
-        });
-        let solution = Integrator::with_tolerance(TOLERANCE).sample(system, &chosen.start, &self.times)?;
-        let values = |index: usize| solution.samples().map(|(_, state)| state[index]).collect();
-        let states = (0..chosen.model.states().len()).map(values).collect();
-        Ok(HistoryResult::new(chosen, self.times.clone(), states))
+        let mut warnings = Vec::new();
+        let motion = self.follow(&mut warnings)?;
+        let count = motion.samples.len();
+        if let Some(time) = motion.left_bound {
+            let bound = readable(self.bound);
+            if count == 0 {
+                let problem =
+                    format!("the motion leaves it at t = {}, before the first sample", readable(time));
+                return Err(Error::invalid(
+                    &["bound"],
+                    bound,
+                    problem,
+                    "a larger one, or an earlier first sample",
+                ));
+            }
+            warnings.push(format!(
+                "the motion left the bound {bound} by t = {} and was not followed further; a larger --bound does",
+                readable(time)
+            ));
+        }
+        if let Some(time) = motion.unknown_switches {
+            warnings.push(format!(
+                "too many switches in time from t = {} on to find each: what is shorter than the steps may be missed (--max-step)",
+                readable(time)
+            ));
+        }
+        let states = (0..chosen.model.states().len())
+            .map(|index| motion.samples.iter().map(|sample| sample[index]).collect())
+            .collect();
+        Ok(HistoryResult::new(chosen, self.times[..count].to_vec(), states, warnings))
+    }
+
+    /// Follows the motion, again where a state is so small that its absolute tolerance leaves it too few digits.
+    fn follow(&self, warnings: &mut Vec<String>) -> Result<Motion, IntegrationError> {
+        let chosen = &self.chosen;
+        let course = Course {
+            model: &chosen.model,
+            parameters: &chosen.parameters,
+            start_time: self.start,
+            start: &chosen.start,
+            end_time: self.times.last().copied().unwrap_or(self.start),
+            bound: self.bound,
+        };
+        let mut accuracy = self.accuracy.clone();
+        let mut motion = course.follow(&accuracy, &self.times)?;
+        for _ in 0..REPETITIONS {
+            let needed: Vec<f64> = motion.sizes.iter().map(|size| self.absolute_tolerance(*size)).collect();
+            if needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has) {
+                break;
+            }
+            accuracy.absolute = needed;
+            accuracy.most_steps = 10_000 + 20 * motion.steps;
+            match course.follow(&accuracy, &self.times) {
+                Ok(finer) => motion = finer,
+                Err(error) => {
+                    warnings.push(format!(
+                        "states smaller than {SMALL} are followed to absolute errors of about {} only: {error}",
+                        readable(self.absolute)
+                    ));
+                    break;
+                }
+            }
+        }
+        Ok(motion)
+    }
+
+    /// The absolute tolerance of a state of this size.
+    fn absolute_tolerance(&self, size: f64) -> f64 {
+        if size > 0.0 && size < SMALL {
+            self.absolute.min(ABSOLUTE * self.accuracy.relative * size)
+        } else {
+            self.absolute
+        }
     }
 }

@@ -15,14 +15,18 @@ use std::io::{self, Write};
 /// Most panels of the picture.
 const MOST_PANELS: usize = 6;
 
-/// A list of values for every state.
-#[derive(Clone, Debug)]
+/// A list of values for every quantity; what is not finite is nothing in a file.
+#[derive(Clone, Debug, Default)]
 pub struct Histories {
     names: Vec<String>,
     values: Vec<Vec<f64>>,
 }
 
 impl Histories {
+    fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
+
     fn iter(&self) -> impl Iterator<Item = (&String, &Vec<f64>)> {
         self.names.iter().zip(&self.values)
     }
@@ -48,9 +52,11 @@ impl<'de> Deserialize<'de> for Histories {
 
             fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Histories, A::Error> {
                 let mut histories = Histories { names: Vec::new(), values: Vec::new() };
-                while let Some((name, values)) = entries.next_entry()? {
+                while let Some((name, values)) = entries.next_entry::<String, Vec<Option<f64>>>()? {
                     histories.names.push(name);
-                    histories.values.push(values);
+                    histories
+                        .values
+                        .push(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect());
                 }
                 Ok(histories)
             }
@@ -71,6 +77,12 @@ pub struct HistoryResult {
     pub t: Vec<f64>,
     /// For every state its values at these times.
     pub states: Histories,
+    /// For every auxiliary quantity its values at these times.
+    #[serde(default, skip_serializing_if = "Histories::is_empty")]
+    pub aux: Histories,
+    /// What is worth knowing about it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl HistoryResult {
@@ -79,20 +91,50 @@ impl HistoryResult {
     /// Label of the end, from which computations can start.
     pub const END: &'static str = "END";
 
-    /// The result of a motion: times, and for every state its values at these times.
-    pub fn new(chosen: &ChosenModel, times: Vec<f64>, values: Vec<Vec<f64>>) -> Self {
+    /// The result of a motion: times, for every state its values at these times, and what is worth knowing about it.
+    pub fn new(
+        chosen: &ChosenModel,
+        times: Vec<f64>,
+        values: Vec<Vec<f64>>,
+        mut warnings: Vec<String>,
+    ) -> Self {
+        let names = chosen.auxiliary_names();
+        let mut auxiliary = vec![Vec::with_capacity(times.len()); names.len()];
+        for (index, time) in times.iter().enumerate() {
+            let state: Vec<f64> = values.iter().map(|values| values[index]).collect();
+            let quantities = chosen.auxiliary(*time, &state, &chosen.parameters);
+            auxiliary.iter_mut().zip(quantities).for_each(|(values, quantity)| values.push(quantity));
+        }
+        for (name, values) in names.iter().zip(&auxiliary) {
+            let first = values.iter().zip(&times).find(|(value, _)| !value.is_finite());
+            if let Some((_, time)) = first {
+                warnings.push(format!("the quantity {name} is not finite first at t = {}", readable(*time)));
+            }
+        }
         Self {
             parameters: chosen.named_parameters(&[]),
             model: chosen.stored.clone(),
             t: times,
             states: Histories { names: chosen.model.states().to_vec(), values },
+            aux: Histories { names, values: auxiliary },
+            warnings,
         }
     }
 
     /// How long it lasts, and the state at its end.
     pub fn end(&self) -> (f64, NamedNumbers) {
         let states = self.states.iter().filter_map(|(name, values)| Some((name.clone(), *values.last()?)));
-        (self.t.last().copied().unwrap_or(0.0), NamedNumbers(states.collect()))
+        (self.duration(), NamedNumbers(states.collect()))
+    }
+
+    /// Time from the first sample to the last.
+    fn duration(&self) -> f64 {
+        self.t.last().zip(self.t.first()).map_or(0.0, |(last, first)| last - first)
+    }
+
+    /// States and auxiliary quantities.
+    fn quantities(&self) -> impl Iterator<Item = (&String, &Vec<f64>)> {
+        self.states.iter().chain(self.aux.iter())
     }
 }
 
@@ -106,11 +148,10 @@ impl Report for HistoryResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let duration = self.t.last().copied().unwrap_or(0.0);
         writeln!(out, "motion of {} at {}", self.model.name, parameters(&self.parameters().0))?;
-        writeln!(out, "{} samples over {}\n", self.t.len(), readable(duration))?;
+        writeln!(out, "{} samples over {}\n", self.t.len(), readable(self.duration()))?;
         let mut table = Table::new(["", "start", "end", "smallest", "largest"]);
-        for (name, values) in self.states.iter() {
+        for (name, values) in self.quantities() {
             let [smallest, largest] = extremes(values);
             let [start, end] = [values.first(), values.last()].map(|end| end.copied().into());
             table.row([name.as_str().into(), start, end, smallest.into(), largest.into()]);
@@ -120,19 +161,18 @@ impl Report for HistoryResult {
 
     fn columns(&self) -> Columns {
         let times = Columns::new().numbers("t", self.t.iter().copied());
-        self.states
-            .iter()
-            .fold(times, |columns, (name, values)| columns.numbers(name, values.iter().copied()))
+        self.quantities().fold(times, |columns, (name, values)| columns.numbers(name, values.iter().copied()))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let panels = self.states.names.len().min(MOST_PANELS);
+        let panels = self.quantities().count().min(MOST_PANELS);
         let figure = if panels > 1 { Figure::double_column().columns(2) } else { Figure::single_column() };
         let mut figure = figure.description(format!("Time histories of {}", self.model.name));
-        let duration = self.t.last().copied().unwrap_or(0.0);
-        for (name, values) in self.states.iter().take(panels) {
-            let line = Line::new(drawn(&self.t, values)).color(palette::BLUE);
-            let time = Axis::new("$t$").limits(0.0, duration);
+        let [start, end] = [self.t.first(), self.t.last()].map(|time| time.copied().unwrap_or(0.0));
+        for (name, values) in self.quantities().take(panels) {
+            let points = drawn(&self.t, values).into_iter().filter(|(_, value)| value.is_finite());
+            let line = Line::new(points.collect::<Vec<_>>()).color(palette::BLUE);
+            let time = Axis::new("$t$").limits(start, end);
             figure = figure.panel(Panel::new(time, Axis::new(name)).curve(line));
         }
         Ok(Some(figure))

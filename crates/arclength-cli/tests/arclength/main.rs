@@ -6,6 +6,7 @@ mod held;
 mod monitors;
 mod orbits;
 mod restarts;
+mod simulations;
 mod starts;
 mod switching;
 mod witnesses;

@@ -4,7 +4,7 @@
 use super::graph::{Graph, NodeId, Operation};
 use crate::error::{OdeError, Span, Warning, nearest};
 use crate::expression::{BUILTIN_NAMES, BinaryOperation, Expression, Node, UnaryOperation};
-use crate::statement::Name;
+use crate::statement::{Name, TableRange};
 use std::collections::HashMap;
 
 /// Largest number of operations that a model may expand to, functions inlined and sums unrolled.
@@ -23,6 +23,7 @@ pub(crate) enum Symbol {
     Derived(usize),
     Fixed(usize),
     Function(usize),
+    Table(usize),
 }
 
 impl Symbol {
@@ -35,6 +36,7 @@ impl Symbol {
             Self::Derived(_) => "a derived parameter",
             Self::Fixed(_) => "a quantity",
             Self::Function(_) => "a function",
+            Self::Table(_) => "a table",
         }
     }
 }
@@ -54,6 +56,14 @@ pub(crate) struct FunctionDefinition {
     pub expression: Expression,
 }
 
+/// `table name % points low high expression`, where the argument is `t`.
+#[derive(Debug)]
+pub(crate) struct TableDefinition {
+    pub name: Name,
+    pub range: TableRange,
+    pub expression: Expression,
+}
+
 /// Everything that names can refer to.
 #[derive(Debug, Default)]
 pub(crate) struct Symbols {
@@ -65,6 +75,7 @@ pub(crate) struct Symbols {
     pub derived: Vec<QuantityDefinition>,
     pub fixed: Vec<QuantityDefinition>,
     pub functions: Vec<FunctionDefinition>,
+    pub tables: Vec<TableDefinition>,
 }
 
 impl FunctionDefinition {
@@ -105,6 +116,7 @@ pub(crate) struct Lowering<'a> {
     derived: Vec<Progress>,
     fixed: Vec<Progress>,
     functions_entered: Vec<bool>,
+    tables_entered: Vec<bool>,
     work: usize,
     depth: usize,
 }
@@ -129,6 +141,7 @@ impl<'a> Lowering<'a> {
             derived: vec![Progress::NotStarted; symbols.derived.len()],
             fixed: vec![Progress::NotStarted; symbols.fixed.len()],
             functions_entered: vec![false; symbols.functions.len()],
+            tables_entered: vec![false; symbols.tables.len()],
             work: 0,
             depth: 0,
         }
@@ -146,10 +159,46 @@ impl<'a> Lowering<'a> {
         self.constant(node, span, what)
     }
 
-    /// Lowers fixed quantity number `index`, whether or not an equation uses it.
-    pub(crate) fn fixed_quantity(&mut self, index: usize) -> Result<NodeId, OdeError> {
+    /// Lowers fixed quantity number `index`, whether or not an equation uses it; nothing if it is refused, which an equation that
+    /// uses it then is too.
+    pub(crate) fn fixed_quantity(&mut self, index: usize) -> Result<(), OdeError> {
         let span = self.symbols.fixed[index].name.span;
-        self.fixed(index, span, None)
+        self.unless_refused(|lowering| lowering.fixed(index, span, None)).map(|_| ())
+    }
+
+    /// Adds an output, on which no equation depends, to the graph; or why it is refused, with a warning that it is left out.
+    pub(crate) fn output(
+        &mut self,
+        definition: &QuantityDefinition,
+    ) -> Result<Result<NodeId, OdeError>, OdeError> {
+        let result = self.unless_refused(|lowering| lowering.lower(&definition.expression, Scope::Field))?;
+        if let Err(OdeError::Unsupported { feature, remedy, .. }) = &result {
+            let name = &definition.name;
+            let message =
+                format!("the quantity `{}` is left out: {feature} not supported; {remedy}", name.text);
+            self.warnings.push(Warning::new(name.span, message));
+        }
+        Ok(result)
+    }
+
+    /// The value of what is lowered, or why it is refused as not supported.
+    fn unless_refused(
+        &mut self,
+        lower: impl FnOnce(&mut Self) -> Result<NodeId, OdeError>,
+    ) -> Result<Result<NodeId, OdeError>, OdeError> {
+        match lower(self) {
+            Err(error @ OdeError::Unsupported { .. }) => {
+                // What was entered is left.
+                self.depth = 0;
+                self.functions_entered.fill(false);
+                self.tables_entered.fill(false);
+                let left = self.fixed.iter_mut().chain(&mut self.derived);
+                left.filter(|progress| **progress == Progress::Started)
+                    .for_each(|progress| *progress = Progress::NotStarted);
+                Ok(Err(error))
+            }
+            lowered => lowered.map(Ok),
+        }
     }
 
     /// Lowers derived parameter number `index`.
@@ -222,6 +271,7 @@ impl<'a> Lowering<'a> {
                 let offset = self.constant(values[*offset], span, what)?;
                 self.shift(name, offset.trunc(), span, within)
             }
+            Node::Refused(error) => Err((**error).clone()),
         }
     }
 
@@ -246,6 +296,7 @@ impl<'a> Lowering<'a> {
         match self.symbols.names.get(name) {
             Some(&symbol) => self.symbol(symbol, name, span, within),
             None => {
+                number_with_name(name, span)?;
                 let arguments = within.arguments.iter().map(|(argument, _)| *argument);
                 let declared = self.symbols.names.keys().map(String::as_str);
                 Err(OdeError::UnknownName {
@@ -275,7 +326,7 @@ impl<'a> Lowering<'a> {
             (Symbol::Derived(index), Scope::Field | Scope::Parameters | Scope::Initial) => {
                 self.derived(index, span)
             }
-            (Symbol::Function(_), _) => {
+            (Symbol::Function(_) | Symbol::Table(_), _) => {
                 Err(OdeError::syntax(span, format!("`{name}` is a function: expected ( and its arguments")))
             }
             _ => Err(self.out_of_scope(name, span, within.scope)),
@@ -345,11 +396,15 @@ impl<'a> Lowering<'a> {
         if matches!(name, "besselj" | "bessely") {
             return self.bessel(name, span, arguments);
         }
+        if let Some(&Symbol::Table(index)) = self.symbols.names.get(name) {
+            return self.table(index, span, arguments, within);
+        }
         let Some(&Symbol::Function(index)) = self.symbols.names.get(name) else {
             if self.symbols.names.contains_key(name) {
                 let message = format!("`{name}` is not a function; products are written with *");
                 return Err(OdeError::syntax(span, message));
             }
+            number_with_name(name, span)?;
             let functions = self.symbols.functions.iter().map(|function| function.name.text.as_str());
             return Err(OdeError::UnknownName {
                 place: span.into(),
@@ -375,6 +430,54 @@ impl<'a> Lowering<'a> {
             names.iter().map(String::as_str).zip(arguments.iter().copied()).collect();
         let value = self.expression(&function.expression, Environment { arguments: &bound, ..within })?;
         self.functions_entered[index] = false;
+        Ok(value)
+    }
+
+    /// A table at an argument: its formula, and beyond its ends the straight line through the last two points.
+    fn table(
+        &mut self,
+        index: usize,
+        span: Span,
+        arguments: &[NodeId],
+        within: Environment,
+    ) -> Result<NodeId, OdeError> {
+        let table = &self.symbols.tables[index];
+        let &[argument] = arguments else {
+            return Err(OdeError::WrongNumberOfArguments {
+                place: span.into(),
+                function: table.name.text.clone(),
+                expected: 1,
+                found: arguments.len(),
+            });
+        };
+        if std::mem::replace(&mut self.tables_entered[index], true) {
+            return Err(OdeError::Circular { place: span.into(), name: table.name.text.clone() });
+        }
+        let TableRange { points, low, high } = table.range;
+        let distance = (high - low) / f64::from(points - 1);
+        let scope = if within.scope == Scope::Field { Scope::Parameters } else { within.scope };
+        let formula = |lowering: &mut Self, node: NodeId| {
+            let bound = [("t", node)];
+            let within = Environment { scope, arguments: &bound, sum_index: None, fixed: None };
+            lowering.expression(&table.expression, within)
+        };
+        let inside = formula(self, argument)?;
+        let mut value = inside;
+        for (end, next, beyond) in
+            [(low, low + distance, BinaryOperation::Less), (high, high - distance, BinaryOperation::Greater)]
+        {
+            let [end_node, next_node] = [end, next].map(|place| self.graph.constant(place));
+            let (at_end, at_next) = (formula(self, end_node)?, formula(self, next_node)?);
+            let width = self.graph.constant(next - end);
+            let rise = self.graph.binary(BinaryOperation::Subtract, at_next, at_end);
+            let slope = self.graph.binary(BinaryOperation::Divide, rise, width);
+            let way = self.graph.binary(BinaryOperation::Subtract, argument, end_node);
+            let change = self.graph.binary(BinaryOperation::Multiply, slope, way);
+            let line = self.graph.binary(BinaryOperation::Add, at_end, change);
+            let condition = self.graph.binary(beyond, argument, end_node);
+            value = self.graph.select(condition, line, value);
+        }
+        self.tables_entered[index] = false;
         Ok(value)
     }
 
@@ -464,4 +567,15 @@ impl<'a> Lowering<'a> {
             variable: None,
         })
     }
+}
+
+/// Refuses an unknown name that is a number with a name behind it: a product without its sign.
+fn number_with_name(name: &str, span: Span) -> Result<(), OdeError> {
+    let digits = name.find(|character: char| !character.is_ascii_digit()).unwrap_or(0) as u32;
+    if digits == 0 {
+        return Ok(());
+    }
+    let rest =
+        Span { column: span.column + digits, length: span.length.saturating_sub(digits).max(1), ..span };
+    Err(OdeError::syntax(rest, "expected an operator here; products are written with *"))
 }

@@ -5,4 +5,6 @@ mod lower;
 mod removable;
 
 pub(crate) use graph::{Graph, NodeId, Operation};
-pub(crate) use lower::{FunctionDefinition, Lowering, QuantityDefinition, Scope, Symbol, Symbols};
+pub(crate) use lower::{
+    FunctionDefinition, Lowering, QuantityDefinition, Scope, Symbol, Symbols, TableDefinition,
+};

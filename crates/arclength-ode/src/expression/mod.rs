@@ -11,7 +11,7 @@ pub(crate) use functions::{BUILTIN_NAMES, BinaryOperation, UnaryOperation, reser
 pub(crate) use parser::parse_expression;
 pub(crate) use token::parse_number;
 
-use crate::error::Span;
+use crate::error::{OdeError, Span};
 
 /// An expression; its value is that of the last node.
 #[derive(Clone, Debug)]
@@ -37,4 +37,6 @@ pub(crate) enum Node {
     Sum(usize, usize, Box<Expression>),
     /// `shift(name, offset)`
     Shift(String, usize),
+    /// What is refused where the equations depend on it.
+    Refused(Box<OdeError>),
 }

@@ -1,7 +1,7 @@
 //! The words of an expression.
 
 use crate::error::{OdeError, Span};
-use crate::source::{Text, is_identifier_start};
+use crate::source::Text;
 
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Token {
@@ -29,18 +29,18 @@ pub(crate) fn tokenize(line: &Text, start: usize, end: usize) -> Result<Vec<(Tok
             break;
         }
         let character = line.at(position);
-        if character.is_ascii_digit() || character == '.' {
-            let after = number_end(line, position).min(end);
+        let name_end = line.identifier_end(position).min(end);
+        if name_end > position {
+            let name = line.string(position, name_end).to_ascii_lowercase();
+            tokens.push((Token::Name(name), line.span(position, name_end)));
+            position = name_end;
+        } else if character.is_ascii_digit() || character == '.' {
+            let after = line.number_end(position).min(end);
             let text = line.string(position, after);
             let value = parse_number(&text).ok_or_else(|| {
                 OdeError::syntax(line.span(position, after), format!("`{text}` is not a number"))
             })?;
             tokens.push((Token::Number(value), line.span(position, after)));
-            position = after;
-        } else if is_identifier_start(character) {
-            let after = line.identifier_end(position).min(end);
-            let name = line.string(position, after).to_ascii_lowercase();
-            tokens.push((Token::Name(name), line.span(position, after)));
             position = after;
         } else {
             let symbol = SYMBOLS.iter().find(|symbol| {
@@ -59,26 +59,7 @@ pub(crate) fn tokenize(line: &Text, start: usize, end: usize) -> Result<Vec<(Tok
     Ok(tokens)
 }
 
-/// End of the number that starts at `start`: digits, a point, digits, and an exponent if it has digits.
-fn number_end(line: &Text, start: usize) -> usize {
-    let digits = |from: usize| line.find(from, |character| !character.is_ascii_digit());
-    let mut end = digits(start);
-    if line.at(end) == '.' {
-        end = digits(end + 1);
-    }
-    if line.lower_at(end) == 'e' {
-        let sign = usize::from(matches!(line.at(end + 1), '+' | '-'));
-        let exponent_end = digits(end + 1 + sign);
-        if exponent_end > end + 1 + sign {
-            return exponent_end;
-        }
-    }
-    end
-}
-
-/// A decimal number with an optional sign, such as `-1e-3`, `.5` or `2.`; neither `inf` nor `nan`.
+/// A decimal number with an optional sign, such as `-1e-3`, `.5`, `2.` or `inf`; not `nan`.
 pub(crate) fn parse_number(text: &str) -> Option<f64> {
-    let starts_well =
-        text.trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit() || c == '.');
-    if starts_well { text.parse().ok() } else { None }
+    text.parse().ok().filter(|number: &f64| !number.is_nan())
 }

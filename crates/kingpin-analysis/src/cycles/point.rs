@@ -5,7 +5,7 @@ use crate::states::named_state;
 use arclength::branch::SpecialKind;
 use arclength::cycle::CyclePoint;
 use arclength_analysis::branch::{pairs, stability};
-use arclength_analysis::cycles::CycleResult;
+use arclength_analysis::cycles::{AlongCycle, CycleResult};
 use arclength_analysis::labels::{is_bifurcation, kind};
 use kingpin::branches::HopfPoint;
 use kingpin_report::numbers::significant;
@@ -72,6 +72,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
             period,
             max: named_state(&hopf.state),
             min: named_state(&hopf.state),
+            aux: AlongCycle::default(),
             multipliers: pairs(&multipliers),
             multiplier_errors: Vec::new(),
             trivial_multiplier_error: nearest,
