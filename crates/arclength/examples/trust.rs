@@ -135,10 +135,15 @@ impl Counts {
         );
     }
 
-    /// Judges one cycle by its period, the largest value of its first state and its largest nontrivial multiplier.
-    fn cycle(&mut self, cycle: &CyclePoint, [period, largest, exponent]: [f64; 3]) {
+    /// Judges one cycle by its period, the ranges of its first states and the logarithm of its largest nontrivial multiplier.
+    fn cycle(&mut self, cycle: &CyclePoint, [period, exponent]: [f64; 2], ranges: [[f64; 2]; 2]) {
         self.judged += 1;
-        let error = (cycle.period / period - 1.0).abs().max((cycle.max[0] / largest - 1.0).abs());
+        let mut error = (cycle.period / period - 1.0).abs();
+        for (state, [smallest, largest]) in ranges.into_iter().enumerate() {
+            let amplitude = 0.5 * (largest - smallest);
+            let off = (cycle.max[state] - largest).abs().max((cycle.min[state] - smallest).abs());
+            error = error.max(off / amplitude);
+        }
         let told = cycle.error_estimate;
         if told >= 1.0 || cycle.stable.is_none() {
             self.undecided += 1;
@@ -182,7 +187,8 @@ fn circles(random: &mut Random, count: usize) -> Counts {
             let p = cycle.value;
             let period = TAU / (field.speed + field.shear * p);
             let exponent = (-2.0 * field.contraction * p).max(field.rate) * period;
-            counts.cycle(cycle, [period, stretched(p.sqrt()), exponent]);
+            let reach = stretched(p.sqrt());
+            counts.cycle(cycle, [period, exponent], [[-reach, reach]; 2]);
         }
     }
     counts
@@ -203,7 +209,9 @@ fn logarithms(random: &mut Random, count: usize) -> Counts {
             continue;
         };
         for cycle in branch.points.iter().filter(|cycle| cycle.label.is_none()) {
-            counts.cycle(cycle, [TAU, cycle.value.exp(), -2.0 * field.contraction * TAU]);
+            let size = cycle.value;
+            let ranges = [[(-size).exp(), size.exp()], [-size, size]];
+            counts.cycle(cycle, [TAU, -2.0 * field.contraction * TAU], ranges);
         }
     }
     counts
