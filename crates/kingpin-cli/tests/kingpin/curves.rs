@@ -86,8 +86,13 @@ fn branches_tell_their_story_in_units() {
     }
     let cycles =
         folder.succeed("cycles --along v=7:9 --at 8 --explain --tolerance 1e-5 --intervals 50").output;
-    for line in ["branch     1 from HB1", "unstable from v = 8.431037 m/s to 7 m/s", "polynomials of degree"]
-    {
+    // Next to the Hopf point so coarse a mesh does not decide.
+    for line in [
+        "branch     1 from HB1",
+        "unstable from v = 8.431037 m/s to",
+        "m/s to 7 m/s",
+        "polynomials of degree",
+    ] {
         assert!(cycles.contains(line), "{line}: {cycles}");
     }
 }
