@@ -142,6 +142,9 @@ impl<P: BoundaryValueEquations> Curve for Alone<P> {
     ) -> Result<Adaptation, Error> {
         Ok(Adaptation::Unchanged)
     }
+    fn may_stagnate(&self) -> bool {
+        false
+    }
     fn inspect(&mut self, _unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<(), Error> {
         Ok(())
     }

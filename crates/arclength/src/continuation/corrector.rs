@@ -99,6 +99,7 @@ pub fn correct<C: Curve>(
         let stagnates = stands
             && (length < STAGNATION_LIMIT
                 || (fresh_jacobian
+                    && curve.may_stagnate()
                     && length < ROUNDING_LIMIT
                     && length < ROUNDING_SHARE * rounding_update(curve, unknown)));
         if !fresh_jacobian && contraction > CHORD_REJECTION && !stagnates {

@@ -86,6 +86,12 @@ pub trait Curve: Equations {
     /// When a quantity cannot be computed; the run ends there and says why.
     fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Self::Point, Error>;
 
+    /// Whether updates of Newton's method that are measured to be rounding end a correction where they do not become smaller, as
+    /// where the parameter hardly matters. A special point is not found that way.
+    fn may_stagnate(&self) -> bool {
+        true
+    }
+
     /// Measures the errors of a solution that becomes part of a run, called right after its Jacobian, bordered by the tangent
     /// or by a parameter, was factorised.
     fn measure(&mut self, _solution: &mut Solution<Self::Point>) {}

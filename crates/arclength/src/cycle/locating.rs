@@ -113,6 +113,9 @@ impl Curve for DefiningCurve<'_> {
     fn inspect(&mut self, _unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<(), Error> {
         Ok(())
     }
+    fn may_stagnate(&self) -> bool {
+        false
+    }
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         unknown.iter().map(|value| (*value, 1.0)).collect()
     }

@@ -21,7 +21,7 @@ const COINCIDENT_PART: f64 = 0.02;
 const LEAST_COSINE: f64 = 0.5;
 /// Value of a test function at a point of another kind, relative to its values around, below which it vanishes there too: on
 /// the branch that turns at a pitchfork the parameter turns, but that is no fold.
-const VANISHING: f64 = 0.02;
+const VANISHING: f64 = 1e-3;
 
 /// What lies between two solutions is no farther from either of them than this many times their distance and this far in the
 /// metric, as solutions are known no better.
