@@ -11,9 +11,7 @@ use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::Steps;
 use arclength::branch::Monitor;
 use arclength::control::Control;
-use arclength::equilibrium::{
-    BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings, seek_equilibrium,
-};
+use arclength::equilibrium::{BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings};
 use arclength_ode::Quantity;
 use kingpin_report::numbers::{readable, significant};
 use serde::{Deserialize, Serialize};
@@ -123,12 +121,15 @@ impl EquilibriaAnalysis {
         };
         let chosen = &self.chosen;
         let field = chosen.field();
-        let mut start = chosen.start.clone();
+        let name = &self.name;
+        let mut equilibria = Equilibria::of(&field)
+            .start(&chosen.start)
+            .parameters(&chosen.parameters)
+            .along(name, self.along.start..=self.along.end);
         if self.point.is_none() {
-            let found = seek_equilibrium(&field, &start, &chosen.parameters)?;
-            (start, origin) = (found.state, Origin::sought(found.by));
+            let (sought, by) = equilibria.seek()?;
+            (equilibria, origin) = (sought, Origin::sought(by));
         }
-        let equilibria = Equilibria::of(&field).start(&start).parameters(&chosen.parameters);
         let exact =
             matches!(&self.point, Some(point) if matches!(point.solution, LabelledSolution::Equilibrium(_)));
         let equilibria = match branch_point {
@@ -136,7 +137,6 @@ impl EquilibriaAnalysis {
             None if exact && self.unchanged => equilibria.through(&chosen.start),
             None => equilibria,
         };
-        let name = &self.name;
         let monitors = self.monitors.iter().map(|(asked, quantity)| {
             let value = |point: &EquilibriumPoint| {
                 let mut parameters = chosen.parameters.clone();
@@ -147,7 +147,6 @@ impl EquilibriaAnalysis {
         });
         let mut branch = monitors
             .fold(equilibria, Equilibria::monitor)
-            .along(name, self.along.start..=self.along.end)
             .at(&self.at)
             .settings(self.steps.settings(equilibrium_settings()))
             .observer(|point| {

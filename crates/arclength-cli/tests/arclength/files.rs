@@ -46,7 +46,7 @@ fn pictures_are_drawn_through_links() {
 #[cfg(unix)]
 #[test]
 fn signals_end_every_command_soon() {
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     use std::time::{Duration, Instant};
     let folder = one_result();
     folder.succeed("cycles --from equilibria.json:HB1 --along alpha=-1.5:1.5 -q -o cycles.json");
@@ -62,14 +62,7 @@ fn signals_end_every_command_soon() {
                 "what was computed before is in the result",
             ),
         ] {
-            let child = Command::new(env!("CARGO_BIN_EXE_arclength"))
-                .args(command.split_whitespace())
-                .current_dir(&folder.0)
-                .stdin(Stdio::null())
-                .stdout(Stdio::null())
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
+            let child = started(&folder, command);
             // Until it computes.
             std::thread::sleep(Duration::from_secs(1));
             assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
@@ -87,11 +80,25 @@ fn signals_end_every_command_soon() {
     }
 }
 
+/// The program, started in a folder; its messages can be read.
+#[cfg(unix)]
+fn started(folder: &Folder, command: &str) -> std::process::Child {
+    use std::process::{Command, Stdio};
+    Command::new(env!("CARGO_BIN_EXE_arclength"))
+        .args(command.split_whitespace())
+        .current_dir(&folder.0)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
 /// A step of so large a model takes long: the first signal waits for its end and says so, the second does not.
 #[cfg(unix)]
 #[test]
 fn a_second_signal_ends_a_command_at_once() {
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     use std::time::{Duration, Instant};
     let count = 600;
     let equation = |index: usize| {
@@ -100,14 +107,7 @@ fn a_second_signal_ends_a_command_at_once() {
     };
     let model: String = (0..count).map(equation).chain(["par p=1\n".to_owned()]).collect();
     let folder = Folder::with_text("large.ode", &model);
-    let child = Command::new(env!("CARGO_BIN_EXE_arclength"))
-        .args("equilibria large.ode --along p=0:5 -o a.json".split_whitespace())
-        .current_dir(&folder.0)
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = started(&folder, "equilibria large.ode --along p=0:5 -o a.json");
     let send = || {
         let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
         assert!(sent.success());

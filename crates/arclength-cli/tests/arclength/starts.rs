@@ -42,6 +42,14 @@ fn the_flow_leads_to_an_equilibrium_that_newtons_method_misses() {
 }
 
 #[test]
+fn the_first_equilibrium_is_sought_inside_the_interval() {
+    // There is none at p = -1, where the flow leads to infinity.
+    let found = states("par p=-1\ninit x=1\nx'=p-x^2\ndone\n", "p=0.5:2", "");
+    assert_eq!(found["from"]["how"], "the equilibrium near the initial state");
+    assert!((number(&labelled(&found, "EP1")["state"]["x"]) - 0.5_f64.sqrt()).abs() < 1e-12);
+}
+
+#[test]
 fn the_time_can_be_frozen() {
     let forced = "par a=1,w=2\nx'=a-x+cos(w*t)\ndone\n";
     let folder = folder(forced);

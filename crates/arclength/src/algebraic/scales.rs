@@ -7,6 +7,7 @@
 
 use crate::differentiation::Dual;
 use crate::erased::ErasedField;
+use crate::linear::strong_components::strong_components;
 
 /// A variable is at least this part of what the others, in its units, are.
 const COUPLED_SHARE: f64 = 1e-2;
@@ -144,7 +145,7 @@ fn nonlinear_lengths(
 fn groups_and_units(jacobian: &[f64], n: usize) -> (Vec<usize>, Vec<f64>) {
     let mut coupling = jacobian.to_vec();
     loop {
-        let group = strongly_coupled(&coupling, n);
+        let (group, _) = strong_components(&coupling, n);
         let units = balance(&coupling, n, &group);
         let balanced = |entry: usize| (jacobian[entry] * units[entry / n] / units[entry % n]).abs();
         let in_group = |entry: usize| group[entry % n] == group[entry / n];
@@ -161,28 +162,6 @@ fn groups_and_units(jacobian: &[f64], n: usize) -> (Vec<usize>, Vec<f64>) {
             return (group, units);
         }
     }
-}
-
-/// Numbers the groups of states that influence each other, directly or through others.
-fn strongly_coupled(jacobian: &[f64], n: usize) -> Vec<usize> {
-    let mut reaches: Vec<bool> =
-        (0..n * n).map(|entry| jacobian[entry] != 0.0 || entry / n == entry % n).collect();
-    for middle in 0..n {
-        for column in 0..n {
-            if reaches[middle + n * column] {
-                for row in 0..n {
-                    reaches[row + n * column] |= reaches[row + n * middle];
-                }
-            }
-        }
-    }
-    (0..n)
-        .map(|index| {
-            (0..=index)
-                .find(|&other| reaches[index + n * other] && reaches[other + n * index])
-                .unwrap_or(index)
-        })
-        .collect()
 }
 
 /// Units `D` that make the rows and columns of `D^-1 J D` equally large within every group.

@@ -121,18 +121,22 @@ fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize)
             error.powf(power) + DENSITY_FLOOR * total.max(f64::MIN_POSITIVE) * (pair[1] - pair[0])
         })
         .collect();
+    let inner = dividing_equally(mesh, &masses, intervals);
+    [0.0].into_iter().chain(inner).chain([1.0]).collect()
+}
+
+/// The points that divide the intervals of `knots` anew into as many, in each of which there is an equal part of their masses.
+pub(crate) fn dividing_equally(knots: &[f64], masses: &[f64], intervals: usize) -> Vec<f64> {
     let sum: f64 = masses.iter().sum();
-    let mut result = vec![0.0];
     let (mut interval, mut passed) = (0, 0.0);
-    for index in 1..intervals {
+    let point = |index: usize| {
         let wanted = sum * index as f64 / intervals as f64;
         while interval + 1 < masses.len() && passed + masses[interval] < wanted {
             passed += masses[interval];
             interval += 1;
         }
         let fraction = ((wanted - passed) / masses[interval]).clamp(0.0, 1.0);
-        result.push(mesh[interval] + fraction * (mesh[interval + 1] - mesh[interval]));
-    }
-    result.push(1.0);
-    result
+        knots[interval] + fraction * (knots[interval + 1] - knots[interval])
+    };
+    (1..intervals).map(point).collect()
 }

@@ -5,6 +5,7 @@ use super::metric::{along, metric_image, norm};
 use super::settings::Settings;
 use super::solution::{Solution, interpolate};
 use crate::error::{CorrectionFailure, Error};
+use crate::random::Random;
 
 /// How a correction went.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,19 +37,13 @@ const ROUNDINGS: usize = 3;
 fn rounding_update<C: Curve>(curve: &mut C, unknown: &[f64]) -> f64 {
     let mut here = vec![0.0; unknown.len()];
     curve.residual(unknown, &mut here);
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = Random::new(1);
     let mut image = vec![0.0; unknown.len()];
     let mut largest = 0.0_f64;
     for _ in 0..ROUNDINGS {
         let rounded: Vec<f64> = unknown
             .iter()
-            .map(|&value| {
-                // Marsaglia's generator of 2003.
-                bits ^= bits << 13;
-                bits ^= bits >> 7;
-                bits ^= bits << 17;
-                if bits & 1 == 0 { value.next_up() } else { value.next_down() }
-            })
+            .map(|&value| if random.next_unit() < 0.5 { value.next_up() } else { value.next_down() })
             .collect();
         let mut update = vec![0.0; unknown.len()];
         curve.residual(&rounded, &mut update);

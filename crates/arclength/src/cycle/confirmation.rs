@@ -253,14 +253,7 @@ impl Level {
                 || now.max(then) < LOGARITHM;
             is_decided.then_some(now < 0.0)
         });
-        let sides: Vec<Option<bool>> = sides.collect();
-        point.stable = if point.neutral || self.floquet.is_contradictory() {
-            None
-        } else if sides.contains(&Some(false)) {
-            Some(false)
-        } else {
-            sides.iter().all(|side| *side == Some(true)).then_some(true)
-        };
+        point.stable = self.floquet.verdict(sides).filter(|_| !point.neutral);
         let mut all = errors.to_vec();
         let trivial =
             self.told.multipliers.partition_point(|one| one.log_modulus > self.floquet.trivial.abs().ln());

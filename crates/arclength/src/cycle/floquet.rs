@@ -68,13 +68,21 @@ impl Floquet {
     pub(crate) fn is_stable(&self) -> Option<bool> {
         // Errors of the multipliers are of the size of those that their product shows, and may cancel there in part.
         let margin = self.margin().max(CANCELLATION * self.defect());
-        let logarithms = || self.nontrivial.iter().map(|multiplier| multiplier.log_modulus);
+        self.verdict(self.nontrivial.iter().map(|multiplier| {
+            let is_certain = multiplier.log_modulus.abs() > margin;
+            is_certain.then_some(multiplier.log_modulus < 0.0)
+        }))
+    }
+
+    /// Whether the cycle is stable, from whether each multiplier is inside the circle where that is certain.
+    pub(crate) fn verdict(&self, insides: impl Iterator<Item = Option<bool>>) -> Option<bool> {
+        let insides: Vec<Option<bool>> = insides.collect();
         if self.is_contradictory() {
             None
-        } else if logarithms().any(|logarithm| logarithm > margin) {
+        } else if insides.contains(&Some(false)) {
             Some(false)
         } else {
-            logarithms().all(|logarithm| logarithm < -margin).then_some(true)
+            insides.iter().all(|inside| *inside == Some(true)).then_some(true)
         }
     }
 

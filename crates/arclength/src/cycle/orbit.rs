@@ -1,6 +1,7 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
 use crate::collocation::gauss::Gauss;
+use crate::collocation::mesh::dividing_equally;
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
@@ -59,19 +60,9 @@ fn mesh_for(times: &[f64], value: impl Fn(usize, usize) -> f64, dimension: usize
     }
     let total: f64 = masses.iter().sum();
     let intervals = ((INTERVALS_PER_UNIT * total) as usize).clamp(FEWEST_INTERVALS, MOST_INTERVALS);
-    let mut mesh = vec![0.0];
-    let (mut index, mut passed) = (0, 0.0);
-    for point in 1..intervals {
-        let wanted = total * point as f64 / intervals as f64;
-        while index + 1 < masses.len() && passed + masses[index] < wanted {
-            passed += masses[index];
-            index += 1;
-        }
-        let part = ((wanted - passed) / masses[index]).clamp(0.0, 1.0);
-        let time = times[index] + part * (times[index + 1] - times[index]);
-        mesh.push((time - times[0]) / period);
-    }
-    mesh.push(1.0);
+    let inner =
+        dividing_equally(times, &masses, intervals).into_iter().map(|time| (time - times[0]) / period);
+    let mut mesh: Vec<f64> = [0.0].into_iter().chain(inner).chain([1.0]).collect();
     mesh.dedup_by(|later, earlier| *later <= *earlier);
     mesh
 }

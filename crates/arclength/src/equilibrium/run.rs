@@ -4,6 +4,7 @@ use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
 use super::curve::{EquilibriumCurve, Inspection};
 use super::departure::{branch_point_along, is_branching};
+use super::first::{FoundBy, FoundEquilibrium, seek_erased};
 use super::newton::find_erased;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
@@ -116,6 +117,28 @@ impl<'a> Equilibria<'a> {
         self.parameters = Some(branch_point.parameters.clone());
         self.start = EquilibriumStart::OtherBranch(Box::new(branch_point.clone()));
         self
+    }
+
+    /// Seeks the first equilibrium as [`seek_equilibrium`](super::seek_equilibrium) does and starts there, where a state is given
+    /// that need not be one. Says how it was found.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn seek(mut self) -> Result<(Self, FoundBy), Error> {
+        let (active, bounds) = self.active(1)?;
+        let mut parameters = self.checked_parameters()?;
+        let state = match &self.start {
+            EquilibriumStart::Origin => vec![0.0; self.field.dimension()],
+            EquilibriumStart::State(state) => state.clone(),
+            EquilibriumStart::Equilibrium(_) | EquilibriumStart::OtherBranch(_) => {
+                return Ok((self, FoundBy::Newton));
+            }
+        };
+        let value = &mut parameters[active[0]];
+        *value = value.clamp(bounds[0].lower, bounds[0].upper);
+        let FoundEquilibrium { state, by } = seek_erased(self.field, &state, &parameters)?;
+        self.start = EquilibriumStart::State(state);
+        Ok((self, by))
     }
 
     /// Follows the branch.

@@ -12,5 +12,5 @@ pub mod periodic_schur;
 mod periodic_sweep;
 pub mod product_eigenvectors;
 mod reflector;
-mod strong_components;
+pub(crate) mod strong_components;
 mod wide_range;

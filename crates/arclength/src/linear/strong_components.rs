@@ -4,7 +4,7 @@
 
 /// The group of every row and column of the column-major n-by-n `matrix`, numbered from zero, and their number: two are in one
 /// group if each influences the other, perhaps through others.
-pub(super) fn strong_components(matrix: &[f64], n: usize) -> (Vec<usize>, usize) {
+pub(crate) fn strong_components(matrix: &[f64], n: usize) -> (Vec<usize>, usize) {
     const UNSEEN: usize = usize::MAX;
     let mut group = vec![UNSEEN; n];
     let mut order = vec![UNSEEN; n];

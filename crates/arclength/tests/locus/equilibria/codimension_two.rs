@@ -1,6 +1,6 @@
 //! Normal forms of points of codimension two, and what is reported at such points.
 
-use super::{Cusp, coefficient, labels, only, reaches_range_ends};
+use super::{Cusp, coefficient, equilibria_of_the_cusp, labels, only, reaches_range_ends};
 use approx::assert_relative_eq;
 use arclength::branch::SpecialKind;
 use arclength::equilibrium::Equilibria;
@@ -9,12 +9,7 @@ use arclength::{Scalar, VectorField};
 
 #[test]
 fn folds_of_the_cusp() {
-    let branch = Equilibria::of(&Cusp)
-        .start(&[-2.0])
-        .parameters(&[-2.0, 1.0])
-        .along("beta1", -2.0..=2.0)
-        .run()
-        .unwrap();
+    let branch = equilibria_of_the_cusp();
     let fold = branch.folds().next().unwrap();
     let locus = EquilibriumLocus::of(&Cusp)
         .from_fold(fold)

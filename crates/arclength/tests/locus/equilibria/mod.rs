@@ -8,6 +8,7 @@ mod requests;
 
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
+use arclength::equilibrium::{Equilibria, EquilibriumBranch};
 use arclength::locus::{CodimensionTwoPoint, EquilibriumLocusBranch};
 use arclength::{Scalar, VectorField};
 
@@ -34,3 +35,9 @@ fn reaches_range_ends(branch: &EquilibriumLocusBranch) {
 field!(Cusp, ["x"], ["beta1", "beta2"], |x, p, d| {
     d[0] = p[0] + p[1] * x[0] - x[0].powi(3);
 });
+
+/// Its equilibria along `beta1` at `beta2 = 1`.
+fn equilibria_of_the_cusp() -> EquilibriumBranch {
+    let equilibria = Equilibria::of(&Cusp).start(&[-2.0]).parameters(&[-2.0, 1.0]);
+    equilibria.along("beta1", -2.0..=2.0).run().unwrap()
+}

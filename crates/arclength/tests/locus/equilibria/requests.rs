@@ -1,17 +1,11 @@
 //! Requests that make no sense.
 
-use super::Cusp;
-use arclength::equilibrium::Equilibria;
+use super::{Cusp, equilibria_of_the_cusp};
 use arclength::locus::EquilibriumLocus;
 
 #[test]
 fn bad_requests_are_refused() {
-    let branch = Equilibria::of(&Cusp)
-        .start(&[-2.0])
-        .parameters(&[-2.0, 1.0])
-        .along("beta1", -2.0..=2.0)
-        .run()
-        .unwrap();
+    let branch = equilibria_of_the_cusp();
     let fold = branch.folds().next().unwrap();
     let message = |asked: EquilibriumLocus<'_>| asked.run().unwrap_err().to_string();
     let ask = || EquilibriumLocus::of(&Cusp).from_fold(fold);
