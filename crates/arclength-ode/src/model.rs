@@ -1,6 +1,6 @@
 //! A model: what the text declares, ready to evaluate.
 
-use crate::compile::{Lowering, Scope, Symbol};
+use crate::compile::{Lowering, Regions, Scope, Symbol};
 use crate::declarations::{Declarations, SetDefinition};
 use crate::error::{OdeError, Place, Warning};
 use crate::expression::parse_number;
@@ -8,7 +8,7 @@ use crate::options::{OptionEntry, Options};
 use crate::source::{decode, physical_lines};
 use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
-use arclength::{Scalar, VectorField};
+use arclength::{Scalar, Threshold, VectorField};
 
 /// A model read from a `.ode` text.
 ///
@@ -32,6 +32,9 @@ pub struct Model {
     frozen: Option<f64>,
     switches: TimeSwitches,
     field: Tape,
+    /// The field in a region, and the switch functions.
+    regions: Option<Tape>,
+    thresholds: Vec<Threshold>,
     auxiliary: Tape,
     derivation: Tape,
     initial: Tape,
@@ -156,9 +159,15 @@ impl Model {
 
     /// Writes the right-hand side at a time into `derivative`.
     ///
-    /// [`VectorField::evaluate`] is this at the time that is [frozen](Self::freeze), by default 0.
+    /// [`VectorField::evaluate`] is this at the time that is [frozen](Self::freeze), by default 0. As there, it is that of a
+    /// [region](VectorField::thresholds) where the parameters are followed by cells; what switches on the time alone does so there, too.
     pub fn evaluate_at<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        self.field.evaluate(time, state, parameters, derivative);
+        match &self.regions {
+            Some(regions) if parameters.len() > self.parameters.len() => {
+                regions.evaluate(time, state, parameters, derivative);
+            }
+            _ => self.field.evaluate(time, state, parameters, derivative),
+        }
     }
 
     /// The first time in `from..=until` at which the right-hand side at these parameters jumps or has a kink, because of something
@@ -216,7 +225,11 @@ impl VectorField for Model {
     }
 
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        self.field.evaluate(T::from(self.frozen.unwrap_or(0.0)), state, parameters, derivative);
+        self.evaluate_at(T::from(self.frozen.unwrap_or(0.0)), state, parameters, derivative);
+    }
+
+    fn thresholds(&self) -> Vec<Threshold> {
+        self.thresholds.clone()
     }
 
     fn dimension(&self) -> usize {
@@ -274,13 +287,21 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
     }
 
     let first = declarations.symbols.states[0].span;
-    let compile = |results: &[u32], states: usize| {
-        schedule(&lowering.graph, results, states, parameters).ok_or_else(|| OdeError::TooLarge {
-            place: first.into(),
-            what: "the model needs too many registers".into(),
-            limit: MAXIMUM_REGISTERS,
-        })
+    let too_large = || OdeError::TooLarge {
+        place: first.into(),
+        what: "the model needs too many registers".into(),
+        limit: MAXIMUM_REGISTERS,
     };
+    let compile = |results: &[u32], states: usize| {
+        schedule(&lowering.graph, results, states, parameters).ok_or_else(too_large)
+    };
+    let regions = Regions::of(&lowering.graph, &field, parameters);
+    let thresholds = regions.as_ref().map_or(Vec::new(), |regions| regions.thresholds.clone());
+    let regions = regions
+        .map(|Regions { graph, results, thresholds }| {
+            schedule(&graph, &results, states, parameters + thresholds.len()).ok_or_else(too_large)
+        })
+        .transpose()?;
     let switches = TimeSwitches::of(&lowering.graph, &field);
     let field = compile(&field, states)?;
     let time =
@@ -331,6 +352,8 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         frozen: None,
         switches,
         field,
+        regions,
+        thresholds,
         auxiliary,
         derivation,
         initial,

@@ -7,6 +7,7 @@
 
 use crate::differentiation::{Dual, Scalar};
 use crate::field::VectorField;
+use crate::threshold::Threshold;
 
 /// Chunks of directions of a Jacobian, and the same with one and two more infinitesimals.
 type Narrow = Dual<f64, 4>;
@@ -75,6 +76,8 @@ macro_rules! scalars {
             fn parameter_names(&self) -> Vec<String>;
             /// As [`VectorField::dimension`].
             fn dimension(&self) -> usize;
+            /// As [`VectorField::thresholds`].
+            fn thresholds(&self) -> Vec<Threshold>;
             $(
                 /// As [`VectorField::evaluate`].
                 fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);
@@ -90,6 +93,9 @@ macro_rules! scalars {
             }
             fn dimension(&self) -> usize {
                 VectorField::dimension(self)
+            }
+            fn thresholds(&self) -> Vec<Threshold> {
+                VectorField::thresholds(self)
             }
             $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
                 self.evaluate(state, parameters, derivative);
@@ -145,6 +151,11 @@ impl<'a> ErasedField<'a> {
     /// As [`VectorField::dimension`].
     pub(crate) fn dimension(&self) -> usize {
         self.0.dimension()
+    }
+
+    /// As [`VectorField::thresholds`].
+    pub(crate) fn thresholds(&self) -> Vec<Threshold> {
+        self.0.thresholds()
     }
 
     /// As [`VectorField::evaluate`], for the scalars of the list.

@@ -4,8 +4,10 @@
 //! with dual numbers where derivatives are needed.
 
 use crate::differentiation::Scalar;
+use crate::threshold::Threshold;
 
-/// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`.
+/// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`, at least
+/// [piece by piece](Self::thresholds).
 ///
 /// ```
 /// use arclength::{Scalar, VectorField};
@@ -46,6 +48,16 @@ pub trait VectorField: Sync {
     fn dimension(&self) -> usize {
         self.state_names().len()
     }
+
+    /// Where each switch function passes from one cell to the next, in a field that is smooth only piece by piece; empty for one
+    /// that is smooth everywhere.
+    ///
+    /// A field with switch functions is evaluated [in a region](crate::pieces) where the parameters are followed by the cell of each of
+    /// them: then it takes these for granted, so that it is smooth, and writes the switch functions behind the derivative as far as
+    /// there is room. A switch function may depend on the cells of those before it.
+    fn thresholds(&self) -> Vec<Threshold> {
+        Vec::new()
+    }
 }
 
 impl<F: VectorField> VectorField for &F {
@@ -61,5 +73,8 @@ impl<F: VectorField> VectorField for &F {
     }
     fn dimension(&self) -> usize {
         (**self).dimension()
+    }
+    fn thresholds(&self) -> Vec<Threshold> {
+        (**self).thresholds()
     }
 }

@@ -1,4 +1,4 @@
-//! Numerical continuation of smooth ordinary differential equations `x' = f(x, p)`.
+//! Numerical continuation of ordinary differential equations `x' = f(x, p)`.
 //!
 //! A model is a [`VectorField`], written once over any [`Scalar`], so that all derivatives come
 //! from forward-mode automatic differentiation ([`Dual`]).
@@ -20,11 +20,14 @@ pub mod linear;
 pub mod locus;
 pub mod numbers;
 mod parameters;
+pub mod pieces;
 mod random;
+mod threshold;
 
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;
 pub use field::VectorField;
+pub use threshold::Threshold;
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

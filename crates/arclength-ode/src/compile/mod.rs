@@ -2,9 +2,11 @@
 
 mod graph;
 mod lower;
+mod regions;
 mod removable;
 
 pub(crate) use graph::{Graph, NodeId, Operation};
 pub(crate) use lower::{
     FunctionDefinition, Lowering, QuantityDefinition, Scope, Symbol, Symbols, TableDefinition,
 };
+pub(crate) use regions::Regions;
