@@ -63,6 +63,20 @@ pub enum Error {
     /// A motion could not be computed.
     #[error("the motion that the cycle is to be taken from cannot be computed")]
     Motion(#[from] IntegrationError),
+    /// A cycle passes more borders between the pieces of its field than are followed.
+    #[error(
+        "the cycle passes more than {limit} borders at which the field switches: it slides along one of them, or nearly so, which \
+         is not followed"
+    )]
+    TooManyBorders {
+        /// Most borders.
+        limit: usize,
+    },
+    /// Along a curve of special cycles the borders change that the cycles pass.
+    #[error(
+        "from here on the cycles pass other borders at which the field switches: start once more from a special cycle beyond"
+    )]
+    BordersChange,
     /// A branch point does not persist when a second parameter varies.
     #[error(
         "the branch point breaks up when the second parameter varies; a curve of branch points exists where symmetry, or a \

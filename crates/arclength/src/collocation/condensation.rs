@@ -8,6 +8,7 @@
 
 use super::bidiagonal::{Bidiagonal, Blocks, Sizes};
 use super::gauss::Gauss;
+use super::polynomials::combine;
 use crate::lanes::{Kernel, run};
 use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
 
@@ -48,6 +49,31 @@ pub(crate) struct Condensation {
     /// Right-hand sides of the conditions; end and scalars of the solution.
     conditions: Vec<f64>,
     bidiagonal: Bidiagonal,
+    /// Where the next left end is not the end of the interval but a function of it; to be filled in.
+    pub(crate) jumps: Vec<Jump>,
+}
+
+/// The linearised jump at the end of an interval.
+#[derive(Debug, Clone)]
+pub(crate) struct Jump {
+    pub interval: usize,
+    /// Derivatives of the next left end in the end of the interval and in the scalars, `n` by `n + E`, column-major.
+    pub derivatives: Vec<f64>,
+}
+
+impl Jump {
+    /// Applies the derivatives in the state to `vector`.
+    pub(crate) fn apply(&self, vector: &mut [f64]) {
+        let before = vector.to_vec();
+        combine(&self.derivatives[..before.len() * before.len()], &before, vector);
+    }
+
+    /// The same in `n` states without what the scalars do, of which there are `scalars`.
+    pub(crate) fn of_states(&self, n: usize, scalars: usize) -> Self {
+        let mut derivatives = self.derivatives[..n * n].to_vec();
+        derivatives.resize(n * (n + scalars), 0.0);
+        Self { interval: self.interval, derivatives }
+    }
 }
 
 impl Condensation {
@@ -73,6 +99,7 @@ impl Condensation {
             states: Vec::new(),
             conditions: Vec::new(),
             bidiagonal: Bidiagonal::default(),
+            jumps: Vec::new(),
         }
     }
 
@@ -152,6 +179,18 @@ impl Condensation {
                 return 0.0;
             }
             run(Reduction(self, group));
+        }
+        let (n, e) = (self.n, self.scalars);
+        for jump in &self.jumps {
+            let transfer = &mut self.transfer[jump.interval * n * n..(jump.interval + 1) * n * n];
+            transfer.chunks_exact_mut(n).for_each(|column| jump.apply(column));
+            let scalar_columns = &mut self.scalar_columns[jump.interval * n * e..(jump.interval + 1) * n * e];
+            for (column, own) in
+                scalar_columns.chunks_exact_mut(n).zip(jump.derivatives[n * n..].chunks_exact(n))
+            {
+                jump.apply(column);
+                column.iter_mut().zip(own).for_each(|(entry, value)| *entry += value);
+            }
         }
         let blocks = Blocks {
             transfer: &self.transfer,
@@ -322,6 +361,14 @@ impl Condensation {
                     *value -= products.map(|(entry, value)| entry * value.0[lane]).sum::<f64>();
                 }
             }
+        }
+        for jump in &self.jumps {
+            let place = jump.interval * n;
+            let own = &blocks[jump.interval * size..][..n];
+            let state = &mut self.states[place..place + n];
+            state.iter_mut().zip(own).for_each(|(entry, value)| *entry -= value);
+            jump.apply(state);
+            state.iter_mut().zip(own).for_each(|(entry, value)| *entry += value);
         }
         self.bidiagonal.solve(&mut self.states, &mut self.conditions);
         scalars.copy_from_slice(&self.conditions[n..]);

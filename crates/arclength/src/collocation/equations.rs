@@ -9,7 +9,7 @@
 //! de Boor and Swartz, "Collocation at Gaussian points" (1973); Ascher, Mattheij and Russell, *Numerical
 //! Solution of Boundary Value Problems* (1995), section 5.6; Doedel, Keller and Kernevez (1991).
 
-use super::condensation::Condensation;
+use super::condensation::{Condensation, Jump};
 use super::gauss::Gauss;
 use super::polynomials::{Polynomials, combine};
 use super::problem::{BoundaryValueEquations, Reference};
@@ -26,6 +26,8 @@ pub struct Collocation<P> {
     pub(super) reference_slope: Vec<f64>,
     pub(super) condensation: Condensation,
     pub(super) boundary_is_differentiated: bool,
+    /// Whether the problem has jumps: it need not be asked for every interval.
+    pub(super) has_jumps: bool,
 }
 
 impl<P: BoundaryValueEquations> Collocation<P> {
@@ -66,6 +68,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         let size = (mesh.len() - 1) * degree * n;
         let boundary_conditions = n + problem.scalars() - 1 - problem.integral_conditions();
         Self {
+            has_jumps: !problem.jumps().is_empty(),
             condensation: Condensation::new(degree, n, problem.scalars(), boundary_conditions),
             problem,
             mesh,
@@ -73,6 +76,20 @@ impl<P: BoundaryValueEquations> Collocation<P> {
             reference_slope: vec![0.0; size],
             boundary_is_differentiated: false,
         }
+    }
+
+    /// Mesh points at which the problem has jumps.
+    pub(crate) fn jump_points(&self) -> Vec<usize> {
+        let jumps = self.problem.jumps().iter();
+        jumps.map(|time| self.mesh.partition_point(|point| point < time)).collect()
+    }
+
+    /// Number of the jump at the end of an interval.
+    pub(super) fn jump_behind(&self, interval: usize) -> Option<usize> {
+        let end = self.mesh[interval + 1];
+        let jumps = self.problem.jumps();
+        let index = jumps.partition_point(|time| *time < end);
+        (jumps.get(index) == Some(&end)).then_some(index)
     }
 
     /// Number of mesh intervals.
@@ -103,6 +120,11 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     /// The condensed blocks `R_j` of the last factorisation, n-by-n column-major, one after the other.
     pub fn transfer(&self) -> &[f64] {
         self.condensation.transfer()
+    }
+
+    /// The jumps of the last factorisation.
+    pub(crate) fn linear_jumps(&self) -> &[Jump] {
+        &self.condensation.jumps
     }
 
     /// Derivatives of the field at the Gauss points of the last factorisation: for every point `n` by `n + E`, column-major.
@@ -161,7 +183,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 let state = &here[n * (point + 1)..n * (point + 2)];
                 let time = self.time(interval, point);
                 self.problem.field(time, state, scalars, &mut values[point * n..(point + 1) * n]);
-                let reference = self.reference_at(interval * degree + point);
+                let reference = self.reference_at(interval, point);
                 self.problem.integrands(state, scalars, reference, &mut integrands);
                 let weight = width * self.gauss().weights[point];
                 for (sum, value) in integrals.iter_mut().zip(&integrands) {
@@ -169,8 +191,31 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 }
             }
             self.interval_residual(interval, states, &values, &mut residual[interval * size..][..size]);
+            if self.has_jumps
+                && let Some(index) = self.jump_behind(interval)
+            {
+                let mut after = vec![0.0; n];
+                self.problem.jump(index, &self.end_of(states, interval), scalars, &mut after);
+                self.jump_residual(interval, states, &after, residual);
+            }
         }
         self.write_conditions(states, scalars, &integrals, residual);
+    }
+
+    /// The continuity residual at the end of an interval behind which the state is `after`.
+    pub(super) fn jump_residual(&self, interval: usize, states: &[f64], after: &[f64], residual: &mut [f64]) {
+        let next = self.interval(states, interval + 1);
+        let target = &mut residual[interval * self.interval_size()..];
+        for ((entry, next), after) in target.iter_mut().zip(next).zip(after) {
+            *entry = next - after;
+        }
+    }
+
+    /// The state at the end of an interval, by its polynomial.
+    pub(crate) fn end_of(&self, states: &[f64], interval: usize) -> Vec<f64> {
+        let mut end = vec![0.0; self.problem.dimension()];
+        combine(self.interval(states, interval), &self.gauss().end, &mut end);
+        end
     }
 
     pub(super) fn boundary_conditions(&self) -> usize {
@@ -179,9 +224,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
 
     /// `y(1)`.
     pub(super) fn end(&self, states: &[f64]) -> Vec<f64> {
-        let mut end = vec![0.0; self.problem.dimension()];
-        combine(self.interval(states, self.intervals() - 1), &self.gauss().end, &mut end);
-        end
+        self.end_of(states, self.intervals() - 1)
     }
 
     /// Writes the values of the conditions, those at the boundary and then those on integrals, to their places in the residual.
@@ -232,9 +275,11 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         }
     }
 
-    fn reference_at(&self, index: usize) -> Reference<'_> {
+    fn reference_at(&self, interval: usize, point: usize) -> Reference<'_> {
         let n = self.problem.dimension();
+        let index = interval * self.gauss().degree() + point;
         Reference {
+            time: self.time(interval, point),
             state: &self.reference[index * n..(index + 1) * n],
             slope: &self.reference_slope[index * n..(index + 1) * n],
         }
@@ -304,9 +349,32 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         carried
     }
 
+    /// Carries a vector over to a mesh of as many intervals whose points number `points` are moved a little: what lies between
+    /// two of them stays there.
+    pub(crate) fn carry_phases(&self, unknown: &[f64], mesh: &[f64], points: &[usize]) -> Vec<f64> {
+        let n = self.problem.dimension();
+        let polynomials = self.polynomials(unknown);
+        let mut carried = vec![0.0; self.intervals() * self.interval_size()];
+        let mut start = 0;
+        for end in points.iter().copied().chain([self.intervals()]) {
+            for interval in start..end {
+                let (left, width) = (mesh[interval], mesh[interval + 1] - mesh[interval]);
+                let target = &mut carried[interval * self.interval_size()..][..self.interval_size()];
+                let nodes = std::iter::once(0.0).chain(self.gauss().points.iter().copied());
+                for (state, node) in target.chunks_exact_mut(n).zip(nodes) {
+                    polynomials.state_within(start..end, left + node * width, state);
+                }
+            }
+            start = end;
+        }
+        carried.extend_from_slice(&unknown[self.intervals() * self.interval_size()..]);
+        carried
+    }
+
     /// Replaces the mesh; vectors have to be [carried](Self::carry) before. The reference is carried here.
     pub fn set_mesh(&mut self, mesh: Vec<f64>, unknown: &[f64]) {
         self.mesh = mesh;
+        self.has_jumps = !self.problem.jumps().is_empty();
         self.set_reference(unknown);
     }
 }

@@ -98,7 +98,7 @@ impl<P: BoundaryValueProblem> BoundaryValueEquations for FoldProblem<'_, P> {
         values: &mut [T],
     ) {
         let (n, e) = (self.problem.dimension(), self.problem.scalars());
-        let reference = Reference { state: &reference.state[..n], slope: &reference.slope[..n] };
+        let reference = Reference { state: &reference.state[..n], slope: &reference.slope[..n], ..reference };
         let mut duals = vec![Dual::zero(); self.problem.integral_conditions()];
         self.problem.integrands(&self.lift_state(state), &self.lift_scalars(scalars), reference, &mut duals);
         Self::write(&duals, values);

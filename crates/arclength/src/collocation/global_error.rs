@@ -124,10 +124,13 @@ impl GlobalError {
                 combine(&forcing, weights, target);
                 target.iter_mut().for_each(|entry| *entry *= width);
             }
+            let condensation = &collocation.condensation;
             if interval + 1 < intervals {
                 row[..n].copy_from_slice(&end);
+                if let Some(jump) = condensation.jumps.iter().find(|jump| jump.interval == interval) {
+                    jump.apply(&mut row[..n]);
+                }
             }
-            let condensation = &collocation.condensation;
             for integral in 0..integral_conditions {
                 let gradient = &condensation.gradients[(integral * intervals + interval) * size + n..];
                 let product: f64 = gradient.iter().zip(&smooth).map(|(a, b)| a * b).sum();

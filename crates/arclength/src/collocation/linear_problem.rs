@@ -10,7 +10,7 @@
 //! problem; columns `c_k` and rows `r_k` make it regular, and the scalars that come out are what solvability demands (Govaerts,
 //! *Numerical Methods for Bifurcations of Dynamical Equilibria* (2000), chapter 3). The discretisation is that of the cycle.
 
-use super::condensation::Condensation;
+use super::condensation::{Condensation, Jump};
 use super::gauss::Gauss;
 
 /// A function with `n` components on all nodes of a mesh: for every interval its left end and its Gauss points.
@@ -24,11 +24,13 @@ pub(crate) struct LinearProblem {
     scalars: usize,
 }
 
-/// The mesh and the nodes on it.
+/// The mesh and the nodes on it, with the jumps at its points.
 #[derive(Clone, Copy)]
 pub(crate) struct Nodes<'a> {
     pub mesh: &'a [f64],
     pub gauss: &'a Gauss,
+    /// Jumps at the ends of intervals: what solutions are multiplied by there.
+    pub jumps: &'a [Jump],
 }
 
 impl Nodes<'_> {
@@ -100,6 +102,7 @@ impl LinearProblem {
                 condensation.gradients[(index * intervals + interval) * size..][..n].fill(0.0);
             }
         }
+        condensation.jumps = nodes.jumps.iter().map(|jump| jump.of_states(n, scalars)).collect();
         let problem = Self { mesh: nodes.mesh.to_vec(), components: n, condensation, scalars };
         problem.factorized()
     }
@@ -149,7 +152,7 @@ mod tests {
         // y' = -y + s + cos(2 pi t), mean of y = 3: s = 3 and the response of a first-order lag.
         let gauss = Gauss::new(7);
         let mesh: Vec<f64> = [0.0, 0.1, 0.25, 0.4, 0.6, 0.8, 1.0].to_vec();
-        let nodes = Nodes { mesh: &mesh, gauss: &gauss };
+        let nodes = Nodes { mesh: &mesh, gauss: &gauss, jumps: &[] };
         let times: Vec<f64> = mesh
             .windows(2)
             .flat_map(|pair| {
@@ -175,7 +178,7 @@ mod tests {
         // y' = (1 + s) cos(pi t), antiperiodic: y = (1 + s) sin(pi t) / pi; its product with the sine fixes s.
         let gauss = Gauss::new(6);
         let mesh: Vec<f64> = (0..=6).map(|index| f64::from(index) / 6.0).collect();
-        let nodes = Nodes { mesh: &mesh, gauss: &gauss };
+        let nodes = Nodes { mesh: &mesh, gauss: &gauss, jumps: &[] };
         let times: Vec<f64> = mesh
             .windows(2)
             .flat_map(|pair| {

@@ -1,6 +1,7 @@
 //! The Jacobian of a collocation system, bordered by one row, by dual numbers: its entries are written where
 //! [`Condensation`](super::condensation::Condensation) takes them from.
 
+use super::condensation::Jump;
 use super::equations::Collocation;
 use super::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
@@ -48,6 +49,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         let intervals = self.intervals();
         let mut integrals = vec![0.0; self.problem.integral_conditions()];
         self.condensation.prepare(intervals);
+        self.condensation.jumps.clear();
         let (states, scalars) = unknown.split_at(intervals * size);
         for row in 0..integrals.len() {
             for interval in 0..intervals {
@@ -88,6 +90,11 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 }
             }
             self.interval_residual(interval, states, &values, &mut residual[interval * size..][..size]);
+            if self.has_jumps
+                && let Some(index) = self.jump_behind(interval)
+            {
+                self.differentiate_jump(index, interval, states, scalars, residual);
+            }
         }
         if !(self.boundary_is_differentiated && self.problem.has_linear_boundary_conditions()) {
             self.differentiate_boundary(&states[..n], &self.end(states), scalars);
@@ -95,6 +102,37 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         }
         self.write_conditions(states, scalars, &integrals, residual);
         self.condensation.factorize(&self.mesh)
+    }
+
+    /// Derivatives of a jump with respect to the state before it and the scalars, and the residual there.
+    fn differentiate_jump(
+        &mut self,
+        index: usize,
+        interval: usize,
+        states: &[f64],
+        scalars: &[f64],
+        residual: &mut [f64],
+    ) {
+        let n = self.problem.dimension();
+        let point = [&self.end_of(states, interval), scalars].concat();
+        let mut duals: Vec<Dual<f64, WIDE>> = point.iter().map(|value| Dual::constant(*value)).collect();
+        let mut after = vec![Dual::zero(); n];
+        let mut derivatives = Vec::with_capacity(n * point.len());
+        for first in (0..point.len()).step_by(WIDE) {
+            let width = WIDE.min(point.len() - first);
+            for direction in 0..width {
+                duals[first + direction].derivatives[direction] = 1.0;
+            }
+            let (before, scalars) = duals.split_at(n);
+            self.problem.jump(index, before, scalars, &mut after);
+            for direction in 0..width {
+                derivatives.extend(after.iter().map(|value| value.derivatives[direction]));
+                duals[first + direction].derivatives[direction] = 0.0;
+            }
+        }
+        let after: Vec<f64> = after.iter().map(|value| value.value).collect();
+        self.jump_residual(interval, states, &after, residual);
+        self.condensation.jumps.push(Jump { interval, derivatives });
     }
 
     /// Derivatives of the boundary conditions with respect to `y(1)`, `y(0)` and the scalars.
@@ -151,11 +189,12 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 if direction < n { &mut duals.state[direction] } else { &mut duals.scalars[direction - n] };
             dual.derivatives[index] = 1.0;
         }
+        let time = self.time(place.interval, place.point);
         let reference = Reference {
+            time,
             state: &self.reference[node * n..(node + 1) * n],
             slope: &self.reference_slope[node * n..(node + 1) * n],
         };
-        let time = self.time(place.interval, place.point);
         self.problem.field(time, &duals.state, &duals.scalars, &mut duals.values);
         self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
         for (entry, dual) in values.iter_mut().zip(&duals.values) {

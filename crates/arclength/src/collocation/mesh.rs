@@ -50,7 +50,9 @@ pub(crate) fn error_profile<P: BoundaryValueEquations>(
             for (index, end) in ends.iter().enumerate() {
                 combine(values, &bases[index][..nodes], &mut state);
                 combine(values, &slopes[index][..nodes], &mut slope);
-                collocation.problem.field(left + end * width, &state, scalars, &mut field);
+                // At its end the field is still that of the interval.
+                let time = (left + end * width).min(right.next_down());
+                collocation.problem.field(time, &state, scalars, &mut field);
                 let constant = 1.0 / gauss.node_polynomial(*end);
                 for component in 0..scales.len() {
                     let residual = slope[component] - width * field[component];
@@ -94,7 +96,7 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     // An estimate from a coarse mesh is not to be trusted far: at most double at a time.
     let count = wanted.min(2 * intervals);
     let count = if too_coarse { count.max(intervals + 1) } else { count };
-    let mesh = equidistribute(collocation.mesh(), errors, degree, count);
+    let mesh = equidistribute(collocation.mesh(), errors, (degree, count), &collocation.jump_points());
     *unknown = collocation.carry(unknown, &mesh);
     for vector in vectors.iter_mut() {
         **vector = collocation.carry(vector, &mesh);
@@ -109,8 +111,13 @@ fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
     errors.iter().map(|error| (error / target).powf(power)).sum()
 }
 
-/// A mesh of `intervals` intervals on which the error is about the same everywhere.
-fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize) -> Vec<f64> {
+/// A mesh of about `intervals` intervals on which the error is about the same everywhere; mesh points number `kept` stay.
+fn equidistribute(
+    mesh: &[f64],
+    errors: &[f64],
+    (degree, intervals): (usize, usize),
+    kept: &[usize],
+) -> Vec<f64> {
     let power = 1.0 / (degree as f64 + 1.0);
     let total: f64 = errors.iter().map(|error| error.powf(power)).sum();
     // Mass of every old interval; the floor keeps quiet stretches from being starved.
@@ -121,8 +128,19 @@ fn equidistribute(mesh: &[f64], errors: &[f64], degree: usize, intervals: usize)
             error.powf(power) + DENSITY_FLOOR * total.max(f64::MIN_POSITIVE) * (pair[1] - pair[0])
         })
         .collect();
-    let inner = dividing_equally(mesh, &masses, intervals);
-    [0.0].into_iter().chain(inner).chain([1.0]).collect()
+    let mass: f64 = masses.iter().sum();
+    let last = masses.len();
+    let mut result = vec![0.0];
+    let mut start = 0;
+    for end in kept.iter().copied().chain([last]) {
+        let part = &masses[start..end];
+        let share = if kept.is_empty() { 1.0 } else { part.iter().sum::<f64>() / mass };
+        let count = (share * intervals as f64).round().max(1.0) as usize;
+        result.extend(dividing_equally(&mesh[start..=end], part, count));
+        result.push(mesh[end]);
+        start = end;
+    }
+    result
 }
 
 /// The points that divide the intervals of `knots` anew into as many, in each of which there is an equal part of their masses.
@@ -140,3 +158,60 @@ pub(crate) fn dividing_equally(knots: &[f64], masses: &[f64], intervals: usize) 
     };
     (1..intervals).map(point).collect()
 }
+
+/// Moves the mesh points of jumps to where the jumps take place, and those between them in proportion; carries `unknown` and
+/// `vectors` along. `None` where a jump does not take place nearby. Returns the largest distance by which one was moved.
+pub(crate) fn fit_jumps<P: BoundaryValueEquations>(
+    collocation: &mut Collocation<P>,
+    unknown: &mut Vec<f64>,
+    vectors: &mut [&mut Vec<f64>],
+) -> Option<f64> {
+    let old = collocation.problem.jumps().to_vec();
+    let points = collocation.jump_points();
+    let scalars = &unknown[unknown.len() - collocation.problem.scalars()..];
+    let mut largest = 0.0_f64;
+    let mut times = Vec::with_capacity(old.len());
+    for (index, (time, point)) in old.iter().zip(&points).enumerate() {
+        let before = collocation.end_of(unknown, point - 1);
+        let delay = collocation.problem.delay(index, &before, scalars)?;
+        largest = largest.max(delay.abs());
+        times.push(time + delay);
+    }
+    let is_ordered = times.first().is_none_or(|time| *time > 0.0)
+        && times.last().is_none_or(|time| *time < 1.0)
+        && times.windows(2).all(|pair| pair[0] < pair[1]);
+    if !is_ordered {
+        return None;
+    }
+    if largest <= SAME_TIME {
+        return Some(largest);
+    }
+    let mut mesh = collocation.mesh().to_vec();
+    let ends =
+        |list: &[f64]| -> Vec<f64> { [0.0].into_iter().chain(list.iter().copied()).chain([1.0]).collect() };
+    let (from, to) = (ends(&old), ends(&times));
+    let mut start = 0;
+    for (phase, end) in points.iter().copied().chain([mesh.len() - 1]).enumerate() {
+        for point in &mut mesh[start + 1..end] {
+            let part = (*point - from[phase]) / (from[phase + 1] - from[phase]);
+            *point = to[phase] + part * (to[phase + 1] - to[phase]);
+        }
+        if end + 1 < mesh.len() {
+            mesh[end] = times[phase];
+        }
+        start = end;
+    }
+    if !mesh.windows(2).all(|pair| pair[0] < pair[1]) {
+        return None;
+    }
+    *unknown = collocation.carry_phases(unknown, &mesh, &points);
+    for vector in vectors.iter_mut() {
+        **vector = collocation.carry_phases(vector, &mesh, &points);
+    }
+    collocation.problem.move_jumps(&times);
+    collocation.set_mesh(mesh, unknown);
+    Some(largest)
+}
+
+/// Two times of the unit interval that are closer than this are one.
+pub(crate) const SAME_TIME: f64 = 1e-10;

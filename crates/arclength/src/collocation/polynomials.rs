@@ -49,7 +49,20 @@ impl Polynomials<'_> {
 
     /// Writes the state at a time in `[0, 1]`.
     pub(crate) fn state(&self, time: f64, state: &mut [f64]) {
-        let (interval, position, _) = self.place(time);
+        let (interval, _, _) = self.place(time);
+        self.state_by(interval, time, state);
+    }
+
+    /// Writes the state at a time by the polynomial of the interval among some that is closest to it.
+    pub(crate) fn state_within(&self, intervals: std::ops::Range<usize>, time: f64, state: &mut [f64]) {
+        let (interval, _, _) = self.place(time);
+        self.state_by(interval.clamp(intervals.start, intervals.end - 1), time, state);
+    }
+
+    /// Writes the state at a time by the polynomial of an interval.
+    fn state_by(&self, interval: usize, time: f64, state: &mut [f64]) {
+        let width = self.mesh[interval + 1] - self.mesh[interval];
+        let position = (time - self.mesh[interval]) / width;
         let mut basis = [0.0; MOST_NODES];
         let basis = &mut basis[..self.gauss.degree() + 1];
         self.gauss.basis(position, basis);

@@ -61,6 +61,8 @@ pub trait BoundaryValueProblem {
 /// The solution that phase and normalisation conditions refer to, at one point in time.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference<'a> {
+    /// The time.
+    pub time: f64,
     /// Its state.
     pub state: &'a [f64],
     /// Its derivative with respect to the unit time.
@@ -91,7 +93,25 @@ pub trait BoundaryValueEquations {
         false
     }
 
-    /// As [`BoundaryValueProblem::field`].
+    /// Times at which the solution is handed on by [`jump`](Self::jump), in ascending order: inner points of every mesh.
+    fn jumps(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Writes the state behind jump number `index` from that before it.
+    fn jump<T: JacobianScalar>(&self, _index: usize, before: &[T], _scalars: &[T], after: &mut [T]) {
+        after.copy_from_slice(before);
+    }
+
+    /// How much later than the time of jump number `index` what it stands for takes place; `None` where it does not.
+    fn delay(&self, _index: usize, _before: &[f64], _scalars: &[f64]) -> Option<f64> {
+        Some(0.0)
+    }
+
+    /// Sets the times of the jumps.
+    fn move_jumps(&mut self, _times: &[f64]) {}
+
+    /// As [`BoundaryValueProblem::field`]; at the time of a jump that behind it.
     fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]);
 
     /// As [`BoundaryValueProblem::boundary_conditions`].

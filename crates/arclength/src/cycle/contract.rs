@@ -85,6 +85,11 @@ impl Curve for CycleCurve<'_> {
         if unknown[end] <= 0.0 || self.sizes.is_equilibrium(&unknown[..end]) {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
+        let phases = self.fit_phases(unknown, vectors)?;
+        if phases != Adaptation::Unchanged {
+            // The next correction is that of the cycle in its phases; its mesh is fitted then.
+            return Ok(phases);
+        }
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
         let finer = Resolution { tolerance: self.refinement * self.resolution.tolerance, ..self.resolution };

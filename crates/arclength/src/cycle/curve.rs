@@ -3,15 +3,17 @@
 use super::extrema::Range;
 use super::floquet::Floquet;
 use super::limit_cycle::LimitCycle;
+use super::phases::Phases;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
 use crate::collocation::equations::Collocation;
 use crate::collocation::global_error::{GlobalError, largest};
-use crate::collocation::mesh::error_profile;
+use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
-use crate::continuation::{Settings, Solution};
+use crate::continuation::{Adaptation, Settings, Solution};
+use crate::error::Error;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 
@@ -93,6 +95,8 @@ pub(crate) struct CycleCurve<'a> {
     /// Sign of the rate of change of the parameter, the orientation and the parity of the number of multipliers above one,
     /// multiplied: the same all along the curve.
     relation: Option<f64>,
+    /// Why the phases of the start are not known.
+    phases_error: Option<Error>,
 }
 
 impl<'a> CycleCurve<'a> {
@@ -105,8 +109,13 @@ impl<'a> CycleCurve<'a> {
     ) -> Self {
         collocation.set_reference(start);
         let n = collocation.problem.dimension();
+        let phases_error = find_phases(&mut collocation, start).err();
+        if collocation.problem.has_borders() {
+            collocation.set_mesh(collocation.mesh().to_vec(), start);
+        }
         let sizes = StateSizes::new(&collocation.problem, start);
         let mut curve = Self {
+            phases_error,
             resolution,
             settings: Settings::default(),
             parameter_scale,
@@ -125,6 +134,68 @@ impl<'a> CycleCurve<'a> {
         curve.rescale(start);
         curve.collocation.set_reference(start);
         curve
+    }
+
+    /// Has mesh points be the borders that the cycle passes, and the phases those that it goes through.
+    ///
+    /// # Errors
+    /// [`Error::TooManyBorders`].
+    pub(super) fn fit_phases(
+        &mut self,
+        unknown: &mut Vec<f64>,
+        vectors: &mut [&mut Vec<f64>],
+    ) -> Result<Adaptation, Error> {
+        if let Some(error) = self.phases_error.take() {
+            return Err(error);
+        }
+        if self.collocation.problem.phases.is_none() {
+            return Ok(Adaptation::Unchanged);
+        }
+        let moved = fit_jumps(&mut self.collocation, unknown, vectors);
+        let collocation = &mut self.collocation;
+        let known = collocation.problem.phases.clone();
+        let mesh = collocation.mesh().to_vec();
+        find_exact_phases(collocation, unknown)?;
+        let found = &mut collocation.problem.phases;
+        let is_same = found.as_ref().zip(known.as_ref()).is_some_and(|(found, known)| found.are_like(known));
+        if moved.is_some() && is_same {
+            *found = known;
+        } else if let Some(phases) = found {
+            let finer = with_points(&mesh, &phases.times);
+            *unknown = collocation.carry(unknown, &finer);
+            for vector in vectors.iter_mut() {
+                **vector = collocation.carry(vector, &finer);
+            }
+            collocation.set_mesh(finer, unknown);
+        }
+        let collocation = &mut self.collocation;
+        let origin =
+            collocation.problem.phases.as_ref().and_then(|phases| phases.better_origin(collocation.mesh()));
+        if let Some(origin) = origin {
+            self.count_from(origin, unknown, vectors);
+        }
+        let is_moved = !is_same || moved.is_none_or(|moved| moved > SAME_TIME);
+        Ok(if is_moved || origin.is_some() { Adaptation::Changed } else { Adaptation::Unchanged })
+    }
+
+    /// Counts the unit time from a mesh point on.
+    fn count_from(&mut self, origin: usize, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) {
+        let collocation = &mut self.collocation;
+        let size = collocation.interval_size();
+        let intervals = collocation.intervals();
+        let old = collocation.mesh().to_vec();
+        let start = old[origin];
+        let mut mesh: Vec<f64> = old[origin..intervals].iter().map(|time| time - start).collect();
+        mesh.extend(old[..origin].iter().map(|time| time + (1.0 - start)));
+        mesh.push(1.0);
+        let points = collocation.jump_points();
+        if let Some(phases) = &mut collocation.problem.phases {
+            phases.count_from(start, intervals - origin, &points, &mesh);
+        }
+        let turn = |vector: &mut Vec<f64>| vector[..intervals * size].rotate_left(origin * size);
+        turn(unknown);
+        vectors.iter_mut().for_each(|vector| turn(vector));
+        collocation.set_mesh(mesh, unknown);
     }
 
     /// Measures sizes on a solution.
@@ -255,3 +326,41 @@ impl<'a> CycleCurve<'a> {
         Some(vanishing_point((a, size_before), (b, size_after)))
     }
 }
+
+/// Finds the phases of a cycle, with the borders at points of the mesh.
+fn find_phases(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
+    find_exact_phases(collocation, unknown)?;
+    let mesh = collocation.mesh().to_vec();
+    if let Some(phases) = &mut collocation.problem.phases {
+        phases.snap_to(&mesh);
+    }
+    Ok(())
+}
+
+/// Finds the phases of a cycle with the borders where they are.
+fn find_exact_phases(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
+    let problem = &collocation.problem;
+    let mut parameters = problem.parameters.clone();
+    parameters[problem.active] = unknown[unknown.len() - 1];
+    collocation.problem.phases = Phases::of(problem.field, collocation.polynomials(unknown), &parameters)?;
+    Ok(())
+}
+
+/// A mesh with more points; those of before that are close to one of them give way.
+fn with_points(mesh: &[f64], times: &[f64]) -> Vec<f64> {
+    let is_apart = |(index, point): &(usize, &f64)| {
+        let gap = if *index == 0 || *index + 1 == mesh.len() {
+            return true;
+        } else {
+            GIVES_WAY * (mesh[index + 1] - mesh[index - 1])
+        };
+        times.iter().all(|time| (time - **point).abs() > gap)
+    };
+    let kept = mesh.iter().enumerate().filter(is_apart).map(|(_, point)| *point);
+    let mut all: Vec<f64> = kept.chain(times.iter().copied()).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// A mesh point that is this close to a border, as part of its two intervals, gives way to it.
+const GIVES_WAY: f64 = 0.1;

@@ -7,6 +7,7 @@
 //! ODEs using bordered systems", SIAM J. Numer. Anal. 41 (2003).
 
 use super::limit_cycle::phase_integrand;
+use super::phases::Phases;
 use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar, JacobianScalar};
@@ -81,6 +82,8 @@ pub(crate) struct Defining<'a> {
     pub period_scale: f64,
     /// Size of the active parameter.
     pub parameter_scale: f64,
+    /// The phases of the cycle, where the field is smooth only piece by piece.
+    pub phases: Option<Phases<'a>>,
     /// Coefficients of `(T, p, second p)` in the condition that [`Kind::Cycle`] adds.
     pub stand_in: [f64; 3],
 }
@@ -122,12 +125,43 @@ impl BoundaryValueEquations for Defining<'_> {
     }
 
     #[inline]
-    fn field<T: JacobianScalar>(&self, _time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
         match self.kind {
-            Kind::Torus => self.variational::<T, 2>(state, scalars, derivative),
-            Kind::BranchPoint => self.adjoint(state, scalars, derivative),
-            Kind::Fold | Kind::Doubling => self.variational::<T, 1>(state, scalars, derivative),
-            Kind::Cycle => self.flow(state, scalars, derivative),
+            Kind::Torus => self.variational::<T, 2>(time, state, scalars, derivative),
+            Kind::BranchPoint => self.adjoint(time, state, scalars, derivative),
+            Kind::Fold | Kind::Doubling => self.variational::<T, 1>(time, state, scalars, derivative),
+            Kind::Cycle => self.flow(time, state, scalars, derivative),
+        }
+    }
+
+    fn jumps(&self) -> &[f64] {
+        self.phases.as_ref().map_or(&[], |phases| &phases.times)
+    }
+
+    fn jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
+        match self.kind {
+            Kind::Torus => self.variational_jump::<T, 2>(index, before, scalars, after),
+            Kind::BranchPoint => self.adjoint_jump(index, before, scalars, after),
+            Kind::Fold | Kind::Doubling => self.variational_jump::<T, 1>(index, before, scalars, after),
+            Kind::Cycle => {
+                if let Some(phases) = &self.phases {
+                    let replaced = self.replaced(scalars, |value| value);
+                    phases.jump(index, before, scalars[0].value(), &replaced, after);
+                }
+            }
+        }
+    }
+
+    fn delay(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<f64> {
+        let states = &before[..self.scales.len()];
+        let replaced = self.replaced(scalars, |value| value);
+        let (delay, _) = self.phases.as_ref()?.delay(index, states, scalars[0], &replaced)?;
+        Some(delay / scalars[0])
+    }
+
+    fn move_jumps(&mut self, times: &[f64]) {
+        if let Some(phases) = &mut self.phases {
+            phases.times.copy_from_slice(times);
         }
     }
 
@@ -150,7 +184,7 @@ impl BoundaryValueEquations for Defining<'_> {
         };
         let v = |index: usize| state[n + index];
         if self.kind == Kind::BranchPoint {
-            return self.adjoint_conditions(state, scalars, values);
+            return self.adjoint_conditions(reference.time, state, scalars, values);
         }
         values[1] = product(&v, &v) - 1.0;
         match self.kind {
@@ -173,20 +207,35 @@ impl BoundaryValueEquations for Defining<'_> {
 }
 
 impl Defining<'_> {
-    /// The active parameters in place of their values.
+    /// The active parameters with the unknowns that take their places.
     #[inline]
-    fn with_active<T: Scalar, R>(&self, scalars: &[T], lift: impl Fn(T) -> R, action: impl FnOnce(&[R]))
-    where
+    fn replaced<T: Scalar, R: Scalar>(&self, scalars: &[T], lift: impl Fn(T) -> R) -> Vec<(usize, R)> {
+        let own = self.kind.own_scalars();
+        let first = (self.active, lift(scalars[1 + own]));
+        std::iter::once(first).chain(self.second.map(|index| (index, lift(scalars[2 + own])))).collect()
+    }
+
+    /// The active parameters in place of their values, in the phase of a time.
+    #[inline]
+    fn with_active<T: Scalar, R>(
+        &self,
+        time: f64,
+        scalars: &[T],
+        lift: impl Fn(T) -> R,
+        action: impl FnOnce(&[R]),
+    ) where
         R: Scalar,
     {
         let own = self.kind.own_scalars();
         let first = (self.active, lift(scalars[1 + own]));
+        let parameters =
+            self.phases.as_ref().map_or(&self.parameters[..], |phases| phases.parameters_at(time));
         match self.second {
             Some(index) => {
                 let replaced = [first, (index, lift(scalars[2 + own]))];
-                with_parameters(&self.parameters, replaced, action);
+                with_parameters(parameters, replaced, action);
             }
-            None => with_parameters(&self.parameters, [first], action),
+            None => with_parameters(parameters, [first], action),
         }
     }
 
@@ -195,7 +244,7 @@ impl Defining<'_> {
     #[inline]
     fn derivative_in<T: JacobianScalar>(
         &self,
-        direction: usize,
+        (direction, time): (usize, f64),
         state: &[T],
         scalars: &[T],
         values: &mut [Dual<T, 1>],
@@ -203,7 +252,7 @@ impl Defining<'_> {
         let n = self.scales.len();
         let duals: Vec<Dual<T, 1>> =
             (0..n).map(|index| Dual::variable(state[index], usize::from(index != direction))).collect();
-        self.with_active(scalars, Dual::constant, |parameters: &[Dual<T, 1>]| {
+        self.with_active(time, scalars, Dual::constant, |parameters: &[Dual<T, 1>]| {
             if direction == n {
                 let mut parameters = parameters.to_vec();
                 parameters[self.active].derivatives[0] = T::one();
@@ -215,21 +264,21 @@ impl Defining<'_> {
     }
 
     #[inline]
-    fn flow<T: JacobianScalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn flow<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let lift = |value| value;
-        self.with_active(scalars, lift, |parameters: &[T]| {
+        self.with_active(time, scalars, lift, |parameters: &[T]| {
             self.field.evaluate(state, parameters, derivative)
         });
         derivative.iter_mut().for_each(|entry| *entry *= scalars[0]);
     }
 
     #[inline]
-    fn adjoint<T: JacobianScalar>(&self, state: &[T], scalars: &[T], derivative: &mut [T]) {
+    fn adjoint<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let n = self.scales.len();
         let (period, perturbation, multiple) = (scalars[0], scalars[1], scalars[2]);
         let mut values = vec![Dual::<T, 1>::zero(); n];
         for direction in 0..n {
-            self.derivative_in(direction, state, scalars, &mut values);
+            self.derivative_in((direction, time), state, scalars, &mut values);
             let sum: T = (0..n).map(|row| state[n + row] * values[row].derivatives[0]).sum();
             derivative[n + direction] = -(sum * period);
         }
@@ -241,10 +290,10 @@ impl Defining<'_> {
     }
 
     #[inline]
-    fn adjoint_conditions<T: JacobianScalar>(&self, state: &[T], scalars: &[T], values: &mut [T]) {
+    fn adjoint_conditions<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], values: &mut [T]) {
         let n = self.scales.len();
         let mut slopes = vec![Dual::<T, 1>::zero(); n];
-        self.derivative_in(n, state, scalars, &mut slopes);
+        self.derivative_in((n, time), state, scalars, &mut slopes);
         let mut sums = [T::zero(); 3];
         for index in 0..n {
             let psi = state[n + index];
@@ -258,23 +307,71 @@ impl Defining<'_> {
         values[3] = sums[2];
     }
 
+    /// A jump of the cycle and of the eigenfunctions, by the linearised one.
+    fn variational_jump<T: JacobianScalar, const K: usize>(
+        &self,
+        index: usize,
+        before: &[T],
+        scalars: &[T],
+        after: &mut [T],
+    ) where
+        Dual<T, K>: FieldScalar,
+    {
+        let Some(phases) = &self.phases else { return };
+        let n = self.scales.len();
+        let lifted = lifted::<T, K>(before, n);
+        let mut values = vec![Dual::<T, K>::zero(); n];
+        let replaced = self.replaced(scalars, Dual::constant);
+        phases.jump(index, &lifted, scalars[0].value(), &replaced, &mut values);
+        for (component, value) in values.iter().enumerate() {
+            after[component] = value.value;
+            for (direction, slope) in value.derivatives.iter().enumerate() {
+                after[(direction + 1) * n + component] = *slope;
+            }
+        }
+    }
+
+    /// A jump of the cycle and of the adjoint eigenfunction; not numbers where the field jumps, which these equations leave out.
+    fn adjoint_jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
+        let Some(phases) = &self.phases else { return };
+        let n = self.scales.len();
+        let (states, adjoint) = before.split_at(n);
+        let replaced = self.replaced(scalars, Dual::constant);
+        let mut values = vec![Dual::<T, 1>::zero(); n];
+        after[n..].copy_from_slice(adjoint);
+        for direction in 0..n {
+            let lifted: Vec<Dual<T, 1>> = (0..n)
+                .map(|component| Dual::variable(states[component], usize::from(component != direction)))
+                .collect();
+            phases.jump(index, &lifted, scalars[0].value(), &replaced, &mut values);
+            let jumps = values.iter().enumerate().any(|(row, value)| {
+                let identity = if row == direction { 1.0 } else { 0.0 };
+                let scaled = self.scales[direction] / self.scales[row];
+                (value.derivatives[0].value() - identity).abs() * scaled > KINK_ONLY
+            });
+            if jumps {
+                after[n..].fill(T::from(f64::NAN));
+            }
+        }
+        for (entry, value) in after.iter_mut().zip(&values) {
+            *entry = value.value;
+        }
+    }
+
     #[inline]
-    fn variational<T: JacobianScalar, const K: usize>(&self, state: &[T], scalars: &[T], derivative: &mut [T])
-    where
+    fn variational<T: JacobianScalar, const K: usize>(
+        &self,
+        time: f64,
+        state: &[T],
+        scalars: &[T],
+        derivative: &mut [T],
+    ) where
         Dual<T, K>: FieldScalar,
     {
         let n = self.scales.len();
         let mut values = vec![Dual::<T, K>::zero(); n];
-        let duals: Vec<Dual<T, K>> = (0..n)
-            .map(|index| {
-                let mut dual = Dual::constant(state[index]);
-                for (direction, slope) in dual.derivatives.iter_mut().enumerate() {
-                    *slope = state[(direction + 1) * n + index];
-                }
-                dual
-            })
-            .collect();
-        self.with_active(scalars, Dual::constant, |parameters: &[Dual<T, K>]| {
+        let duals = lifted::<T, K>(state, n);
+        self.with_active(time, scalars, Dual::constant, |parameters: &[Dual<T, K>]| {
             self.field.evaluate(&duals, parameters, &mut values);
         });
         let period = scalars[0];
@@ -296,3 +393,19 @@ impl Defining<'_> {
         }
     }
 }
+
+/// States with `K` eigenfunctions behind them as dual numbers.
+#[inline]
+fn lifted<T: Scalar, const K: usize>(state: &[T], n: usize) -> Vec<Dual<T, K>> {
+    let lift = |index: usize| {
+        let mut dual = Dual::constant(state[index]);
+        for (direction, slope) in dual.derivatives.iter_mut().enumerate() {
+            *slope = state[(direction + 1) * n + index];
+        }
+        dual
+    };
+    (0..n).map(lift).collect()
+}
+
+/// Deviation of a linearised jump from the identity up to which the field has a kink there and does not jump.
+const KINK_ONLY: f64 = 1e-7;

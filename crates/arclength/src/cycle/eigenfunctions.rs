@@ -27,7 +27,8 @@ impl<'a> Linearization<'a> {
     /// From the last factorisation of `collocation`, which has to be that at `unknown`.
     pub(crate) fn of(collocation: &'a Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Self {
         let n = collocation.problem.dimension();
-        let nodes = Nodes { mesh: collocation.mesh(), gauss: collocation.gauss() };
+        let nodes =
+            Nodes { mesh: collocation.mesh(), gauss: collocation.gauss(), jumps: collocation.linear_jumps() };
         let scalars = &unknown[unknown.len() - 2..];
         let derivatives = collocation.derivatives();
         let mut matrices = Vec::with_capacity(nodes.count() * n * n);
@@ -37,9 +38,9 @@ impl<'a> Linearization<'a> {
             parameter[node * n..(node + 1) * n].copy_from_slice(&block[n * (n + 1)..]);
         }
         let mut flow = vec![0.0; nodes.count() * n];
-        for (state, target) in unknown.chunks_exact(n).zip(flow.chunks_exact_mut(n)) {
-            // The field of a cycle does not depend on the time.
-            collocation.problem.field(0.0, state, scalars, target);
+        let times = collocation.polynomials(unknown).node_times();
+        for ((state, target), time) in unknown.chunks_exact(n).zip(flow.chunks_exact_mut(n)).zip(times) {
+            collocation.problem.field(time, state, scalars, target);
             target.iter_mut().for_each(|entry| *entry /= scalars[0]);
         }
         Self { nodes, scales: &collocation.problem.scales, matrices, flow, parameter }
@@ -117,9 +118,10 @@ impl<'a> Linearization<'a> {
                 }
             }
         }
+        // At kinks nothing jumps; where the field does, branch points are not located.
+        let nodes = Nodes { jumps: &[], ..self.nodes };
         let columns: [&[f64]; 2] = [&self.dual(&self.flow), &self.dual(null)];
-        let mut problem =
-            LinearProblem::new(self.nodes, vec![1.0; n], &adjoint, &columns, &[&self.flow, null])?;
+        let mut problem = LinearProblem::new(nodes, vec![1.0; n], &adjoint, &columns, &[&self.flow, null])?;
         let zero = vec![0.0; null.len()];
         let (mut function, _) = problem.solve(&zero, &[0.0, 1.0])?;
         let square: f64 = self

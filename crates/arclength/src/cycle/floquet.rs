@@ -11,6 +11,7 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::Spectrum;
 use crate::error::Error;
+use crate::linear::lu;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
@@ -251,7 +252,9 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
         }
     }
     let trivial_error = (trivial - 1.0).abs().max(coupling);
-    let divergence = divergence(collocation, n);
+    let jumps = collocation.linear_jumps().iter();
+    let divergence = divergence(collocation, n)
+        + jumps.map(|jump| logarithm_of_determinant(&jump.derivatives[..n * n], n)).sum::<f64>();
     let nontrivial = if n == 1 {
         Vec::new()
     } else if n == 2 {
@@ -281,6 +284,14 @@ fn divergence<P: BoundaryValueEquations>(collocation: &Collocation<P>, n: usize)
         .zip(places)
         .map(|(block, weight)| weight * (0..n).map(|index| block[index * (n + 1)]).sum::<f64>())
         .sum()
+}
+
+/// Logarithm of the modulus of a determinant.
+fn logarithm_of_determinant(matrix: &[f64], n: usize) -> f64 {
+    let mut factors = matrix.to_vec();
+    let mut pivots = vec![0; n];
+    lu::factorize(&mut factors, n, &mut pivots);
+    (0..n).map(|index| factors[index * (n + 1)].abs().ln()).sum()
 }
 
 fn length(vector: &[f64]) -> f64 {

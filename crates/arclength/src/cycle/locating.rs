@@ -10,6 +10,7 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::linear_problem::Nodes;
+use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Adaptation, Curve, Discretised, Equations, Settings, Solution, correct, finish};
 use crate::error::Error;
@@ -40,6 +41,7 @@ impl<'a> DefiningCurve<'a> {
             active: problem.active,
             second,
             scales: problem.scales.clone(),
+            phases: problem.phases.clone(),
             period_scale: unknown[unknown.len() - 3 - kind.own_scalars()],
             parameter_scale: parameter_scales[0],
             stand_in: [0.0; 3],
@@ -251,7 +253,9 @@ pub(crate) fn doubling_near(
         let (low, high) = extent(&cycle[..states], n, component);
         *scale = if high > low { 0.5 * (high - low) } else { *scale };
     }
-    let nodes = Nodes { mesh: &mesh, gauss: &gauss };
+    let polynomials = Polynomials { mesh: &mesh, gauss: &gauss, n, states: &cycle };
+    problem.find_phases(polynomials, parameter).ok()?;
+    let nodes = Nodes { mesh: &mesh, gauss: &gauss, jumps: &[] };
     let weighted: Vec<f64> = eigenfunction
         .iter()
         .enumerate()

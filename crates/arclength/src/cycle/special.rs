@@ -226,7 +226,12 @@ fn describe(
         period: solution.unknown[end],
     };
     let point = &mut solution.point;
+    // What borders do to the coefficients, and to the directions of branches, is not computed.
+    let has_borders = curve.collocation.problem.has_borders();
     (point.normal_form, point.branching) = match kind {
+        Kind::Doubling if has_borders => (Vec::new(), doubled(&orbit, &eigenfunctions)),
+        Kind::Torus if has_borders => (vec![("argument", eigenfunctions.1[0].abs())], None),
+        _ if has_borders => (Vec::new(), None),
         Kind::Fold => {
             // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
             let named = critical.fold(&eigenfunctions).map(|(own, scaled)| match scaled {

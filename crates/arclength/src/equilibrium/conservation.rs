@@ -12,6 +12,7 @@ use crate::algebraic::scales::natural_scales;
 use crate::differentiation::Scalar;
 use crate::erased::ErasedField;
 use crate::field::VectorField;
+use crate::threshold::Threshold;
 use crate::numbers::readable;
 use crate::random::Random;
 use num_complex::Complex64;
@@ -242,6 +243,10 @@ impl<F: VectorField> VectorField for WithTotals<'_, F> {
 
     fn dimension(&self) -> usize {
         self.field.dimension()
+    }
+
+    fn thresholds(&self) -> Vec<Threshold> {
+        self.field.thresholds()
     }
 
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {

@@ -25,6 +25,7 @@ mod chebyshev;
 mod error;
 mod event;
 mod integrator;
+pub(crate) mod single_step;
 mod solution;
 mod stepper;
 mod system;

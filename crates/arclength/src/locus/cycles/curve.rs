@@ -5,7 +5,8 @@ use super::hold::Hold;
 use super::monitor;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
-use crate::collocation::mesh::{error_profile, fit_mesh};
+use crate::collocation::mesh::{error_profile, fit_jumps, fit_mesh};
+use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate};
@@ -16,6 +17,7 @@ use crate::cycle::floquet::{Floquet, floquet};
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
 use crate::cycle::normal_form::CriticalCycle;
+use crate::cycle::phases::Phases;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
 use crate::cycle::slow_passage::{Passing, SlowPassage};
 use crate::cycle::{CycleEnd, Resolution};
@@ -173,6 +175,7 @@ impl<'a> CycleLocusCurve<'a> {
     fn coefficient(&self, cycle: &[f64], eigenfunctions: &Eigenfunctions) -> (Option<f64>, f64) {
         let critical = CriticalCycle::of(&self.base, &cycle[..cycle.len() - 1]);
         let coefficient = match self.kind() {
+            _ if self.base.problem.has_borders() => None,
             Kind::Fold => critical.fold(eigenfunctions).map(|(own, _)| own),
             Kind::Doubling => critical.doubling(eigenfunctions),
             Kind::Torus => critical.torus(eigenfunctions).map(|[real, _]| real),
@@ -182,6 +185,29 @@ impl<'a> CycleLocusCurve<'a> {
         let sizes: Vec<f64> =
             self.sizes.natural().zip(scales).map(|(natural, scale)| natural.max(*scale)).collect();
         (coefficient, critical.natural_coefficient(self.kind(), eigenfunctions, &sizes))
+    }
+
+    /// Moves mesh points to the borders that the cycle passes; they have to be those that it passed before.
+    fn fit_phases(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<(), Error> {
+        let collocation = &mut self.system.collocation;
+        let Some(phases) = &collocation.problem.phases else { return Ok(()) };
+        let (cycle, _) = split(unknown, self.states, collocation.problem.kind);
+        let end = cycle.len() - 3;
+        let mut parameters = collocation.problem.parameters.clone();
+        parameters[collocation.problem.active] = cycle[end + 1];
+        parameters[self.second] = cycle[end + 2];
+        let polynomials = Polynomials {
+            mesh: collocation.mesh(),
+            gauss: collocation.gauss(),
+            n: self.states,
+            states: &cycle[..end],
+        };
+        let now = Phases::of(collocation.problem.field, polynomials, &parameters)?;
+        let is_same = now.is_some_and(|now| now.are_like(phases));
+        if !is_same || fit_jumps(collocation, unknown, vectors).is_none() {
+            return Err(Error::BordersChange);
+        }
+        Ok(())
     }
 
     /// The point at which a test function vanishes between two solutions.
@@ -368,6 +394,7 @@ impl Curve for CycleLocusCurve<'_> {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
         let rescaled = self.rescale(&cycle);
+        self.fit_phases(unknown, vectors)?;
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
         let (adaptation, worst) =
@@ -378,6 +405,7 @@ impl Curve for CycleLocusCurve<'_> {
 
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
         let kind = self.kind();
+        self.base.problem.phases.clone_from(&self.system.collocation.problem.phases);
         let (cycle, eigenfunctions) = split(unknown, self.states, kind);
         let end = cycle.len() - 3;
         self.base.problem.parameters[self.second] = cycle[end + 2];
