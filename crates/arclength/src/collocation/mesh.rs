@@ -18,6 +18,8 @@ use crate::error::Error;
 const DENSITY_FLOOR: f64 = 0.2;
 /// A new mesh aims at this part of the tolerance.
 const TARGET: f64 = 0.2;
+/// Fewest intervals between two jumps.
+const FEWEST_BETWEEN_JUMPS: f64 = 2.0;
 /// The mesh is made coarser when it has this many times the intervals needed.
 const EXCESS: f64 = 1.6;
 
@@ -135,7 +137,8 @@ fn equidistribute(
     for end in kept.iter().copied().chain([last]) {
         let part = &masses[start..end];
         let share = if kept.is_empty() { 1.0 } else { part.iter().sum::<f64>() / mass };
-        let count = (share * intervals as f64).round().max(1.0) as usize;
+        let fewest = if kept.is_empty() { 1.0 } else { FEWEST_BETWEEN_JUMPS };
+        let count = (share * intervals as f64).round().max(fewest) as usize;
         result.extend(dividing_equally(&mesh[start..=end], part, count));
         result.push(mesh[end]);
         start = end;

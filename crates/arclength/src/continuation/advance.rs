@@ -55,7 +55,7 @@ pub(crate) fn converge<C: Curve>(
 pub(super) fn advance<C: Curve>(
     curve: &mut C,
     current: &mut Solution<C::Point>,
-    previous: &mut Option<(Vec<f64>, f64)>,
+    previous: &mut Option<Before>,
     step: &mut f64,
     bounds: &[Bound],
     settings: &Settings,
@@ -75,6 +75,7 @@ pub(super) fn advance<C: Curve>(
             *step = to_end;
         }
     }
+    let kept = keep(curve, current, previous);
     loop {
         let length = *step;
         let mut unknown = predict(current, previous.as_ref(), length);
@@ -124,7 +125,7 @@ pub(super) fn advance<C: Curve>(
                 if *step < settings.smallest_step {
                     return Err(Stop::StepTooSmall { cause });
                 }
-                return_to(curve, current, previous, settings).map_err(stopped)?;
+                return_to(curve, (current, previous), kept.as_ref(), settings).map_err(stopped)?;
                 continue;
             }
             Err(error) => return Err(Stop::Failed(error)),
@@ -139,7 +140,7 @@ pub(super) fn advance<C: Curve>(
         if turns && length > TURNING_LIMIT * settings.smallest_step {
             *previous = old_previous;
             *step = length * STEP_HALVING;
-            return_to(curve, current, previous, settings).map_err(stopped)?;
+            return_to(curve, (current, previous), kept.as_ref(), settings).map_err(stopped)?;
             continue;
         }
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
@@ -159,14 +160,34 @@ pub(super) fn advance<C: Curve>(
 /// As [`Curve::adapt`], and when the corrector fails.
 pub(super) fn return_to<C: Curve>(
     curve: &mut C,
-    solution: &mut Solution<C::Point>,
-    previous: &mut Option<(Vec<f64>, f64)>,
+    (solution, previous): (&mut Solution<C::Point>, &mut Option<Before>),
+    kept: Option<&Kept<C::Point>>,
     settings: &Settings,
 ) -> Result<(), Error> {
+    if let Some((kept, before)) = kept {
+        curve.take_back(kept);
+        (*solution, *previous) = (kept.clone(), before.clone());
+        return Ok(());
+    }
     let mut carried = vec![&mut solution.tangent];
     carried.extend(previous.as_mut().map(|(tangent, _)| tangent));
     curve.adapt(&mut solution.unknown, &mut carried)?;
     renormalise(curve, solution, settings)
+}
+
+/// The tangent of the solution before and the length of the step from it.
+type Before = (Vec<f64>, f64);
+
+/// A solution as it was before the step from it, with what was before it.
+pub(super) type Kept<P> = (Solution<P>, Option<Before>);
+
+/// Keeps a solution where it would lose in being carried over to another discretisation.
+pub(super) fn keep<C: Curve>(
+    curve: &C,
+    solution: &Solution<C::Point>,
+    previous: &Option<Before>,
+) -> Option<Kept<C::Point>> {
+    curve.keeps_solutions().then(|| (solution.clone(), previous.clone()))
 }
 
 /// The end of a run whose last solution cannot be found again.

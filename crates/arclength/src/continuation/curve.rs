@@ -79,6 +79,15 @@ pub trait Curve: Equations {
     /// When the solution cannot be resolved within the limits of the discretisation.
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error>;
 
+    /// Whether a solution loses what it is when it is carried over to the discretisation of the next: then it is kept, and
+    /// [taken back](Self::take_back) where the step from it does not hold.
+    fn keeps_solutions(&self) -> bool {
+        false
+    }
+
+    /// Takes back the discretisation of a solution that was kept.
+    fn take_back(&mut self, _solution: &Solution<Self::Point>) {}
+
     /// Everything that is to be known about a converged solution, called right after its Jacobian,
     /// bordered by the tangent, was factorised with determinant sign `orientation`.
     ///

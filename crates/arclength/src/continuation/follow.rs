@@ -1,6 +1,6 @@
 //! The run itself: step, search for special points, locate what was asked for, recognise the end, repeat.
 
-use super::advance::{STEP_REDUCTION, advance, converge, return_to, stopped};
+use super::advance::{STEP_REDUCTION, advance, converge, keep, return_to, stopped};
 use super::closure::Closure;
 use super::corrector::between;
 use super::curve::{Curve, Ending};
@@ -139,6 +139,7 @@ impl<C: Curve> Run<'_, '_, C> {
         let mut length = settings.initial_step;
         for _ in 0..settings.most_steps {
             let bounds = &self.request.bounds;
+            let kept = keep(self.curve, &current, &previous);
             let advanced =
                 match advance(self.curve, &mut current, &mut previous, &mut length, bounds, settings) {
                     Ok(next) => next,
@@ -149,7 +150,8 @@ impl<C: Curve> Run<'_, '_, C> {
                 Step::Again(shorter) => {
                     length = shorter;
                     previous = None;
-                    if let Err(error) = return_to(self.curve, &mut current, &mut previous, settings) {
+                    let here = (&mut current, &mut previous);
+                    if let Err(error) = return_to(self.curve, here, kept.as_ref(), settings) {
                         return stopped(error);
                     }
                 }

@@ -12,7 +12,7 @@ use super::orbit::Orbit;
 use super::start::Asked;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
-use crate::continuation::{Curve, Equations, Settings, Stop, correct};
+use crate::continuation::{Adaptation, Curve, Equations, Settings, Stop, correct};
 use crate::linear::multiplier::Multiplier;
 
 /// Times that the intervals are halved at most.
@@ -37,6 +37,8 @@ const UNCONFIRMED: f64 = 1.0;
 const LEAST_ERROR: f64 = 1e-13;
 /// A solution this close to where Newton's method started, in the metric, has the multipliers of the Jacobian there.
 const CLOSE: f64 = 1e-6;
+/// Times that mesh points are moved to the borders that a cycle passes, at most.
+const MOST_FITS: usize = 6;
 /// Updates of Newton's method are to become this small.
 const TOLERANCE: f64 = 1e-12;
 
@@ -157,7 +159,15 @@ impl Asked<'_> {
             *border.last_mut()? = 1.0;
         }
         let settings = Settings { corrector_tolerance: TOLERANCE, ..self.settings };
-        let correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
+        let mut correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
+        // A cycle between two steps still has the borders of one of these.
+        for _ in 0..MOST_FITS {
+            if curve.fit_phases(&mut unknown, &mut [&mut border]).ok()? == Adaptation::Unchanged {
+                break;
+            }
+            correct(&mut curve, &mut unknown, &border, &settings).ok()?;
+            correction.distance = f64::INFINITY;
+        }
         let mut update = vec![0.0; unknown.len()];
         if correction.distance < CLOSE {
             curve.residual(&unknown, &mut update);
@@ -185,7 +195,7 @@ impl Asked<'_> {
         rounding.is_finite().then_some(())?;
         let multipliers = inspection.floquet.nontrivial.clone();
         Some(Level {
-            mesh: halves,
+            mesh: curve.collocation.mesh().to_vec(),
             told: Told { period, extremes, multipliers },
             unknown,
             floquet: inspection.floquet,

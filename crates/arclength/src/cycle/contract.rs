@@ -103,6 +103,17 @@ impl Curve for CycleCurve<'_> {
         Ok(adaptation)
     }
 
+    fn keeps_solutions(&self) -> bool {
+        self.collocation.problem.phases.is_some()
+    }
+
+    fn take_back(&mut self, solution: &Solution<CycleInspection>) {
+        let point = &solution.point;
+        self.collocation.problem.phases.clone_from(&point.phases);
+        self.collocation.set_mesh(point.mesh.clone(), &solution.unknown);
+        self.rescale(&solution.unknown);
+    }
+
     fn inspect(
         &mut self,
         unknown: &[f64],
@@ -121,6 +132,7 @@ impl Curve for CycleCurve<'_> {
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
+            phases: self.collocation.problem.phases.clone(),
             normal_form: Vec::new(),
             branching: None,
         })

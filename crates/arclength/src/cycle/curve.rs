@@ -50,6 +50,8 @@ pub(crate) struct CycleInspection {
     pub(super) ranges: Vec<Range>,
     /// Mesh of this solution.
     pub mesh: Vec<f64>,
+    /// Phases of this solution.
+    pub phases: Option<Phases>,
     /// Coefficients of its normal form by name.
     pub normal_form: Vec<(&'static str, f64)>,
     /// The branch that leaves here.

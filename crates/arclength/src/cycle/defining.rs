@@ -83,7 +83,7 @@ pub(crate) struct Defining<'a> {
     /// Size of the active parameter.
     pub parameter_scale: f64,
     /// The phases of the cycle, where the field is smooth only piece by piece.
-    pub phases: Option<Phases<'a>>,
+    pub phases: Option<Phases>,
     /// Coefficients of `(T, p, second p)` in the condition that [`Kind::Cycle`] adds.
     pub stand_in: [f64; 3],
 }
@@ -146,7 +146,7 @@ impl BoundaryValueEquations for Defining<'_> {
             Kind::Cycle => {
                 if let Some(phases) = &self.phases {
                     let replaced = self.replaced(scalars, |value| value);
-                    phases.jump(index, before, scalars[0].value(), &replaced, after);
+                    phases.jump(self.field, index, before, scalars[0].value(), &replaced, after);
                 }
             }
         }
@@ -155,7 +155,7 @@ impl BoundaryValueEquations for Defining<'_> {
     fn delay(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<f64> {
         let states = &before[..self.scales.len()];
         let replaced = self.replaced(scalars, |value| value);
-        let (delay, _) = self.phases.as_ref()?.delay(index, states, scalars[0], &replaced)?;
+        let (delay, _) = self.phases.as_ref()?.delay(self.field, index, states, scalars[0], &replaced)?;
         Some(delay / scalars[0])
     }
 
@@ -322,7 +322,7 @@ impl Defining<'_> {
         let lifted = lifted::<T, K>(before, n);
         let mut values = vec![Dual::<T, K>::zero(); n];
         let replaced = self.replaced(scalars, Dual::constant);
-        phases.jump(index, &lifted, scalars[0].value(), &replaced, &mut values);
+        phases.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
         for (component, value) in values.iter().enumerate() {
             after[component] = value.value;
             for (direction, slope) in value.derivatives.iter().enumerate() {
@@ -343,7 +343,7 @@ impl Defining<'_> {
             let lifted: Vec<Dual<T, 1>> = (0..n)
                 .map(|component| Dual::variable(states[component], usize::from(component != direction)))
                 .collect();
-            phases.jump(index, &lifted, scalars[0].value(), &replaced, &mut values);
+            phases.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
             let jumps = values.iter().enumerate().any(|(row, value)| {
                 let identity = if row == direction { 1.0 } else { 0.0 };
                 let scaled = self.scales[direction] / self.scales[row];

@@ -21,7 +21,7 @@ pub(crate) struct LimitCycle<'a> {
     /// Sizes of the state variables, for conditions that mix them.
     pub scales: Vec<f64>,
     /// The phases of the cycle, where the field is smooth only piece by piece.
-    pub phases: Option<Phases<'a>>,
+    pub phases: Option<Phases>,
 }
 
 impl LimitCycle<'_> {
@@ -90,13 +90,13 @@ impl BoundaryValueEquations for LimitCycle<'_> {
 
     fn jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
         if let Some(phases) = &self.phases {
-            phases.jump(index, before, scalars[0].value(), &[(self.active, scalars[1])], after);
+            phases.jump(self.field, index, before, scalars[0].value(), &[(self.active, scalars[1])], after);
         }
     }
 
     fn delay(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<f64> {
         let phases = self.phases.as_ref()?;
-        let (delay, _) = phases.delay(index, before, scalars[0], &[(self.active, scalars[1])])?;
+        let (delay, _) = phases.delay(self.field, index, before, scalars[0], &[(self.active, scalars[1])])?;
         Some(delay / scalars[0])
     }
 

@@ -10,6 +10,7 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::linear_problem::Nodes;
+use crate::collocation::mesh::{SAME_TIME, fit_jumps};
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Adaptation, Curve, Discretised, Equations, Settings, Solution, correct, finish};
@@ -157,8 +158,17 @@ pub(crate) fn converge(
     if correct(&mut defining_curve, &mut unknown, &border, &curve.settings).is_err() {
         return Ok(None);
     }
+    let (mesh, phases) = (curve.collocation.mesh().to_vec(), curve.collocation.problem.phases.clone());
+    if !fit_borders(&mut defining_curve, &mut unknown, &mut border, &curve.settings) {
+        return Ok(None);
+    }
     let (mut base, eigenfunctions) = split(&unknown, n, kind);
     base.pop();
+    let has_borders = curve.collocation.problem.has_borders();
+    if has_borders {
+        curve.collocation.problem.phases.clone_from(&defining_curve.collocation.problem.phases);
+        curve.collocation.set_mesh(defining_curve.collocation.mesh().to_vec(), &base);
+    }
     let [error, parameter_error] = defining_curve.errors(&unknown);
     let mut solution = if kind == Kind::BranchPoint {
         // The Jacobian bordered by the tangent is singular here: the tangent is that of the branch nearby.
@@ -172,8 +182,33 @@ pub(crate) fn converge(
     let point = &mut solution.point;
     (point.error_estimate, point.error_across) = (error, error);
     point.parameter_error = Some(parameter_error);
+    if has_borders {
+        // Those between which it lies have the borders of one of them.
+        curve.collocation.problem.phases = phases;
+        curve.collocation.set_mesh(mesh, &start.unknown);
+    }
     Ok(Some(Located { solution, eigenfunctions }))
 }
+
+/// Moves mesh points to the borders that a special cycle passes and corrects it, until they are there; `false` where that fails.
+fn fit_borders(
+    curve: &mut DefiningCurve<'_>,
+    unknown: &mut Vec<f64>,
+    border: &mut Vec<f64>,
+    settings: &Settings,
+) -> bool {
+    for _ in 0..MOST_FITS {
+        match fit_jumps(&mut curve.collocation, unknown, &mut [border]) {
+            Some(moved) if moved <= SAME_TIME => return true,
+            Some(_) if correct(curve, unknown, border, settings).is_ok() => {}
+            _ => return false,
+        }
+    }
+    false
+}
+
+/// Times that mesh points are moved to the borders that a special cycle passes, at most.
+const MOST_FITS: usize = 6;
 
 /// Sizes of all components of a defining system; `weight` multiplies those of the eigenfunctions.
 pub(crate) fn component_scales(states: &[f64], kind: Kind, weight: f64) -> Vec<f64> {

@@ -10,23 +10,28 @@ use crate::collocation::polynomials::Polynomials;
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar};
 use crate::error::Error;
-use crate::integration::single_step::single_step;
+use crate::integration::equal_steps;
 use crate::parameters::with_parameters;
 use crate::pieces::{Border, Pieces};
 
 /// Iterations of Newton's method for the time to a border, and the change of it, as part of the period, at which it ends.
 const MOST_ITERATIONS: usize = 30;
 const CONVERGED: f64 = 1e-15;
+/// Changes below this part of the period that do not get smaller are rounding.
+const STAGNATION: f64 = 1e-9;
 /// A mesh point misses its border by this part of the shorter neighbouring phase at most.
 const REACH: f64 = 0.5;
 /// Updates of the time to a border in the scalar of the derivatives: one for every order that is taken.
 const ORDERS: usize = 3;
+/// Length of the steps to a border and back, as part of the period, and most of them.
+const STEP: f64 = 2e-3;
+const MOST_STEPS: f64 = 500.0;
 /// Most borders that a cycle passes.
 const MOST_BORDERS: usize = 64;
 /// A visit beyond a border that is shorter than this part of the period is not seen: where the field has a kink it changes the
 /// cycle by its third power.
 const SHORTEST_VISIT: f64 = 2e-4;
-/// A border this close to the origin of the unit time, as part of the phase around it, asks for another one.
+/// A border this close to the origin of the unit time, as part of the distance that another origin would have, asks for that one.
 const CLOSE_TO_ORIGIN: f64 = 0.1;
 /// Halvings to locate a crossing of the polynomials.
 const HALVINGS: usize = 60;
@@ -35,8 +40,9 @@ const ROUNDING: f64 = 1e-10;
 
 /// The phases that a cycle goes through in the unit time, and the borders between them.
 #[derive(Clone, Debug)]
-pub(crate) struct Phases<'a> {
-    pieces: Pieces<'a>,
+pub(crate) struct Phases {
+    /// Number of switch functions.
+    switches: usize,
     /// Parameters of the field in the region of every phase: those of the model and then the cells.
     parameters: Vec<Vec<f64>>,
     /// Times of the borders between one phase and the next, which are points of the mesh.
@@ -53,13 +59,13 @@ struct Passage {
     region: Vec<f64>,
 }
 
-impl<'a> Phases<'a> {
+impl Phases {
     /// The phases of the cycle that polynomials describe; `None` where the field is smooth everywhere.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
     pub(crate) fn of(
-        field: ErasedField<'a>,
+        field: ErasedField<'_>,
         cycle: Polynomials<'_>,
         parameters: &[f64],
     ) -> Result<Option<Self>, Error> {
@@ -93,7 +99,7 @@ impl<'a> Phases<'a> {
             parameters: regions.map(|region| [parameters, &region[..]].concat()).collect(),
             times: passages.iter().map(|passage| passage.time).collect(),
             borders: passages.iter().map(|passage| passage.border).collect(),
-            pieces,
+            switches: pieces.thresholds().len(),
         }))
     }
 
@@ -114,20 +120,20 @@ impl<'a> Phases<'a> {
         self.times = points.into_iter().map(|point| mesh[point]).collect();
     }
 
-    /// The mesh point from which the unit time is counted better: in the middle of the longest phase, where a border comes close
-    /// to where it is counted from now.
+    /// The mesh point from which the unit time is counted better, where a border comes close to where it is counted from now: the one
+    /// that is farthest from all borders.
     pub(crate) fn better_origin(&self, mesh: &[f64]) -> Option<usize> {
-        let (first, last) = (*self.times.first()?, 1.0 - *self.times.last()?);
-        if first.min(last) > CLOSE_TO_ORIGIN * (first + last) {
-            return None;
-        }
-        let phases = self.times.windows(2).map(|pair| (pair[1] - pair[0], 0.5 * (pair[0] + pair[1])));
-        let around = (first + last, 0.5 * (first - last));
-        let (_, middle) = phases.chain([around]).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let middle = middle.rem_euclid(1.0);
-        let distance = |index: &usize| (mesh[*index] - middle).abs();
-        let point = (1..mesh.len() - 1).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        (!self.times.contains(&mesh[point])).then_some(point)
+        let distance = |origin: f64| {
+            let away = |time: &f64| {
+                let gap = (time - origin).abs();
+                gap.min(1.0 - gap)
+            };
+            self.times.iter().map(away).fold(f64::INFINITY, f64::min)
+        };
+        let farthest =
+            (1..mesh.len() - 1).max_by(|&a, &b| distance(mesh[a]).total_cmp(&distance(mesh[b])))?;
+        let is_close = distance(0.0) < CLOSE_TO_ORIGIN * distance(mesh[farthest]);
+        is_close.then_some(farthest)
     }
 
     /// Counts the unit time from a mesh point on; `mesh` is the new mesh, as many points of which lie before the old origin as the
@@ -148,8 +154,7 @@ impl<'a> Phases<'a> {
     /// Whether the cycle passes the same borders in the same order from the origin of the unit time on.
     pub(crate) fn are_like(&self, other: &Self) -> bool {
         let cells = |phases: &Self| -> Vec<Vec<f64>> {
-            let switches = phases.pieces.thresholds().len();
-            phases.parameters.iter().map(|all| all[all.len() - switches..].to_vec()).collect()
+            phases.parameters.iter().map(|all| all[all.len() - phases.switches..].to_vec()).collect()
         };
         self.borders == other.borders && cells(self) == cells(other)
     }
@@ -164,6 +169,7 @@ impl<'a> Phases<'a> {
     /// cycle does not pass the border nearby. `replaced` are the parameters that vary.
     pub(crate) fn jump<T>(
         &self,
+        field: ErasedField<'_>,
         index: usize,
         before: &[T],
         period: f64,
@@ -175,35 +181,36 @@ impl<'a> Phases<'a> {
         let values: Vec<f64> = before.iter().map(Scalar::value).collect();
         let numbers: Vec<(usize, f64)> =
             replaced.iter().map(|(place, value)| (*place, value.value())).collect();
-        let Some((delay, rate)) = self.delay(index, &values, period, &numbers) else {
+        let Some((delay, rate)) = self.delay(field, index, &values, period, &numbers) else {
             after.fill(T::from(f64::NAN));
             return;
         };
         let n = before.len();
         let border = self.borders[index];
+        let steps = steps_for(delay, period);
         let mut delay = T::from(delay);
         let mut at_border = before.to_vec();
         with_parameters(&self.parameters[index], replaced.iter().copied(), |parameters: &[T]| {
-            let mut results = vec![T::zero(); n + self.pieces.thresholds().len()];
+            let mut results = vec![T::zero(); n + self.switches];
             for order in 0..=ORDERS {
-                let field =
-                    |state: &[T], slope: &mut [T]| self.pieces.field.evaluate(state, parameters, slope);
-                at_border = single_step(field, before, delay);
+                let flow = |state: &[T], slope: &mut [T]| field.evaluate(state, parameters, slope);
+                at_border = equal_steps(flow, before, delay, steps);
                 if order < ORDERS {
-                    self.pieces.field.evaluate(&at_border, parameters, &mut results);
+                    field.evaluate(&at_border, parameters, &mut results);
                     delay -= (results[n + border.switch] - border.value) / rate;
                 }
             }
         });
         with_parameters(&self.parameters[index + 1], replaced.iter().copied(), |parameters: &[T]| {
-            let field = |state: &[T], slope: &mut [T]| self.pieces.field.evaluate(state, parameters, slope);
-            after.copy_from_slice(&single_step(field, &at_border, -delay));
+            let flow = |state: &[T], slope: &mut [T]| field.evaluate(state, parameters, slope);
+            after.copy_from_slice(&equal_steps(flow, &at_border, -delay, steps));
         });
     }
 
     /// How much later than its mesh point the cycle passes a border, in time, and the rate of the switch function there.
     pub(crate) fn delay(
         &self,
+        field: ErasedField<'_>,
         index: usize,
         before: &[f64],
         period: f64,
@@ -211,37 +218,46 @@ impl<'a> Phases<'a> {
     ) -> Option<(f64, f64)> {
         let n = before.len();
         let border = self.borders[index];
-        let time = |index: usize| self.times.get(index).copied();
-        let before_it = self.times[index] - index.checked_sub(1).and_then(time).unwrap_or(0.0);
-        let behind_it = time(index + 1).unwrap_or(1.0) - self.times[index];
-        let reach = REACH * before_it.min(behind_it) * period;
+        let count = self.times.len();
+        // To the border before and to that behind, around the period.
+        let before_it = (self.times[index] - self.times[(index + count - 1) % count]).rem_euclid(1.0);
+        let behind_it = (self.times[(index + 1) % count] - self.times[index]).rem_euclid(1.0);
+        let shorter = if count == 1 { 1.0 } else { before_it.min(behind_it) };
+        let reach = REACH * shorter * period;
         with_parameters(&self.parameters[index], replaced.iter().copied(), |parameters: &[f64]| {
             let lifted: Vec<Dual<f64, 1>> = parameters.iter().map(|value| Dual::constant(*value)).collect();
             let mut slope = vec![0.0; n];
-            let mut results = vec![Dual::<f64, 1>::zero(); n + self.pieces.thresholds().len()];
-            let mut delay = 0.0;
+            let mut results = vec![Dual::<f64, 1>::zero(); n + self.switches];
+            let (mut delay, mut last_change) = (0.0, f64::INFINITY);
             for _ in 0..MOST_ITERATIONS {
-                let field =
-                    |state: &[f64], slope: &mut [f64]| self.pieces.field.evaluate(state, parameters, slope);
-                let state = single_step(field, before, delay);
-                self.pieces.field.evaluate(&state, parameters, &mut slope);
+                let flow = |state: &[f64], slope: &mut [f64]| field.evaluate(state, parameters, slope);
+                let steps = steps_for(delay, period);
+                let state = equal_steps(flow, before, delay, steps);
+                field.evaluate(&state, parameters, &mut slope);
                 let along = state.iter().zip(&slope);
                 let along: Vec<_> =
                     along.map(|(value, slope)| Dual { value: *value, derivatives: [*slope] }).collect();
-                self.pieces.field.evaluate(&along, &lifted, &mut results);
+                field.evaluate(&along, &lifted, &mut results);
                 let Dual { value, derivatives: [rate] } = results[n + border.switch];
                 let change = (value - border.value) / rate;
                 delay -= change;
                 if !(delay.abs() <= reach) || (rate > 0.0) != border.upwards {
                     return None;
                 }
-                if change.abs() <= CONVERGED * period {
+                let is_rounding = change.abs() <= STAGNATION * period && change.abs() >= last_change;
+                if change.abs() <= CONVERGED * period || is_rounding {
                     return Some((delay, rate));
                 }
+                last_change = change.abs();
             }
             None
         })
     }
+}
+
+/// Number of steps that are exact to rounding over a short time.
+fn steps_for(delay: f64, period: f64) -> usize {
+    1 + (delay.abs() / (STEP * period)).min(MOST_STEPS) as usize
 }
 
 /// Times at which the polynomials are looked at: twice as many in every interval as it has nodes.

@@ -219,7 +219,7 @@ fn describe(
     curve.collocation.factorize(&solution.unknown, &solution.tangent, &mut residual);
     let critical = CriticalCycle::of(&curve.collocation, &solution.unknown);
     let orbit = Orbit {
-        mesh: curve.collocation.mesh().to_vec(),
+        mesh: solution.point.mesh.clone(),
         degree: curve.collocation.gauss().degree(),
         dimension: curve.collocation.problem.dimension(),
         states: solution.unknown[..end].to_vec(),

@@ -12,9 +12,9 @@ use crate::algebraic::scales::natural_scales;
 use crate::differentiation::Scalar;
 use crate::erased::ErasedField;
 use crate::field::VectorField;
-use crate::threshold::Threshold;
 use crate::numbers::readable;
 use crate::random::Random;
+use crate::threshold::Threshold;
 use num_complex::Complex64;
 
 /// States, in units of their sizes, and parameters at which the field is sampled: from this much above the start up to one.

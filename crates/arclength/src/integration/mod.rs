@@ -22,10 +22,10 @@
 //! ```
 
 mod chebyshev;
+mod equal_steps;
 mod error;
 mod event;
 mod integrator;
-pub(crate) mod single_step;
 mod solution;
 mod stepper;
 mod system;
@@ -35,6 +35,7 @@ mod variational;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use equal_steps::equal_steps;
 pub use error::IntegrationError;
 pub use event::{Crossing, Direction, Event};
 pub use integrator::Integrator;

@@ -1,4 +1,4 @@
-//! One step of the explicit method of order 8 in any scalar, so that the flow over a short time can be differentiated.
+//! Steps of the explicit method of order 8 in any scalar, so that the flow over a short time can be differentiated.
 
 use super::tableau::MATRIX;
 use crate::differentiation::Scalar;
@@ -6,9 +6,19 @@ use crate::differentiation::Scalar;
 /// Row of the tableau that gives the solution.
 const SOLUTION: usize = 12;
 
-/// The state a time `step` after `state`, by one step of the method of Dormand and Prince of order 8; `field` writes the derivative
-/// at a state.
-pub(crate) fn single_step<T: Scalar>(mut field: impl FnMut(&[T], &mut [T]), state: &[T], step: T) -> Vec<T> {
+/// The state a time `duration` after `state`, by some equal steps of the method of Dormand and Prince of order 8; `field` writes the
+/// derivative at a state.
+pub(crate) fn equal_steps<T: Scalar>(
+    mut field: impl FnMut(&[T], &mut [T]),
+    state: &[T],
+    duration: T,
+    count: usize,
+) -> Vec<T> {
+    let step = duration * (count as f64).recip();
+    (0..count).fold(state.to_vec(), |state, _| single_step(&mut field, &state, step))
+}
+
+fn single_step<T: Scalar>(mut field: impl FnMut(&[T], &mut [T]), state: &[T], step: T) -> Vec<T> {
     let n = state.len();
     let mut slopes: Vec<Vec<T>> = Vec::with_capacity(SOLUTION);
     for row in &MATRIX[..=SOLUTION] {
@@ -30,7 +40,7 @@ pub(crate) fn single_step<T: Scalar>(mut field: impl FnMut(&[T], &mut [T]), stat
 
 #[cfg(test)]
 mod tests {
-    use super::single_step;
+    use super::equal_steps;
     use crate::differentiation::{Dual, Scalar};
 
     #[test]
@@ -38,7 +48,7 @@ mod tests {
         // x' = -x^2: x(t) = x / (1 + x t), with derivatives in x and in t.
         let x = Dual::<f64, 2>::variable(0.7, 0);
         let t = Dual::<f64, 2>::variable(0.1, 1);
-        let after = single_step(|x, slope| slope[0] = -(x[0] * x[0]), &[x], t)[0];
+        let after = equal_steps(|x, slope| slope[0] = -(x[0] * x[0]), &[x], t, 2)[0];
         let exact = x / (x * t + 1.0);
         assert!((after.value - exact.value).abs() < 1e-14);
         for (one, other) in after.derivatives.iter().zip(exact.derivatives) {
