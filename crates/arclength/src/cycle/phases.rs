@@ -30,7 +30,7 @@ const MOST_STEPS: f64 = 500.0;
 const MOST_BORDERS: usize = 64;
 /// A visit beyond a border that is shorter than this part of the period is not seen: where the field has a kink it changes the
 /// cycle by its third power.
-const SHORTEST_VISIT: f64 = 2e-4;
+const SHORTEST_VISIT: f64 = 2e-5;
 /// A border this close to the origin of the unit time, as part of the distance that another origin would have, asks for that one.
 const CLOSE_TO_ORIGIN: f64 = 0.1;
 /// Halvings to locate a crossing of the polynomials.
