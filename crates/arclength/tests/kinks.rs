@@ -1,8 +1,10 @@
 //! Cycles of fields that are smooth only piece by piece, against return maps made of smooth pieces (SciPy's DOP853 at 1e-13 with
 //! events, Newton's method on the return map) and against closed forms.
 
+use arclength::branch::SpecialKind;
 use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::{Equilibria, HopfPoint};
+use arclength::locus::CycleLocus;
 use arclength::{Scalar, Threshold, VectorField};
 use std::f64::consts::PI;
 
@@ -190,4 +192,110 @@ fn the_nose_gear_without_damper() {
     let cycle = at(&branch, 100.0);
     assert!((cycle.max[0] / 1.6155481564 - 1.0).abs() < 1e-9, "{}", cycle.max[0]);
     assert!((cycle.period / 0.0197804150 - 1.0).abs() < 1e-8, "{}", cycle.period);
+}
+
+// An oscillator whose damping has another slope beyond `|y| = 1`, 2 and 3.
+switched!(PiecewiseDamping, ["x", "y"], ["m"], 4, |side, x, p, d| {
+    let magnitude = x[1] * side[0];
+    let beyond = |index: usize, limit: f64| {
+        if side[index] > 0.0 { magnitude - limit } else { T::zero() }
+    };
+    let (first, second, third) = (beyond(1, 1.0), beyond(2, 2.0), beyond(3, 3.0));
+    let force = p[0] * (magnitude - first) - (first - second) + (second - third) * 0.5 - third * 2.0;
+    d[0] = x[1];
+    d[1] = force * side[0] - x[0];
+    d[2] = x[1];
+    d[3] = magnitude - 1.0;
+    d[4] = magnitude - 2.0;
+    d[5] = magnitude - 3.0;
+});
+
+#[test]
+fn folds_of_cycles_with_kinks() {
+    let start = settled(&PiecewiseDamping, &[1.0], &[-3.68, 0.0], 10.0);
+    let branch = along(&PiecewiseDamping, start, 1.0, "m", [0.1, 1.5], &[0.3]);
+    let folds: Vec<&CyclePoint> =
+        branch.points.iter().filter(|point| is_kind(point, SpecialKind::FoldOfCycles)).collect();
+    // By Newton's method on the half return map, DOP853 at 3e-14.
+    let expected = [(0.704858270074, 6.411620085), (0.610747470128, 6.329491140)];
+    let found: Vec<f64> = folds.iter().map(|fold| fold.value).collect();
+    assert_eq!(folds.len(), 2, "{found:?} {:?}", branch.unlocated);
+    for (fold, (m, period)) in folds.iter().zip(expected) {
+        assert!((fold.value - m).abs() < 1e-8, "{} instead of {m}", fold.value);
+        assert!((fold.period - period).abs() < 1e-5);
+    }
+    // Amplitudes for which m is known.
+    let small = at(&branch, 0.3);
+    let known = [(0.26042536063904675, 1.5), (0.3240505858733326, 1.6)];
+    assert!((known[0].1..known[1].1).contains(&small.max[0]) && small.stable == Some(true));
+    assert!(branch.unlocated.is_empty(), "{:?}", branch.unlocated);
+}
+
+// `x''' = -a x'' - x' + m (|x| - 1)`.
+switched!(JerkWithKink, ["x", "y", "z"], ["m", "a"], 1, |side, x, p, d| {
+    d[0] = x[1];
+    d[1] = x[2];
+    d[2] = -p[1] * x[2] - x[1] + p[0] * (x[0] * side[0] - 1.0);
+    d[3] = x[0];
+});
+
+/// Period doubling of the cycle at `a = 0.7`, by matrix exponentials of the two pieces: parameter and period.
+const DOUBLING: (f64, f64) = (0.967_612_1, 6.334096665252388);
+
+fn doubling_of_jerk() -> (CycleBranch, usize) {
+    let parameters = [0.95, 0.7];
+    let start = settled(&JerkWithKink, &parameters, &[0.0, 1.10230513, -0.94947711], 8.0);
+    let cycles = Cycles::of(&JerkWithKink, start).parameters(&parameters);
+    let branch = cycles.along("m", 0.8..=1.05).at(&[0.95]).run().unwrap();
+    let doubling =
+        branch.points.iter().position(|point| is_kind(point, SpecialKind::PeriodDoubling)).unwrap();
+    (branch, doubling)
+}
+
+#[test]
+fn a_period_doubling_with_kinks() {
+    let (branch, doubling) = doubling_of_jerk();
+    let cycle = at(&branch, 0.95);
+    assert!((cycle.period - 6.328551041467042).abs() < 1e-8);
+    assert!((cycle.multipliers[1].re + 0.92207504).abs() < 1e-7, "{:?}", cycle.multipliers);
+    let doubling = &branch.points[doubling];
+    assert!((doubling.value - DOUBLING.0).abs() < 1e-7 && (doubling.period - DOUBLING.1).abs() < 1e-7);
+    // What kinks do to the coefficient is not computed.
+    assert!(doubling.normal_form.is_empty());
+    // The doubled cycles.
+    let start = CycleStart::Branching(doubling.branching.clone().unwrap());
+    let doubled = Cycles::of(&JerkWithKink, start)
+        .parameters(&[doubling.value, 0.7])
+        .along("m", 0.8..=1.0)
+        .run()
+        .unwrap();
+    let last = doubled.points.last().unwrap();
+    assert!(
+        (last.value - 1.0).abs() < 1e-12 && (last.period - 2.0 * DOUBLING.1).abs() < 0.5,
+        "{:?}",
+        doubled.stops
+    );
+}
+
+#[test]
+fn a_curve_of_period_doublings_with_kinks() {
+    let (branch, doubling) = doubling_of_jerk();
+    let point = &branch.points[doubling];
+    let curve = CycleLocus::of(&JerkWithKink)
+        .from_cycle(SpecialKind::PeriodDoubling, &point.orbit, &[point.value, 0.7])
+        .along("m", 0.8..=1.1)
+        .and("a", 0.65..=0.75)
+        .run()
+        .unwrap();
+    let at = curve
+        .points
+        .iter()
+        .min_by(|a, b| (a.values[1] - 0.7).abs().total_cmp(&(b.values[1] - 0.7).abs()))
+        .unwrap();
+    assert!((at.values[0] - DOUBLING.0).abs() < 1e-6 + 3.0 * (at.values[1] - 0.7).abs());
+    assert!(curve.points.len() > 3);
+}
+
+fn is_kind(point: &CyclePoint, kind: SpecialKind) -> bool {
+    point.label.is_some_and(|label| label.kind == kind)
 }

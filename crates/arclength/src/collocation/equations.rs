@@ -351,7 +351,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
 
     /// Carries a vector over to a mesh of as many intervals whose points number `points` are moved a little: what lies between
     /// two of them stays there.
-    pub(crate) fn carry_phases(&self, unknown: &[f64], mesh: &[f64], points: &[usize]) -> Vec<f64> {
+    pub(crate) fn carry_segments(&self, unknown: &[f64], mesh: &[f64], points: &[usize]) -> Vec<f64> {
         let n = self.problem.dimension();
         let polynomials = self.polynomials(unknown);
         let mut carried = vec![0.0; self.intervals() * self.interval_size()];

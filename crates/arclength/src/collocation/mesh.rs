@@ -194,22 +194,22 @@ pub(crate) fn fit_jumps<P: BoundaryValueEquations>(
         |list: &[f64]| -> Vec<f64> { [0.0].into_iter().chain(list.iter().copied()).chain([1.0]).collect() };
     let (from, to) = (ends(&old), ends(&times));
     let mut start = 0;
-    for (phase, end) in points.iter().copied().chain([mesh.len() - 1]).enumerate() {
+    for (segment, end) in points.iter().copied().chain([mesh.len() - 1]).enumerate() {
         for point in &mut mesh[start + 1..end] {
-            let part = (*point - from[phase]) / (from[phase + 1] - from[phase]);
-            *point = to[phase] + part * (to[phase + 1] - to[phase]);
+            let part = (*point - from[segment]) / (from[segment + 1] - from[segment]);
+            *point = to[segment] + part * (to[segment + 1] - to[segment]);
         }
         if end + 1 < mesh.len() {
-            mesh[end] = times[phase];
+            mesh[end] = times[segment];
         }
         start = end;
     }
     if !mesh.windows(2).all(|pair| pair[0] < pair[1]) {
         return None;
     }
-    *unknown = collocation.carry_phases(unknown, &mesh, &points);
+    *unknown = collocation.carry_segments(unknown, &mesh, &points);
     for vector in vectors.iter_mut() {
-        **vector = collocation.carry_phases(vector, &mesh, &points);
+        **vector = collocation.carry_segments(vector, &mesh, &points);
     }
     collocation.problem.move_jumps(&times);
     collocation.set_mesh(mesh, unknown);

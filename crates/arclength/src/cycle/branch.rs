@@ -77,6 +77,10 @@ impl CyclePoint {
     ) -> Self {
         let inspection = &solution.point;
         let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
+        let (mesh, states) = inspection
+            .fitted
+            .as_ref()
+            .map_or((&inspection.mesh[..], states), |fitted| (&fitted.mesh, &fitted.states));
         let (outside, _) = inspection.floquet.unstable();
         let is_special = label.is_some_and(|label| label.kind != SpecialKind::Requested);
         let turn = solution.tangent.last().map_or(0.0, |rate| rate / range);
@@ -106,7 +110,7 @@ impl CyclePoint {
             ],
             monitors: Vec::new(),
             orbit: Orbit {
-                mesh: inspection.mesh.clone(),
+                mesh: mesh.to_vec(),
                 degree,
                 states: states.to_vec(),
                 period: scalars[0],

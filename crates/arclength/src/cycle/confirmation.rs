@@ -6,7 +6,7 @@
 //! measured. What rounding leaves is measured too, by one more step of Newton's method.
 
 use super::branch::{CycleBranch, CyclePoint};
-use super::curve::CycleCurve;
+use super::curve::{CycleCurve, MOST_FITS};
 use super::floquet::Floquet;
 use super::orbit::Orbit;
 use super::start::Asked;
@@ -37,8 +37,6 @@ const UNCONFIRMED: f64 = 1.0;
 const LEAST_ERROR: f64 = 1e-13;
 /// A solution this close to where Newton's method started, in the metric, has the multipliers of the Jacobian there.
 const CLOSE: f64 = 1e-6;
-/// Times that mesh points are moved to the borders that a cycle passes, at most.
-const MOST_FITS: usize = 6;
 /// Updates of Newton's method are to become this small.
 const TOLERANCE: f64 = 1e-12;
 
@@ -162,7 +160,7 @@ impl Asked<'_> {
         let mut correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
         // A cycle between two steps still has the borders of one of these.
         for _ in 0..MOST_FITS {
-            if curve.fit_phases(&mut unknown, &mut [&mut border]).ok()? == Adaptation::Unchanged {
+            if curve.fit_segments(&mut unknown, &mut [&mut border]).ok()? == Adaptation::Unchanged {
                 break;
             }
             correct(&mut curve, &mut unknown, &border, &settings).ok()?;

@@ -85,10 +85,10 @@ impl Curve for CycleCurve<'_> {
         if unknown[end] <= 0.0 || self.sizes.is_equilibrium(&unknown[..end]) {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
-        let phases = self.fit_phases(unknown, vectors)?;
-        if phases != Adaptation::Unchanged {
-            // The next correction is that of the cycle in its phases; its mesh is fitted then.
-            return Ok(phases);
+        let segments = self.fit_segments(unknown, vectors)?;
+        if segments != Adaptation::Unchanged {
+            // The next correction is that of the cycle in its segments; its mesh is fitted then.
+            return Ok(segments);
         }
         self.rescale(unknown);
         let errors = error_profile(&self.collocation, unknown, &self.amplitudes);
@@ -104,12 +104,12 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn keeps_solutions(&self) -> bool {
-        self.collocation.problem.phases.is_some()
+        self.collocation.problem.segments.is_some()
     }
 
     fn take_back(&mut self, solution: &Solution<CycleInspection>) {
         let point = &solution.point;
-        self.collocation.problem.phases.clone_from(&point.phases);
+        self.collocation.problem.segments.clone_from(&point.segments);
         self.collocation.set_mesh(point.mesh.clone(), &solution.unknown);
         self.rescale(&solution.unknown);
     }
@@ -132,7 +132,8 @@ impl Curve for CycleCurve<'_> {
             floquet,
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
-            phases: self.collocation.problem.phases.clone(),
+            segments: self.collocation.problem.segments.clone(),
+            fitted: None,
             normal_form: Vec::new(),
             branching: None,
         })
@@ -140,7 +141,11 @@ impl Curve for CycleCurve<'_> {
 
     fn measure(&mut self, solution: &mut Solution<CycleInspection>) {
         let [fixed, across] = self.errors(&solution.unknown, &solution.tangent);
+        let fitted = self.fitted(&solution.unknown, &solution.tangent);
         let point = &mut solution.point;
+        if let Some((fitted, ranges)) = fitted {
+            (point.fitted, point.ranges) = (Some(fitted), ranges);
+        }
         point.error_across = across;
         point.error_estimate = if point.is_neutral { across } else { fixed };
     }

@@ -1,9 +1,9 @@
 //! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
 
-use super::extrema::Range;
+use super::extrema::{Range, ranges};
 use super::floquet::Floquet;
 use super::limit_cycle::LimitCycle;
-use super::phases::Phases;
+use super::segments::Segments;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
@@ -12,7 +12,7 @@ use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
-use crate::continuation::{Adaptation, Settings, Solution};
+use crate::continuation::{Adaptation, Curve, Settings, Solution, correct};
 use crate::error::Error;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -50,8 +50,10 @@ pub(crate) struct CycleInspection {
     pub(super) ranges: Vec<Range>,
     /// Mesh of this solution.
     pub mesh: Vec<f64>,
-    /// Phases of this solution.
-    pub phases: Option<Phases>,
+    /// Segments of this solution.
+    pub segments: Option<Segments>,
+    /// The cycle on a mesh whose points are the borders that it passes, where those of its own mesh miss them.
+    pub(super) fitted: Option<Fitted>,
     /// Coefficients of its normal form by name.
     pub normal_form: Vec<(&'static str, f64)>,
     /// The branch that leaves here.
@@ -69,6 +71,16 @@ impl CycleInspection {
         .product()
     }
 }
+
+/// A cycle with mesh points at the borders that it passes, to be told: its polynomials do not go on beyond a border.
+#[derive(Clone, Debug)]
+pub(crate) struct Fitted {
+    pub mesh: Vec<f64>,
+    pub states: Vec<f64>,
+}
+
+/// Times that mesh points are moved to the borders that a cycle passes, at most.
+pub(super) const MOST_FITS: usize = 6;
 
 /// Limit cycles `u' = T f(u, p)` along one parameter.
 #[derive(Debug)]
@@ -97,8 +109,8 @@ pub(crate) struct CycleCurve<'a> {
     /// Sign of the rate of change of the parameter, the orientation and the parity of the number of multipliers above one,
     /// multiplied: the same all along the curve.
     relation: Option<f64>,
-    /// Why the phases of the start are not known.
-    phases_error: Option<Error>,
+    /// Why the segments of the start are not known.
+    segments_error: Option<Error>,
 }
 
 impl<'a> CycleCurve<'a> {
@@ -111,13 +123,13 @@ impl<'a> CycleCurve<'a> {
     ) -> Self {
         collocation.set_reference(start);
         let n = collocation.problem.dimension();
-        let phases_error = find_phases(&mut collocation, start).err();
+        let segments_error = find_segments(&mut collocation, start).err();
         if collocation.problem.has_borders() {
             collocation.set_mesh(collocation.mesh().to_vec(), start);
         }
         let sizes = StateSizes::new(&collocation.problem, start);
         let mut curve = Self {
-            phases_error,
+            segments_error,
             resolution,
             settings: Settings::default(),
             parameter_scale,
@@ -138,32 +150,32 @@ impl<'a> CycleCurve<'a> {
         curve
     }
 
-    /// Has mesh points be the borders that the cycle passes, and the phases those that it goes through.
+    /// Has mesh points be the borders that the cycle passes, and the segments those that it goes through.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
-    pub(super) fn fit_phases(
+    pub(super) fn fit_segments(
         &mut self,
         unknown: &mut Vec<f64>,
         vectors: &mut [&mut Vec<f64>],
     ) -> Result<Adaptation, Error> {
-        if let Some(error) = self.phases_error.take() {
+        if let Some(error) = self.segments_error.take() {
             return Err(error);
         }
-        if self.collocation.problem.phases.is_none() {
+        if self.collocation.problem.segments.is_none() {
             return Ok(Adaptation::Unchanged);
         }
         let moved = fit_jumps(&mut self.collocation, unknown, vectors);
         let collocation = &mut self.collocation;
-        let known = collocation.problem.phases.clone();
+        let known = collocation.problem.segments.clone();
         let mesh = collocation.mesh().to_vec();
-        find_exact_phases(collocation, unknown)?;
-        let found = &mut collocation.problem.phases;
+        find_exact_segments(collocation, unknown)?;
+        let found = &mut collocation.problem.segments;
         let is_same = found.as_ref().zip(known.as_ref()).is_some_and(|(found, known)| found.are_like(known));
         if moved.is_some() && is_same {
             *found = known;
-        } else if let Some(phases) = found {
-            let finer = with_points(&mesh, &phases.times);
+        } else if let Some(segments) = found {
+            let finer = with_points(&mesh, &segments.times);
             *unknown = collocation.carry(unknown, &finer);
             for vector in vectors.iter_mut() {
                 **vector = collocation.carry(vector, &finer);
@@ -171,13 +183,48 @@ impl<'a> CycleCurve<'a> {
             collocation.set_mesh(finer, unknown);
         }
         let collocation = &mut self.collocation;
-        let origin =
-            collocation.problem.phases.as_ref().and_then(|phases| phases.better_origin(collocation.mesh()));
+        let origin = collocation
+            .problem
+            .segments
+            .as_ref()
+            .and_then(|segments| segments.better_origin(collocation.mesh()));
         if let Some(origin) = origin {
             self.count_from(origin, unknown, vectors);
         }
         let is_moved = !is_same || moved.is_none_or(|moved| moved > SAME_TIME);
         Ok(if is_moved || origin.is_some() { Adaptation::Changed } else { Adaptation::Unchanged })
+    }
+
+    /// The same cycle with mesh points at the borders, and its extremes; `None` where the mesh has them, or they are not found. The
+    /// curve stays as it is.
+    pub(super) fn fitted(&mut self, unknown: &[f64], tangent: &[f64]) -> Option<(Fitted, Vec<Range>)> {
+        if !self.collocation.problem.has_borders() {
+            return None;
+        }
+        let kept = (self.collocation.mesh().to_vec(), self.collocation.problem.segments.clone());
+        let (mut moved, mut direction) = (unknown.to_vec(), tangent.to_vec());
+        let mut fits = 0;
+        let found = loop {
+            match fit_jumps(&mut self.collocation, &mut moved, &mut [&mut direction]) {
+                Some(distance) if distance <= SAME_TIME => break fits > 0,
+                Some(_) if fits < MOST_FITS => fits += 1,
+                _ => break false,
+            }
+            let mut border = vec![0.0; direction.len()];
+            self.apply_metric(&direction, &mut border);
+            let settings = self.settings;
+            if correct(self, &mut moved, &border, &settings).is_err() {
+                break false;
+            }
+        };
+        let fitted = found.then(|| {
+            let states = moved[..moved.len() - 2].to_vec();
+            let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
+            (Fitted { mesh: self.collocation.mesh().to_vec(), states }, ranges)
+        });
+        self.collocation.problem.segments = kept.1;
+        self.collocation.set_mesh(kept.0, unknown);
+        fitted
     }
 
     /// Counts the unit time from a mesh point on.
@@ -191,8 +238,8 @@ impl<'a> CycleCurve<'a> {
         mesh.extend(old[..origin].iter().map(|time| time + (1.0 - start)));
         mesh.push(1.0);
         let points = collocation.jump_points();
-        if let Some(phases) = &mut collocation.problem.phases {
-            phases.count_from(start, intervals - origin, &points, &mesh);
+        if let Some(segments) = &mut collocation.problem.segments {
+            segments.count_from(start, intervals - origin, &points, &mesh);
         }
         let turn = |vector: &mut Vec<f64>| vector[..intervals * size].rotate_left(origin * size);
         turn(unknown);
@@ -329,22 +376,23 @@ impl<'a> CycleCurve<'a> {
     }
 }
 
-/// Finds the phases of a cycle, with the borders at points of the mesh.
-fn find_phases(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
-    find_exact_phases(collocation, unknown)?;
+/// Finds the segments of a cycle, with the borders at points of the mesh.
+fn find_segments(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
+    find_exact_segments(collocation, unknown)?;
     let mesh = collocation.mesh().to_vec();
-    if let Some(phases) = &mut collocation.problem.phases {
-        phases.snap_to(&mesh);
+    if let Some(segments) = &mut collocation.problem.segments {
+        segments.snap_to(&mesh);
     }
     Ok(())
 }
 
-/// Finds the phases of a cycle with the borders where they are.
-fn find_exact_phases(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
+/// Finds the segments of a cycle with the borders where they are.
+fn find_exact_segments(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
     let problem = &collocation.problem;
     let mut parameters = problem.parameters.clone();
     parameters[problem.active] = unknown[unknown.len() - 1];
-    collocation.problem.phases = Phases::of(problem.field, collocation.polynomials(unknown), &parameters)?;
+    collocation.problem.segments =
+        Segments::of(problem.field, collocation.polynomials(unknown), &parameters)?;
     Ok(())
 }
 

@@ -7,7 +7,7 @@
 //! ODEs using bordered systems", SIAM J. Numer. Anal. 41 (2003).
 
 use super::limit_cycle::phase_integrand;
-use super::phases::Phases;
+use super::segments::Segments;
 use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar, JacobianScalar};
@@ -82,8 +82,8 @@ pub(crate) struct Defining<'a> {
     pub period_scale: f64,
     /// Size of the active parameter.
     pub parameter_scale: f64,
-    /// The phases of the cycle, where the field is smooth only piece by piece.
-    pub phases: Option<Phases>,
+    /// The segments of the cycle, where the field is smooth only piece by piece.
+    pub segments: Option<Segments>,
     /// Coefficients of `(T, p, second p)` in the condition that [`Kind::Cycle`] adds.
     pub stand_in: [f64; 3],
 }
@@ -135,7 +135,7 @@ impl BoundaryValueEquations for Defining<'_> {
     }
 
     fn jumps(&self) -> &[f64] {
-        self.phases.as_ref().map_or(&[], |phases| &phases.times)
+        self.segments.as_ref().map_or(&[], |segments| &segments.times)
     }
 
     fn jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
@@ -144,9 +144,9 @@ impl BoundaryValueEquations for Defining<'_> {
             Kind::BranchPoint => self.adjoint_jump(index, before, scalars, after),
             Kind::Fold | Kind::Doubling => self.variational_jump::<T, 1>(index, before, scalars, after),
             Kind::Cycle => {
-                if let Some(phases) = &self.phases {
+                if let Some(segments) = &self.segments {
                     let replaced = self.replaced(scalars, |value| value);
-                    phases.jump(self.field, index, before, scalars[0].value(), &replaced, after);
+                    segments.jump(self.field, index, before, scalars[0].value(), &replaced, after);
                 }
             }
         }
@@ -155,13 +155,13 @@ impl BoundaryValueEquations for Defining<'_> {
     fn delay(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<f64> {
         let states = &before[..self.scales.len()];
         let replaced = self.replaced(scalars, |value| value);
-        let (delay, _) = self.phases.as_ref()?.delay(self.field, index, states, scalars[0], &replaced)?;
+        let (delay, _) = self.segments.as_ref()?.delay(self.field, index, states, scalars[0], &replaced)?;
         Some(delay / scalars[0])
     }
 
     fn move_jumps(&mut self, times: &[f64]) {
-        if let Some(phases) = &mut self.phases {
-            phases.times.copy_from_slice(times);
+        if let Some(segments) = &mut self.segments {
+            segments.times.copy_from_slice(times);
         }
     }
 
@@ -215,7 +215,7 @@ impl Defining<'_> {
         std::iter::once(first).chain(self.second.map(|index| (index, lift(scalars[2 + own])))).collect()
     }
 
-    /// The active parameters in place of their values, in the phase of a time.
+    /// The active parameters in place of their values, in the segment of a time.
     #[inline]
     fn with_active<T: Scalar, R>(
         &self,
@@ -229,7 +229,7 @@ impl Defining<'_> {
         let own = self.kind.own_scalars();
         let first = (self.active, lift(scalars[1 + own]));
         let parameters =
-            self.phases.as_ref().map_or(&self.parameters[..], |phases| phases.parameters_at(time));
+            self.segments.as_ref().map_or(&self.parameters[..], |segments| segments.parameters_at(time));
         match self.second {
             Some(index) => {
                 let replaced = [first, (index, lift(scalars[2 + own]))];
@@ -317,12 +317,12 @@ impl Defining<'_> {
     ) where
         Dual<T, K>: FieldScalar,
     {
-        let Some(phases) = &self.phases else { return };
+        let Some(segments) = &self.segments else { return };
         let n = self.scales.len();
         let lifted = lifted::<T, K>(before, n);
         let mut values = vec![Dual::<T, K>::zero(); n];
         let replaced = self.replaced(scalars, Dual::constant);
-        phases.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
+        segments.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
         for (component, value) in values.iter().enumerate() {
             after[component] = value.value;
             for (direction, slope) in value.derivatives.iter().enumerate() {
@@ -333,7 +333,7 @@ impl Defining<'_> {
 
     /// A jump of the cycle and of the adjoint eigenfunction; not numbers where the field jumps, which these equations leave out.
     fn adjoint_jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
-        let Some(phases) = &self.phases else { return };
+        let Some(segments) = &self.segments else { return };
         let n = self.scales.len();
         let (states, adjoint) = before.split_at(n);
         let replaced = self.replaced(scalars, Dual::constant);
@@ -343,7 +343,7 @@ impl Defining<'_> {
             let lifted: Vec<Dual<T, 1>> = (0..n)
                 .map(|component| Dual::variable(states[component], usize::from(component != direction)))
                 .collect();
-            phases.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
+            segments.jump(self.field, index, &lifted, scalars[0].value(), &replaced, &mut values);
             let jumps = values.iter().enumerate().any(|(row, value)| {
                 let identity = if row == direction { 1.0 } else { 0.0 };
                 let scaled = self.scales[direction] / self.scales[row];

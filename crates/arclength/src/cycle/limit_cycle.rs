@@ -1,7 +1,7 @@
 //! The boundary value problem of a limit cycle: `u' = T f(u, p)`, `u(1) = u(0)`, with the integral phase
 //! condition of Doedel (1981).
 
-use super::phases::Phases;
+use super::segments::Segments;
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::Scalar;
@@ -20,29 +20,29 @@ pub(crate) struct LimitCycle<'a> {
     pub active: usize,
     /// Sizes of the state variables, for conditions that mix them.
     pub scales: Vec<f64>,
-    /// The phases of the cycle, where the field is smooth only piece by piece.
-    pub phases: Option<Phases>,
+    /// The segments of the cycle, where the field is smooth only piece by piece.
+    pub segments: Option<Segments>,
 }
 
 impl LimitCycle<'_> {
-    /// Finds the phases of the cycle that polynomials describe, with the borders at points of their mesh, at a value of the
+    /// Finds the segments of the cycle that polynomials describe, with the borders at points of their mesh, at a value of the
     /// active parameter.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
-    pub(crate) fn find_phases(&mut self, cycle: Polynomials<'_>, value: f64) -> Result<(), Error> {
+    pub(crate) fn find_segments(&mut self, cycle: Polynomials<'_>, value: f64) -> Result<(), Error> {
         let mut parameters = self.parameters.clone();
         parameters[self.active] = value;
-        self.phases = Phases::of(self.field, cycle, &parameters)?;
-        if let Some(phases) = &mut self.phases {
-            phases.snap_to(cycle.mesh);
+        self.segments = Segments::of(self.field, cycle, &parameters)?;
+        if let Some(segments) = &mut self.segments {
+            segments.snap_to(cycle.mesh);
         }
         Ok(())
     }
 
     /// Whether the field switches along the cycle.
     pub(crate) fn has_borders(&self) -> bool {
-        self.phases.as_ref().is_some_and(|phases| !phases.times.is_empty())
+        self.segments.as_ref().is_some_and(|segments| !segments.times.is_empty())
     }
 }
 
@@ -75,7 +75,7 @@ impl BoundaryValueEquations for LimitCycle<'_> {
     #[inline(always)]
     fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
         let parameters =
-            self.phases.as_ref().map_or(&self.parameters[..], |phases| phases.parameters_at(time));
+            self.segments.as_ref().map_or(&self.parameters[..], |segments| segments.parameters_at(time));
         with_parameters(parameters, [(self.active, scalars[1])], |parameters| {
             self.field.evaluate(state, parameters, derivative);
         });
@@ -85,24 +85,25 @@ impl BoundaryValueEquations for LimitCycle<'_> {
     }
 
     fn jumps(&self) -> &[f64] {
-        self.phases.as_ref().map_or(&[], |phases| &phases.times)
+        self.segments.as_ref().map_or(&[], |segments| &segments.times)
     }
 
     fn jump<T: JacobianScalar>(&self, index: usize, before: &[T], scalars: &[T], after: &mut [T]) {
-        if let Some(phases) = &self.phases {
-            phases.jump(self.field, index, before, scalars[0].value(), &[(self.active, scalars[1])], after);
+        if let Some(segments) = &self.segments {
+            segments.jump(self.field, index, before, scalars[0].value(), &[(self.active, scalars[1])], after);
         }
     }
 
     fn delay(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<f64> {
-        let phases = self.phases.as_ref()?;
-        let (delay, _) = phases.delay(self.field, index, before, scalars[0], &[(self.active, scalars[1])])?;
+        let segments = self.segments.as_ref()?;
+        let (delay, _) =
+            segments.delay(self.field, index, before, scalars[0], &[(self.active, scalars[1])])?;
         Some(delay / scalars[0])
     }
 
     fn move_jumps(&mut self, times: &[f64]) {
-        if let Some(phases) = &mut self.phases {
-            phases.times.copy_from_slice(times);
+        if let Some(segments) = &mut self.segments {
+            segments.times.copy_from_slice(times);
         }
     }
 

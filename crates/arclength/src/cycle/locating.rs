@@ -1,8 +1,9 @@
 //! Newton's method on the defining system of a special cycle.
 
-use super::curve::{CycleCurve, CycleInspection};
+use super::curve::{CycleCurve, CycleInspection, Fitted, MOST_FITS};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
+use super::extrema::ranges;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::sizes::extent;
@@ -42,7 +43,7 @@ impl<'a> DefiningCurve<'a> {
             active: problem.active,
             second,
             scales: problem.scales.clone(),
-            phases: problem.phases.clone(),
+            segments: problem.segments.clone(),
             period_scale: unknown[unknown.len() - 3 - kind.own_scalars()],
             parameter_scale: parameter_scales[0],
             stand_in: [0.0; 3],
@@ -146,6 +147,7 @@ pub(crate) fn converge(
     };
     let problem = &curve.collocation.problem;
     let n = problem.dimension();
+    let has_borders = problem.has_borders();
     let mut unknown = join(&start.unknown, n, &eigenfunctions);
     let nodes = (curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
     let parameters = (None, [curve.parameter_scale, 1.0]);
@@ -158,17 +160,8 @@ pub(crate) fn converge(
     if correct(&mut defining_curve, &mut unknown, &border, &curve.settings).is_err() {
         return Ok(None);
     }
-    let (mesh, phases) = (curve.collocation.mesh().to_vec(), curve.collocation.problem.phases.clone());
-    if !fit_borders(&mut defining_curve, &mut unknown, &mut border, &curve.settings) {
-        return Ok(None);
-    }
     let (mut base, eigenfunctions) = split(&unknown, n, kind);
     base.pop();
-    let has_borders = curve.collocation.problem.has_borders();
-    if has_borders {
-        curve.collocation.problem.phases.clone_from(&defining_curve.collocation.problem.phases);
-        curve.collocation.set_mesh(defining_curve.collocation.mesh().to_vec(), &base);
-    }
     let [error, parameter_error] = defining_curve.errors(&unknown);
     let mut solution = if kind == Kind::BranchPoint {
         // The Jacobian bordered by the tangent is singular here: the tangent is that of the branch nearby.
@@ -182,10 +175,15 @@ pub(crate) fn converge(
     let point = &mut solution.point;
     (point.error_estimate, point.error_across) = (error, error);
     point.parameter_error = Some(parameter_error);
+    // The places of extremes depend on the borders, those of special cycles do not.
+    if has_borders && !fit_borders(&mut defining_curve, &mut unknown, &mut border, &curve.settings) {
+        return Ok(None);
+    }
     if has_borders {
-        // Those between which it lies have the borders of one of them.
-        curve.collocation.problem.phases = phases;
-        curve.collocation.set_mesh(mesh, &start.unknown);
+        let (cycle, _) = split(&unknown, n, kind);
+        let states = cycle[..cycle.len() - 3].to_vec();
+        point.ranges = ranges(&defining_curve.collocation, &unknown, n);
+        point.fitted = Some(Fitted { mesh: defining_curve.collocation.mesh().to_vec(), states });
     }
     Ok(Some(Located { solution, eigenfunctions }))
 }
@@ -206,9 +204,6 @@ fn fit_borders(
     }
     false
 }
-
-/// Times that mesh points are moved to the borders that a special cycle passes, at most.
-const MOST_FITS: usize = 6;
 
 /// Sizes of all components of a defining system; `weight` multiplies those of the eigenfunctions.
 pub(crate) fn component_scales(states: &[f64], kind: Kind, weight: f64) -> Vec<f64> {
@@ -289,7 +284,7 @@ pub(crate) fn doubling_near(
         *scale = if high > low { 0.5 * (high - low) } else { *scale };
     }
     let polynomials = Polynomials { mesh: &mesh, gauss: &gauss, n, states: &cycle };
-    problem.find_phases(polynomials, parameter).ok()?;
+    problem.find_segments(polynomials, parameter).ok()?;
     let nodes = Nodes { mesh: &mesh, gauss: &gauss, jumps: &[] };
     let weighted: Vec<f64> = eigenfunction
         .iter()

@@ -17,7 +17,7 @@ pub(crate) mod limit_cycle;
 pub(crate) mod locating;
 pub(crate) mod normal_form;
 mod orbit;
-pub(crate) mod phases;
+pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod slow_passage;
 mod special;

@@ -254,7 +254,7 @@ impl<'a> Asked<'a> {
             parameters: self.parameters.clone(),
             active: self.active,
             scales: vec![1.0; self.field.dimension()],
-            phases: None,
+            segments: None,
         }
     }
 

@@ -17,7 +17,7 @@ use crate::cycle::floquet::{Floquet, floquet};
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
 use crate::cycle::normal_form::CriticalCycle;
-use crate::cycle::phases::Phases;
+use crate::cycle::segments::Segments;
 use crate::cycle::sizes::{StateSizes, vanishing_point};
 use crate::cycle::slow_passage::{Passing, SlowPassage};
 use crate::cycle::{CycleEnd, Resolution};
@@ -188,9 +188,9 @@ impl<'a> CycleLocusCurve<'a> {
     }
 
     /// Moves mesh points to the borders that the cycle passes; they have to be those that it passed before.
-    fn fit_phases(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<(), Error> {
+    fn fit_segments(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<(), Error> {
         let collocation = &mut self.system.collocation;
-        let Some(phases) = &collocation.problem.phases else { return Ok(()) };
+        let Some(segments) = &collocation.problem.segments else { return Ok(()) };
         let (cycle, _) = split(unknown, self.states, collocation.problem.kind);
         let end = cycle.len() - 3;
         let mut parameters = collocation.problem.parameters.clone();
@@ -202,8 +202,8 @@ impl<'a> CycleLocusCurve<'a> {
             n: self.states,
             states: &cycle[..end],
         };
-        let now = Phases::of(collocation.problem.field, polynomials, &parameters)?;
-        let is_same = now.is_some_and(|now| now.are_like(phases));
+        let now = Segments::of(collocation.problem.field, polynomials, &parameters)?;
+        let is_same = now.is_some_and(|now| now.are_like(segments));
         if !is_same || fit_jumps(collocation, unknown, vectors).is_none() {
             return Err(Error::BordersChange);
         }
@@ -394,7 +394,7 @@ impl Curve for CycleLocusCurve<'_> {
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
         let rescaled = self.rescale(&cycle);
-        self.fit_phases(unknown, vectors)?;
+        self.fit_segments(unknown, vectors)?;
         let scales = self.error_scales(&eigenfunctions);
         let errors = error_profile(&self.system.collocation, unknown, &scales);
         let (adaptation, worst) =
@@ -405,7 +405,7 @@ impl Curve for CycleLocusCurve<'_> {
 
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
         let kind = self.kind();
-        self.base.problem.phases.clone_from(&self.system.collocation.problem.phases);
+        self.base.problem.segments.clone_from(&self.system.collocation.problem.segments);
         let (cycle, eigenfunctions) = split(unknown, self.states, kind);
         let end = cycle.len() - 3;
         self.base.problem.parameters[self.second] = cycle[end + 2];

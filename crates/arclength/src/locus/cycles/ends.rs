@@ -166,7 +166,7 @@ impl Asked<'_> {
             parameters: parameters.to_vec(),
             active: 0,
             scales: vec![1.0; orbit.dimension],
-            phases: None,
+            segments: None,
         };
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
         let mut states = Vec::with_capacity(orbit.states.len());

@@ -224,7 +224,7 @@ impl<'a> Asked<'a> {
             parameters: parameters.clone(),
             active: active[0],
             scales: vec![1.0; orbit.dimension],
-            phases: None,
+            segments: None,
         };
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
         let sizes = StateSizes::new(&collocation.problem, &cycle);

@@ -1,7 +1,7 @@
-//! The phases of a cycle whose field is smooth only piece by piece.
+//! The segments of a cycle whose field is smooth only piece by piece.
 //!
 //! Between two borders the cycle follows the smooth field of one region. Mesh points are put at the borders, and there the solution
-//! of one phase is handed on to the next: it is followed in the old region to the border itself, for the short time by which the mesh
+//! of one segment is handed on to the next: it is followed in the old region to the border itself, for the short time by which the mesh
 //! point misses it, and from there back for the same time in the new region. This zero-time map (Nordmark 1991; di Bernardo, Budd,
 //! Champneys and Kowalczyk, *Piecewise-smooth Dynamical Systems* (2008), section 2.5) makes the times of crossing unknowns that are
 //! eliminated: its derivative is the saltation matrix, so that multipliers, defining systems and error estimates contain it.
@@ -19,7 +19,7 @@ const MOST_ITERATIONS: usize = 30;
 const CONVERGED: f64 = 1e-15;
 /// Changes below this part of the period that do not get smaller are rounding.
 const STAGNATION: f64 = 1e-9;
-/// A mesh point misses its border by this part of the shorter neighbouring phase at most.
+/// A mesh point misses its border by this part of the longer neighbouring segment at most.
 const REACH: f64 = 0.5;
 /// Updates of the time to a border in the scalar of the derivatives: one for every order that is taken.
 const ORDERS: usize = 3;
@@ -38,14 +38,14 @@ const HALVINGS: usize = 60;
 /// Part of the size of a switch function by which it may be beyond a border without crossing it.
 const ROUNDING: f64 = 1e-10;
 
-/// The phases that a cycle goes through in the unit time, and the borders between them.
+/// The segments that a cycle goes through in the unit time, and the borders between them.
 #[derive(Clone, Debug)]
-pub(crate) struct Phases {
+pub(crate) struct Segments {
     /// Number of switch functions.
     switches: usize,
-    /// Parameters of the field in the region of every phase: those of the model and then the cells.
+    /// Parameters of the field in the region of every segment: those of the model and then the cells.
     parameters: Vec<Vec<f64>>,
-    /// Times of the borders between one phase and the next, which are points of the mesh.
+    /// Times of the borders between one segment and the next, which are points of the mesh.
     pub times: Vec<f64>,
     /// The borders.
     pub borders: Vec<Border>,
@@ -59,8 +59,8 @@ struct Passage {
     region: Vec<f64>,
 }
 
-impl Phases {
-    /// The phases of the cycle that polynomials describe; `None` where the field is smooth everywhere.
+impl Segments {
+    /// The segments of the cycle that polynomials describe; `None` where the field is smooth everywhere.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
@@ -144,7 +144,7 @@ impl Phases {
         self.times = points.iter().map(|point| mesh[(point + behind) % count]).collect();
         self.times.rotate_left(before);
         self.borders.rotate_left(before);
-        // The phase around the old origin is one, the one around the new origin is divided.
+        // The segment around the old origin is one, the one around the new origin is divided.
         self.parameters.pop();
         self.parameters.rotate_left(before);
         let first = self.parameters[0].clone();
@@ -153,8 +153,8 @@ impl Phases {
 
     /// Whether the cycle passes the same borders in the same order from the origin of the unit time on.
     pub(crate) fn are_like(&self, other: &Self) -> bool {
-        let cells = |phases: &Self| -> Vec<Vec<f64>> {
-            phases.parameters.iter().map(|all| all[all.len() - phases.switches..].to_vec()).collect()
+        let cells = |segments: &Self| -> Vec<Vec<f64>> {
+            segments.parameters.iter().map(|all| all[all.len() - segments.switches..].to_vec()).collect()
         };
         self.borders == other.borders && cells(self) == cells(other)
     }
@@ -222,8 +222,8 @@ impl Phases {
         // To the border before and to that behind, around the period.
         let before_it = (self.times[index] - self.times[(index + count - 1) % count]).rem_euclid(1.0);
         let behind_it = (self.times[(index + 1) % count] - self.times[index]).rem_euclid(1.0);
-        let shorter = if count == 1 { 1.0 } else { before_it.min(behind_it) };
-        let reach = REACH * shorter * period;
+        let longer = if count == 1 { 1.0 } else { before_it.max(behind_it) };
+        let reach = REACH * longer * period;
         with_parameters(&self.parameters[index], replaced.iter().copied(), |parameters: &[f64]| {
             let lifted: Vec<Dual<f64, 1>> = parameters.iter().map(|value| Dual::constant(*value)).collect();
             let mut slope = vec![0.0; n];
