@@ -18,10 +18,10 @@ pub mod integration;
 pub mod lanes;
 pub mod linear;
 pub mod locus;
-pub mod numbers;
 mod parameters;
 mod random;
 
+pub use arclength_numbers as numbers;
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;
 pub use field::VectorField;
