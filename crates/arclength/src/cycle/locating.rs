@@ -4,6 +4,7 @@ use super::curve::{CycleCurve, CycleInspection};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
 use super::limit_cycle::LimitCycle;
+use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::sizes::extent;
 use crate::collocation::equations::Collocation;
@@ -171,6 +172,50 @@ pub(crate) fn converge(
     (point.error_estimate, point.error_across) = (error, error);
     point.parameter_error = Some(parameter_error);
     Ok(Some(Located { solution, eigenfunctions }))
+}
+
+/// A special cycle on a finer mesh.
+pub(crate) struct Finer<'a> {
+    /// The cycle alone, factorised there.
+    collocation: Collocation<LimitCycle<'a>>,
+    unknown: Vec<f64>,
+    eigenfunctions: Eigenfunctions,
+}
+
+impl Finer<'_> {
+    /// The coefficients of its normal form by name.
+    pub(crate) fn coefficients(&self, kind: Kind) -> Vec<(&'static str, f64)> {
+        CriticalCycle::of(&self.collocation, &self.unknown).coefficients(kind, &self.eigenfunctions)
+    }
+}
+
+/// The same special cycle with every interval of the mesh halved; `None` where Newton's method does not find it.
+pub(crate) fn on_halves<'a>(curve: &CycleCurve<'a>, located: &Located, kind: Kind) -> Option<Finer<'a>> {
+    let (collocation, n) = (&curve.collocation, curve.collocation.problem.dimension());
+    let (mesh, degree) = (collocation.mesh(), collocation.gauss().degree());
+    let halves: Vec<f64> = mesh
+        .windows(2)
+        .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
+        .chain(mesh.last().copied())
+        .collect();
+    let problem = &collocation.problem;
+    let parameters = (None, [curve.parameter_scale, 1.0]);
+    let unknown = join(&located.solution.unknown, n, &located.eigenfunctions);
+    let coarse = DefiningCurve::new(problem, kind, (mesh.to_vec(), degree), parameters, &unknown);
+    let mut unknown = coarse.collocation.carry(&unknown, &halves);
+    let mut fine = DefiningCurve::new(problem, kind, (halves.clone(), degree), parameters, &unknown);
+    let mut border = vec![0.0; unknown.len()];
+    *border.last_mut()? = 1.0;
+    correct(&mut fine, &mut unknown, &border, &curve.settings).ok()?;
+    let (mut unknown, eigenfunctions) = split(&unknown, n, kind);
+    unknown.pop();
+    let mut collocation = Collocation::new(problem.clone(), halves, degree);
+    collocation.set_reference(&unknown);
+    let mut border = vec![0.0; unknown.len()];
+    *border.last_mut()? = 1.0;
+    let mut residual = vec![0.0; unknown.len()];
+    collocation.factorize(&unknown, &border, &mut residual);
+    Some(Finer { collocation, unknown, eigenfunctions })
 }
 
 /// Sizes of all components of a defining system; `weight` multiplies those of the eigenfunctions.

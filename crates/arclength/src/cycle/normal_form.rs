@@ -74,6 +74,37 @@ impl<'a> CriticalCycle<'a> {
         (across, size)
     }
 
+    /// The coefficients of the normal form by name, as far as they exist.
+    pub(crate) fn coefficients(
+        &self,
+        kind: Kind,
+        eigenfunctions: &Eigenfunctions,
+    ) -> Vec<(&'static str, f64)> {
+        match kind {
+            Kind::Fold => {
+                // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
+                let named = self.fold(eigenfunctions).map(|(own, scaled)| match scaled {
+                    Some(value) => ("quadratic_coefficient", value),
+                    None => ("quadratic_coefficient_of_unit_function", own),
+                });
+                named.into_iter().collect()
+            }
+            Kind::Doubling => {
+                let coefficient = self.doubling(eigenfunctions);
+                coefficient.map(|value| ("cubic_coefficient", value)).into_iter().collect()
+            }
+            Kind::Torus => {
+                let argument = eigenfunctions.1.first().map(|angle| ("argument", angle.abs()));
+                let mut named: Vec<_> = argument.into_iter().collect();
+                if let Some([real, imaginary]) = self.torus(eigenfunctions) {
+                    named.extend([("cubic_coefficient", real), ("cubic_coefficient_imaginary", imaginary)]);
+                }
+                named
+            }
+            Kind::Cycle | Kind::BranchPoint => Vec::new(),
+        }
+    }
+
     /// Fold: `b` of `d tau/dt = 1 + kappa xi`, `d xi/dt = b xi^2` for the null function `v' = T f_x v + beta f` with the
     /// integral of `<v, v>` over the unit interval equal to one and that of `<v, f>` zero (`kappa = -beta / T`), and
     /// `b / kappa`, its value when `v` is scaled to `kappa = 1`; the latter is what MatCont prints. The sign of `b` is that of
