@@ -61,9 +61,10 @@ impl ChosenModel {
         Ok(())
     }
 
-    /// The field that is continued: that of the model with the totals that it conserves at their values in the state.
-    pub fn field(&self) -> WithTotals<'_, Model> {
-        WithTotals::at(&self.model, &self.start, &self.parameters)
+    /// The field that is continued: that of the model with the totals that it conserves at their values in the state, while the
+    /// parameters with the indices `varying` vary.
+    pub fn field(&self, varying: &[usize]) -> WithTotals<'_, Model> {
+        WithTotals::at(&self.model, &self.start, &self.parameters, varying)
     }
 
     /// Sets parameters.

@@ -1,5 +1,6 @@
 //! Normal-form coefficients in words, by the names that users of AUTO and MatCont know.
 
+use crate::branch::certain_digits;
 use crate::labels::kind;
 use arclength::branch::{Criticality, SpecialKind};
 use arclength::equilibrium::{Crossing, SpecialPoint};
@@ -14,32 +15,35 @@ const FREQUENCY: usize = 11;
 
 /// What the normal form of a special equilibrium says.
 pub fn of_equilibrium(special: &SpecialPoint) -> String {
-    let coefficient = |name: &str, value: Option<f64>| {
-        value.map_or(format!("{name} does not exist"), |value| {
-            format!("{name} = {}", significant(value, COEFFICIENT))
-        })
+    let coefficient = |name: &str, value: Option<f64>, error: Option<f64>| {
+        value.map_or(format!("{name} does not exist"), |value| told(name, value, error))
     };
     match special {
         SpecialPoint::Hopf(hopf) => {
             let frequency = significant(hopf.frequency, FREQUENCY);
-            let first = coefficient("l1", hopf.first_lyapunov);
-            let c1 = hopf.c1_real.map_or(String::new(), |c1| format!(", {}", coefficient("Re c1", Some(c1))));
+            let error = hopf.first_lyapunov_error;
+            let first = coefficient("l1", hopf.first_lyapunov, error);
+            let error = error.map(|error| error * hopf.frequency);
+            let c1 = hopf.c1_real.map_or(String::new(), |c1| format!(", {}", told("Re c1", c1, error)));
             format!("omega = {frequency}, {first}{c1}, {}", criticality(hopf.criticality))
         }
-        SpecialPoint::Fold(fold) => coefficient("a", fold.quadratic),
-        SpecialPoint::BranchPoint(point) => match (point.crossing, point.cubic) {
-            (Crossing::Transcritical, _) => format!(
-                "transcritical, {}, {}, {}",
-                coefficient("a11", Some(point.quadratic)),
-                coefficient("a12", Some(point.mixed)),
-                coefficient("a22", Some(point.parametric))
-            ),
-            (Crossing::Pitchfork, cubic) => {
-                let sense =
-                    point.criticality.map_or(String::new(), |sense| format!("{} ", criticality(sense)));
-                format!("{sense}pitchfork, {}", coefficient("c", cubic))
+        SpecialPoint::Fold(fold) => coefficient("a", fold.quadratic, fold.quadratic_error),
+        SpecialPoint::BranchPoint(point) => {
+            let error = |index: usize| point.quadratic_errors.map(|errors| errors[index]);
+            match (point.crossing, point.cubic) {
+                (Crossing::Transcritical, _) => format!(
+                    "transcritical, {}, {}, {}",
+                    coefficient("a11", Some(point.quadratic), error(0)),
+                    coefficient("a12", Some(point.mixed), error(1)),
+                    coefficient("a22", Some(point.parametric), error(2))
+                ),
+                (Crossing::Pitchfork, cubic) => {
+                    let sense =
+                        point.criticality.map_or(String::new(), |sense| format!("{} ", criticality(sense)));
+                    format!("{sense}pitchfork, {}", coefficient("c", cubic, point.cubic_error))
+                }
             }
-        },
+        }
         SpecialPoint::NeutralSaddle(saddle) => {
             format!("neutral saddle, eigenvalues +-{}", significant(saddle.eigenvalue, COEFFICIENT))
         }
@@ -58,9 +62,11 @@ pub fn of_codimension_two(point: &CodimensionTwoPoint) -> String {
     let texts: Vec<String> = point
         .coefficients
         .iter()
+        .filter(|(given, _)| !given.ends_with(ERROR))
         .map(|(given, value)| {
             let name = if given == "second_lyapunov" { name } else { given.as_ref() };
-            format!("{name} = {}", significant(*value, COEFFICIENT))
+            let error = point.coefficients.iter().find(|(other, _)| other.strip_suffix(ERROR) == Some(given));
+            told(name, *value, error.map(|(_, error)| *error))
         })
         .collect();
     let located = if point.regular { "" } else { " (degenerate, bracketed only)" };
@@ -81,11 +87,11 @@ pub fn criticality(criticality: Criticality) -> &'static str {
 
 /// What the normal form of a special cycle says, given its coefficients by the names of the library.
 pub fn of_cycle(label: Option<&str>, coefficients: &NamedNumbers) -> String {
-    let mut texts: Vec<String> = coefficients
-        .0
-        .iter()
+    let error = |name: &str| coefficients.named(&format!("{name}{ERROR}"));
+    let values = coefficients.0.iter().filter(|(name, _)| !name.ends_with(ERROR));
+    let mut texts: Vec<String> = values
         .map(|(name, value)| {
-            let name = match name.as_str() {
+            let shown = match name.as_str() {
                 "quadratic_coefficient" => "b",
                 "quadratic_coefficient_of_unit_function" => "b (null function of unit size)",
                 "cubic_coefficient_imaginary" => "Im d",
@@ -96,11 +102,26 @@ pub fn of_cycle(label: Option<&str>, coefficients: &NamedNumbers) -> String {
                 "c1_real" => "Re c1",
                 other => other,
             };
-            format!("{name} = {}", significant(*value, COEFFICIENT))
+            told(shown, *value, error(name))
         })
         .collect();
     if let Some(cubic) = coefficients.named("cubic_coefficient") {
-        texts.push(if cubic < 0.0 { "supercritical" } else { "subcritical" }.to_owned());
+        let is_certain = error("cubic_coefficient").is_some_and(|error| cubic.abs() > error);
+        let verdict = match (is_certain, cubic < 0.0) {
+            (false, _) => "undecided",
+            (true, true) => "supercritical",
+            (true, false) => "subcritical",
+        };
+        texts.push(verdict.to_owned());
     }
     texts.join(", ")
+}
+
+/// End of the name under which the error of a coefficient is told.
+const ERROR: &str = "_error";
+
+/// A coefficient with the digits that hold.
+fn told(name: &str, value: f64, error: Option<f64>) -> String {
+    let digits = error.map_or(COEFFICIENT, |error| certain_digits(value, error).min(COEFFICIENT));
+    format!("{name} = {}", significant(value, digits))
 }

@@ -11,15 +11,14 @@ use kingpin_terminal::{
 /// The curve of special points in two parameters, with its points of codimension two
 ///
 /// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus
-/// bifurcations (NS) of cycles. With --hold any cycles on which a quantity keeps its value: with a large period they follow
-/// homoclinic orbits.
+/// bifurcations (NS) of cycles. With --hold any equilibria or cycles on which a quantity keeps its value: cycles with a large
+/// period follow homoclinic orbits.
 #[derive(Args, Debug)]
 #[command(
     after_help = "Example: arclength locus --from equilibria.json:HB1 --in p=0:1,q=2:5 -o hopf.json -o hopf.svg"
 )]
 pub(crate) struct Locus {
-    /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS; any with --hold) wrote, with its
-    /// model
+    /// Labelled point of a file that `equilibria` (LP, HB, BP) or `cycles` (LPC, PD, NS) wrote, any with --hold, with its model
     #[arg(long, value_name = "FILE.json:LABEL")]
     from: PointReference,
 
@@ -30,8 +29,8 @@ pub(crate) struct Locus {
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
     at: Vec<Values>,
 
-    /// Follow the cycles on which an expression keeps its value (the one at the start if none is given), in max(..), min(..),
-    /// mean(..), at(.., PHASE), period and parameters, such as period=50
+    /// Follow the equilibria or cycles on which an expression keeps its value (the one at the start if none is given), such as
+    /// x=0.3; on cycles in max(..), min(..), mean(..), at(.., PHASE), period and parameters, such as period=50
     #[arg(long, value_name = "EXPRESSION[=VALUE]", allow_hyphen_values = true)]
     hold: Option<Monitored>,
 

@@ -18,12 +18,12 @@ pub mod integration;
 pub mod lanes;
 pub mod linear;
 pub mod locus;
-pub mod numbers;
 mod parameters;
 pub mod pieces;
 mod random;
 mod threshold;
 
+pub use arclength_numbers as numbers;
 pub use differentiation::{Dual, Scalar};
 pub use error::Error;
 pub use field::VectorField;

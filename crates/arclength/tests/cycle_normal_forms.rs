@@ -40,6 +40,14 @@ fn coefficient(point: &CyclePoint, name: &str) -> f64 {
     point.normal_form.iter().find(|(candidate, _)| *candidate == name).expect("a coefficient").1
 }
 
+/// That a coefficient is what it is to be, within three times the error that is told with it.
+fn holds_within_its_error(point: &CyclePoint, name: &str, exact: f64) {
+    let error = coefficient(point, &format!("{name}_error"));
+    let off = (coefficient(point, name) - exact).abs();
+    assert!(error < 1e-4 * exact.abs().max(1e-3), "{name}: told error {error}");
+    assert!(off <= (3.0 * error).max(1e-9 * exact.abs()), "{name}: off by {off}, told error {error}");
+}
+
 #[test]
 fn fold_of_a_sheared_rotation() {
     for shear in [0.3, -0.2] {
@@ -56,6 +64,7 @@ fn fold_of_a_sheared_rotation() {
         let curvature = 6.0 * r - 20.0 * r.powi(3);
         let exact = 0.5 * curvature * (1.0 + shear * r * r) / (2.0 * shear * r);
         assert_relative_eq!(coefficient(fold, "quadratic_coefficient"), exact, max_relative = 1e-6);
+        holds_within_its_error(fold, "quadratic_coefficient", exact);
     }
 }
 
@@ -103,6 +112,7 @@ fn doubling_of_a_moebius_band() {
         let doubling = special(&branch, |special| special == SpecialKind::PeriodDoubling);
         assert!(doubling.value.abs() < 1e-9, "{}", doubling.value);
         assert_relative_eq!(coefficient(doubling, "cubic_coefficient"), c, max_relative = 1e-6);
+        holds_within_its_error(doubling, "cubic_coefficient", c);
         // The doubled cycles have xi^2 = -mu / c and the period 4 pi / (1 + s xi^2).
         let start = CycleStart::Branching(doubling.branching.clone().expect("a branch"));
         let mu = -0.1 * c.signum();
@@ -207,6 +217,7 @@ fn torus_of_two_oscillators() {
     assert!(torus.value.abs() < 1e-9);
     let angle = 2.0 * std::f64::consts::PI * 0.3;
     assert_relative_eq!(coefficient(torus, "argument"), angle, max_relative = 1e-9);
+    holds_within_its_error(torus, "argument", angle);
     // The radius follows slowly: (r - 1) = e |w|^2 / 2. The eigenfunction of unit size makes |w|^2 = 2 |xi|^2.
     let [g, h, k, e, _] = OSCILLATORS;
     assert_relative_eq!(

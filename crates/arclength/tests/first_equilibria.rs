@@ -75,9 +75,9 @@ fn conserved_totals_are_found_named_and_kept() {
     let start = [1.0, 1.0, 0.0, 0.0];
     let names: Vec<String> = Enzyme.state_names();
     let texts: Vec<String> =
-        conserved_totals(&Enzyme, &start, &[1.0]).iter().map(|total| total.text(&names)).collect();
+        conserved_totals(&Enzyme, &start, &[1.0], &[0]).iter().map(|total| total.text(&names)).collect();
     assert_eq!(texts, ["e + c", "s + c + p"]);
-    let field = WithTotals::at(&Enzyme, &start, &[1.0]);
+    let field = WithTotals::at(&Enzyme, &start, &[1.0], &[0]);
     let branch =
         Equilibria::of(&field).start(&start).parameters(&[1.0]).along("k", 0.1..=10.0).run().unwrap();
     for point in &branch.points {
@@ -93,8 +93,16 @@ fn conserved_totals_are_found_named_and_kept() {
 }
 
 #[test]
+fn what_stands_still_at_one_value_of_the_parameter_is_not_conserved() {
+    // With k = 0 nothing moves but by the inflow, which is shut for good.
+    let start = [1.0, 1.0, 0.0, 0.0];
+    assert_eq!(conserved_totals(&Enzyme, &start, &[0.0], &[0]).len(), 2);
+    assert!(conserved_totals(&Enzyme, &start, &[0.0], &[]).len() > 2);
+}
+
+#[test]
 fn a_field_that_conserves_nothing_is_left_alone() {
-    assert!(conserved_totals(&Stiff, &[1.0, 1.0], &[1.0, 3.0]).is_empty());
+    assert!(conserved_totals(&Stiff, &[1.0, 1.0], &[1.0, 3.0], &[0]).is_empty());
 }
 
 /// A linear exchange between all states, each rate once in gain and loss: their sum is conserved.
@@ -125,7 +133,7 @@ proptest! {
     #[test]
     fn the_total_of_a_ring_is_conserved(rates in prop::collection::vec(1e-3..1e3_f64, 2..7)) {
         let ring = Exchange { count: rates.len(), rates };
-        let totals = conserved_totals(&ring, &vec![1.0; ring.count], &[1.0]);
+        let totals = conserved_totals(&ring, &vec![1.0; ring.count], &[1.0], &[0]);
         prop_assert_eq!(totals.len(), 1);
         prop_assert!(totals[0].coefficients.iter().all(|value| *value == 1.0));
     }

@@ -11,7 +11,6 @@ pub mod files;
 pub mod history;
 pub mod json;
 mod named_numbers;
-pub mod numbers;
 pub mod parquet;
 mod report;
 mod schema;
@@ -19,6 +18,7 @@ mod story;
 mod table;
 mod unfinished;
 
+pub use arclength_numbers as numbers;
 pub use columns::{Column, Columns, Entries};
 pub use error::ReportError;
 pub use files::{FileFormat, PictureFormat};

@@ -248,7 +248,7 @@ impl CyclesAnalysis {
             };
             Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
         });
-        let field = self.chosen.field();
+        let field = self.chosen.field(&[self.active]);
         let branch = monitors
             .fold(Cycles::of(&field, self.start.clone()), Cycles::monitor)
             .parameters(&self.chosen.parameters)

@@ -120,7 +120,7 @@ impl EquilibriaAnalysis {
             None => (None, Origin::initial_state()),
         };
         let chosen = &self.chosen;
-        let field = chosen.field();
+        let field = chosen.field(&[self.active]);
         let name = &self.name;
         let mut equilibria = Equilibria::of(&field)
             .start(&chosen.start)

@@ -1,7 +1,7 @@
-//! A curve of special equilibria in two parameters, of any model.
+//! A curve of equilibria in two parameters, of any model: special ones, or those on which a quantity keeps its value.
 
 use super::quantities::Quantities;
-use crate::branch::{Origin, certain_digits, pairs, shortened, tests};
+use crate::branch::{Origin, certain_digits, pairs, parameters, shortened, tests};
 use crate::course;
 use crate::end::End;
 use crate::labels;
@@ -53,8 +53,11 @@ pub struct EquilibriumCurvePoint {
 /// A curve of special points in two parameters.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EquilibriumCurve {
-    /// What the curve consists of.
-    pub kind: SpecialKind,
+    /// What the curve consists of; nothing where it consists of any equilibria.
+    pub kind: Option<SpecialKind>,
+    /// What keeps its value along the curve, with that value.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub held: NamedNumbers,
     /// The parameters that vary.
     #[serde(rename = "in")]
     pub plane: [VaryingParameter; 2],
@@ -72,7 +75,7 @@ pub struct EquilibriumCurve {
 impl EquilibriumCurve {
     /// The result of a curve, with why it ends at its first and at its last point; `named` gives a state by name.
     pub fn new<'a>(
-        kind: SpecialKind,
+        kind: Option<SpecialKind>,
         quantities: impl Into<Quantities<'a>>,
         from: Origin,
         points: &[LocusPoint],
@@ -106,7 +109,20 @@ impl EquilibriumCurve {
             End::monitored(stops[1].as_ref(), &plane, monitors, last(points.last())),
         ];
         let unlocated = unlocated.iter().map(UnlocatedChangeResult::from).collect();
-        Self { kind, plane, from, ends, unlocated, points }
+        Self { kind, held: NamedNumbers::default(), plane, from, ends, unlocated, points }
+    }
+
+    /// The same with what keeps its value along it.
+    pub fn holding(self, name: &str, value: f64) -> Self {
+        Self { held: NamedNumbers(vec![(name.to_owned(), value)]), ..self }
+    }
+
+    /// What the curve consists of, in words.
+    pub fn name(&self) -> String {
+        match self.kind {
+            Some(kind) => format!("{}s", kind.name()),
+            None => format!("equilibria with {}", parameters(&self.held.0)),
+        }
     }
 
     /// What was detected but not located.
@@ -127,16 +143,17 @@ impl EquilibriumCurve {
 
     fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
         let (name, color): (&'static str, Color) = match self.kind {
-            SpecialKind::Fold => ("folds", palette::BLUE),
-            SpecialKind::Hopf => ("Hopf points", palette::VERMILION),
-            SpecialKind::BranchPoint => ("branch points", palette::GREEN),
-            _ => ("special points", palette::PURPLE),
+            Some(SpecialKind::Fold) => ("folds", palette::BLUE),
+            Some(SpecialKind::Hopf) => ("Hopf points", palette::VERMILION),
+            Some(SpecialKind::BranchPoint) => ("branch points", palette::GREEN),
+            Some(_) => ("special points", palette::PURPLE),
+            None => ("equilibria", palette::SKY_BLUE),
         };
         Curve::of(
             name,
             color,
             self.points.iter().map(|point| {
-                let real = self.kind != SpecialKind::Hopf || point.frequency.is_some();
+                let real = self.kind != Some(SpecialKind::Hopf) || point.frequency.is_some();
                 ((first(point.values[0]), second(point.values[1])), Some(real), point.label.as_deref())
             }),
         )
@@ -161,7 +178,7 @@ impl EquilibriumCurve {
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
         writeln!(out, "  first: {}\n  last:  {}\n", self.ends[0].text(), self.ends[1].text())?;
         let [one, two] = [&self.plane[0], &self.plane[1]].map(VaryingParameter::heading);
-        let hopf = self.kind == SpecialKind::Hopf;
+        let hopf = self.kind == Some(SpecialKind::Hopf);
         let frequency = self.plane[0].heading_beside("frequency", "rad/s");
         let of_hopf = [frequency.as_str(), "l1"].into_iter().filter(|_| hopf);
         let states = self.states().into_iter().take(SHOWN_STATES);

@@ -7,7 +7,6 @@ use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::stored_model::StoredModel;
 use crate::varying_parameter::VaryingParameter;
-use arclength::branch::SpecialKind;
 use arclength::locus::EquilibriumLocusBranch;
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
@@ -43,7 +42,7 @@ impl EquilibriumLocusResult {
             parameters: chosen.named_parameters(&branch.active),
             model: chosen.stored.clone(),
             curve: EquilibriumCurve::new(
-                branch.kind.unwrap_or(SpecialKind::Fold),
+                branch.kind,
                 Quantities { plane: plane.map(VaryingParameter::from), monitors },
                 from,
                 &branch.points,
@@ -52,6 +51,13 @@ impl EquilibriumLocusResult {
                 |state| chosen.named_state(state),
             ),
         }
+    }
+}
+
+impl EquilibriumLocusResult {
+    /// The same with what keeps its value along it.
+    pub(super) fn holding(self, name: &str, value: f64) -> Self {
+        Self { curve: self.curve.holding(name, value), ..self }
     }
 }
 
@@ -65,8 +71,8 @@ impl Report for EquilibriumLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (what, model) = (self.curve.kind.name(), &self.model.name);
-        let heading = format!("curve of {what}s of {model} at {}", parameters(&self.parameters.0));
+        let (what, model) = (self.curve.name(), &self.model.name);
+        let heading = format!("curve of {what} of {model} at {}", parameters(&self.parameters.0));
         self.curve.write_table(&heading, out)
     }
 
@@ -76,7 +82,7 @@ impl Report for EquilibriumLocusResult {
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
         let [one, two] = self.curve.keys();
-        let description = format!("{}s of {} in {one} and {two}", self.curve.kind.name(), self.model.name);
+        let description = format!("{} of {} in {one} and {two}", self.curve.name(), self.model.name);
         Ok(Some(self.curve.figure(&description, [one, two], [|value| value; 2])))
     }
 

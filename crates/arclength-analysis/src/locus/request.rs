@@ -25,7 +25,7 @@ use std::ops::ControlFlow;
 /// A curve of special points in two parameters, with its points of codimension two.
 ///
 /// Folds (LP), Hopf points (HB) and branch points (BP) of equilibria; folds (LPC), period doublings (PD) and torus bifurcations
-/// (NS) of cycles. With a quantity to be held, any cycles on which it keeps its value.
+/// (NS) of cycles. With a quantity to be held, any equilibria or cycles on which it keeps its value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocusRequest {
     /// The labelled point, with its model and parameters.
@@ -36,7 +36,7 @@ pub struct LocusRequest {
     /// Values of the first parameter at which points are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
-    /// What keeps its value along a curve of any cycles: its first value, or the one where the curve starts.
+    /// What keeps its value along a curve of any equilibria or cycles: its first value, or the one where the curve starts.
     #[serde(default)]
     pub hold: Option<Monitored>,
     /// What is recorded along the curve.
@@ -79,7 +79,8 @@ enum Start {
     Hopf(HopfPoint),
     BranchPoint(BranchPoint),
     Cycle(SpecialKind, Orbit),
-    Held(Held, Orbit),
+    HeldEquilibrium(Held<[f64]>),
+    HeldCycle(Held, Orbit),
 }
 
 impl LocusRequest {
@@ -129,7 +130,7 @@ impl LocusRequest {
         })?;
         let mut monitors = Monitors::default();
         for asked in &self.monitors {
-            if let Start::Cycle(..) | Start::Held(..) = start {
+            if let Start::Cycle(..) | Start::HeldCycle(..) = start {
                 monitors.on_cycles.push((asked.clone(), asked.on_cycles(chosen)?));
             } else {
                 monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(chosen)?));
@@ -150,39 +151,50 @@ impl LocusRequest {
 }
 
 impl LocusRequest {
-    /// The start of a curve of cycles on which a quantity keeps its value.
+    /// The start of a curve on which a quantity keeps its value.
     fn held(&self, asked: &Monitored, point: &LabelledPoint) -> Result<Start, Error> {
-        let LabelledSolution::Cycle { orbit, .. } = &point.solution else {
-            return Err(self.from.failure(format!(
-                "nothing can be held from {}; allowed: cycles, special or not",
+        let (name, parameters) = (&asked.expression, &point.chosen.parameters);
+        match &point.solution {
+            LabelledSolution::Equilibrium(_) => {
+                let quantity = asked.on_equilibria(&point.chosen)?;
+                let held = Held::of_state(name, move |state, parameters| {
+                    Some(quantity.value(state, parameters, &[]))
+                });
+                let here = held.of(&point.chosen.start, parameters);
+                Ok(Start::HeldEquilibrium(held.at(asked.value_to_hold(here, &point.label)?)))
+            }
+            LabelledSolution::Cycle { orbit, .. } => {
+                let monitor = asked.on_cycles(&point.chosen)?;
+                let held = Held::new(name, move |orbit, parameters| Some(monitor.value(orbit, parameters)));
+                let here = held.of(orbit, parameters);
+                let held = held.at(asked.value_to_hold(here, &point.label)?);
+                Ok(Start::HeldCycle(held, orbit.clone()))
+            }
+            LabelledSolution::Motion { .. } => Err(self.from.failure(format!(
+                "nothing can be held from {}; allowed: equilibria and cycles, special or not",
                 point.label
-            )));
+            ))),
+        }
+    }
+}
+
+impl Monitored {
+    /// The value to be held: the one that is given, or the one `here`, where the curve starts at a label.
+    fn value_to_hold(&self, here: Option<f64>, label: &str) -> Result<f64, Error> {
+        let wrong = |problem: String, allowed: &str| {
+            Error::invalid(&["hold"], self.expression.clone(), problem, allowed)
         };
-        let monitor = asked.on_cycles(&point.chosen)?;
-        let held =
-            Held::new(&asked.expression, move |orbit, parameters| Some(monitor.value(orbit, parameters)));
-        let here = held.of(orbit, &point.chosen.parameters);
-        let held = match (&asked.at[..], here) {
-            ([], Some(here)) => held.at(here),
-            ([value], Some(_)) => held.at(*value),
-            ([_, _, ..], _) => {
-                return Err(Error::invalid(
-                    &["hold"],
-                    asked.expression.clone(),
-                    "several values are given",
-                    "one value, or none for the one where the curve starts",
-                ));
-            }
+        match (&self.at[..], here) {
             (_, None) => {
-                return Err(Error::invalid(
-                    &["hold"],
-                    asked.expression.clone(),
-                    format!("it has no value at {}", point.label),
-                    "an expression that has a value there",
-                ));
+                Err(wrong(format!("it has no value at {label}"), "an expression that has a value there"))
             }
-        };
-        Ok(Start::Held(held, orbit.clone()))
+            ([], Some(here)) => Ok(here),
+            ([value], Some(_)) => Ok(*value),
+            _ => Err(wrong(
+                "several values are given".to_owned(),
+                "one value, or none for the one where the curve starts",
+            )),
+        }
     }
 }
 
@@ -215,7 +227,7 @@ impl LocusAnalysis {
     /// # Errors
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
-        let field = self.point.chosen.field();
+        let field = self.point.chosen.field(&self.active);
         let curve = EquilibriumLocus::of(&field);
         let (curve, how) = match &self.start {
             Start::Fold(fold) => (curve.from_fold(fold), "the folds through it"),
@@ -231,7 +243,12 @@ impl LocusAnalysis {
                 };
                 return self.of_cycles(curve, how, control).map(LocusResult::Cycles);
             }
-            Start::Held(held, orbit) => {
+            Start::HeldEquilibrium(held) => {
+                let chosen = &self.point.chosen;
+                let curve = curve.from_held_equilibrium(held.clone(), &chosen.start, &chosen.parameters);
+                (curve, "the equilibria through it")
+            }
+            Start::HeldCycle(held, orbit) => {
                 let curve = CycleLocus::of(&field);
                 let curve = curve.from_held_cycle(held.clone(), orbit, &self.point.chosen.parameters);
                 let result = self.of_cycles(curve, "the cycles through it", control)?;
@@ -262,7 +279,10 @@ impl LocusAnalysis {
             &names(&self.monitors.on_equilibria),
             &branch,
         );
-        Ok(LocusResult::Equilibria(curve))
+        Ok(LocusResult::Equilibria(match &self.start {
+            Start::HeldEquilibrium(held) => curve.holding(held.name(), held.value().unwrap_or(f64::NAN)),
+            _ => curve,
+        }))
     }
 
     fn of_cycles(

@@ -273,3 +273,44 @@ fn two_torus_bifurcations_in_one_step() {
         assert!((number(&labelled(&cycles, label)["value"]) - value).abs() < 1e-10);
     }
 }
+
+/// Chua's circuit with a smoothed piecewise-linear resistor.
+const CHUA: &str = "par alpha=-1, beta=14.3, k=10, a0=-0.14285714285714285, a1=0.28571428571428570
+init x=0, y=0, z=0
+g1=2*(x+1)*atan(k*(x+1))/pi
+g2=2*(x-1)*atan(k*(x-1))/pi
+h=a1*x+0.5*(a0-a1)*(g1-g2)
+x'=alpha*(y-h)
+y'=x-y+z
+z'=-beta*y
+done
+";
+
+#[test]
+fn folds_of_a_snake_are_located_where_multipliers_jump_within_rounding() {
+    let folder = folder(CHUA);
+    folder.succeed("equilibria model.ode --along alpha=-1:12 -q -o zero.json");
+    // At alpha = 0 every x is an equilibrium; the branches with x = +-1.4994 leave there.
+    folder.succeed("equilibria --from zero.json:BP1 --along alpha=-1:12 -q -o line.json");
+    folder.succeed("equilibria --from line.json:BP1 --along alpha=-1:12 -q -o branch.json");
+    let cycles = folder.json("cycles --from branch.json:HB1 --along alpha=-1:12");
+    let folds: Vec<[f64; 2]> = points(&cycles)
+        .iter()
+        .filter(|point| point["label"].as_str().is_some_and(|label| label.starts_with("LPC")))
+        .map(|point| [number(&point["value"]), number(&point["period"])])
+        .collect();
+    // Minima that were known beforehand, to these digits.
+    for [value, period] in [[11.07835363, 11.9112], [11.078398422, 14.3329]] {
+        let found = folds.iter().filter(|fold| (fold[1] - period).abs() < 1e-2);
+        let found: Vec<_> = found.collect();
+        assert!(found.len() == 1 && (found[0][0] - value).abs() < 1e-8, "{period}: {folds:?}");
+    }
+    for pair in folds.windows(2) {
+        assert!(pair[1][1] - pair[0][1] > 0.5 || pair[0][1] < 4.0, "twice: {folds:?}");
+    }
+    let minima_and_maxima = folds.windows(3).filter(|folds| folds[0][1] > 3.0 && folds[2][1] < 16.0);
+    for folds in minima_and_maxima {
+        let [before, here, after] = [folds[0][0], folds[1][0], folds[2][0]];
+        assert!((here - before) * (here - after) > 0.0, "{folds:?}");
+    }
+}

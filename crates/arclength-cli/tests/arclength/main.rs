@@ -1,5 +1,6 @@
 //! The program `arclength` as others run it, with models of the gallery and their published values.
 
+mod closed_branches;
 mod files;
 mod found_by_users;
 mod held;

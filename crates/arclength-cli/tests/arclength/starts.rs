@@ -103,3 +103,22 @@ fn a_conserved_quantity_makes_a_neutral_family() {
         assert!((one - other).abs() < 1e-6 * one, "{largest} {smallest}");
     }
 }
+
+#[test]
+fn a_branch_that_stands_still_at_one_value_of_the_parameter_is_left_at_equilibria() {
+    // Where a = 0 every x is an equilibrium; elsewhere 0, 1 and -1 are.
+    let folder = folder("par a=-1, k=2\nx'=a*(y+x-x^3)\ny'=-k*y\ninit x=0,y=0\ndone\n");
+    folder.succeed("equilibria model.ode --along a=-1:1 -q -o first.json");
+    let vertical = folder.json("equilibria --from first.json:BP1 --along a=-1:1 -o vertical.json");
+    assert!(vertical["conserved"].as_array().is_none_or(Vec::is_empty));
+    for point in points(&vertical) {
+        assert!(number(&point["value"]).abs() < 1e-12, "{}", point["value"]);
+    }
+    let crossings: Vec<f64> = points(&vertical)
+        .iter()
+        .filter(|point| point["label"].as_str().is_some_and(|label| label.starts_with("BP")))
+        .map(|point| number(&point["state"]["x"]))
+        .collect();
+    assert!(crossings.iter().any(|x| (x - 1.0).abs() < 1e-9), "{crossings:?}");
+    assert!(crossings.iter().any(|x| (x + 1.0).abs() < 1e-9), "{crossings:?}");
+}

@@ -179,6 +179,12 @@ pub trait Curve: Equations {
         None
     }
 
+    /// Whether the parameter turns at a located point that is no fold, as it does on the branch that leaves a pitchfork to one
+    /// side; `None` where that is not known.
+    fn turns_at(&self, _point: &Self::Point) -> Option<bool> {
+        None
+    }
+
     /// Quantities, each with its size on the curve so far, that tell whether two solutions with the same first bounded parameter
     /// are the same; independent of discretisation and phase.
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)>;

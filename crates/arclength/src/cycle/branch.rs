@@ -43,7 +43,8 @@ pub struct CyclePoint {
     /// Coefficients of the normal form of a special cycle by name. Fold: `quadratic_coefficient` `b` of `dxi/dt = b xi^2`;
     /// period doubling: `cubic_coefficient` `c` of `dxi/dt = c xi^3`; torus bifurcation: `argument` of the multipliers and
     /// `cubic_coefficient`, the real part of `d` of `dxi/dt = i omega xi + d xi |xi|^2`, with its imaginary part. Negative
-    /// cubic coefficients mean that the new solutions are stable within the centre manifold.
+    /// cubic coefficients mean that the new solutions are stable within the centre manifold. Behind each coefficient stands its
+    /// error under its name with `_error`, the difference from a mesh with intervals half as wide, where that could be measured.
     pub normal_form: Vec<(&'static str, f64)>,
     /// Start of the branch that leaves here: doubled cycles at a period doubling, the other branch at a branch point.
     pub branching: Option<Branching>,

@@ -251,6 +251,11 @@ impl Curve for CycleCurve<'_> {
         matches!((argument(one), argument(other)), (Some(one), Some(other)) if (one - other).abs() > DISTINCT)
     }
 
+    fn turns_at(&self, point: &CycleInspection) -> Option<bool> {
+        let known = point.branching.as_ref()?.known.as_ref()?;
+        Some(known.parameter == 0.0)
+    }
+
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let n = self.collocation.problem.dimension();
         let mut signature = vec![(unknown[unknown.len() - 2].ln(), 1.0)];

@@ -28,7 +28,9 @@ const ROUNDING_TURN: f64 = 1e-12;
 /// be one there.
 pub(super) const STANDING: f64 = 1e-8;
 const NEUTRAL: f64 = 1e-4;
-/// The same along a family that was followed so far: large cycles of it may not resolve it better.
+/// The same along a family that was followed so far: large cycles of it may not resolve it better, and from mesh to mesh the
+/// parameter changes by its error. What stands still on an analytic curve does so all along.
+const STILL_STANDING: f64 = 1e-5;
 const STILL_NEUTRAL: f64 = 0.5;
 
 /// What is known about one cycle.
@@ -289,9 +291,10 @@ impl<'a> CycleCurve<'a> {
     /// cycle it is a family for one parameter value (Munoz-Almaraz, Freire, Galan, Doedel and Vanderbauwhede, "Continuation of
     /// periodic orbits in conservative and Hamiltonian systems" (2003)).
     pub(super) fn is_neutral(&self, tangent: &[f64], floquet: &Floquet) -> bool {
-        let near = if self.follows_neutral_family { STILL_NEUTRAL } else { NEUTRAL };
+        let (standing, near) =
+            if self.follows_neutral_family { (STILL_STANDING, STILL_NEUTRAL) } else { (STANDING, NEUTRAL) };
         let one = |multiplier: &Multiplier| multiplier.argument == 0.0 && multiplier.log_modulus.abs() < near;
-        self.turn(tangent).abs() < STANDING && floquet.nontrivial.iter().any(one)
+        self.turn(tangent).abs() < standing && floquet.nontrivial.iter().any(one)
     }
 
     /// Whether the rate of change of the parameter has the wrong sign. On the explosion of a canard it may be nothing but

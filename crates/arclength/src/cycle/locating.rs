@@ -5,6 +5,7 @@ use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
 use super::extrema::ranges;
 use super::limit_cycle::LimitCycle;
+use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::sizes::extent;
 use crate::collocation::equations::Collocation;
@@ -24,6 +25,8 @@ pub(crate) struct DefiningCurve<'a> {
     pub scales: Vec<f64>,
     /// Sizes of the two parameters.
     pub parameter_scales: [f64; 2],
+    /// Whether updates of Newton's method that are rounding end it.
+    may_stagnate: bool,
 }
 
 impl<'a> DefiningCurve<'a> {
@@ -51,7 +54,7 @@ impl<'a> DefiningCurve<'a> {
         let scales = component_scales(&problem.scales, kind, 1.0);
         let mut collocation = Collocation::new(defining, mesh, degree);
         collocation.set_reference(unknown);
-        Self { collocation, scales, parameter_scales }
+        Self { collocation, scales, parameter_scales, may_stagnate: false }
     }
 }
 
@@ -118,7 +121,7 @@ impl Curve for DefiningCurve<'_> {
         Ok(())
     }
     fn may_stagnate(&self) -> bool {
-        false
+        self.may_stagnate
     }
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         unknown.iter().map(|value| (*value, 1.0)).collect()
@@ -133,13 +136,15 @@ pub(crate) struct Located {
 
 /// Newton's method on the defining system from a nearby solution of the branch.
 ///
-/// `tangent` is the direction of the branch nearby. `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
+/// `tangent` is the direction of the branch nearby. With `may_stagnate` updates that are rounding end it: something else has to
+/// show that there is such a cycle. `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
 /// multipliers met on the unit circle's side of it.
 pub(crate) fn converge(
     curve: &mut CycleCurve<'_>,
     tangent: &[f64],
     start: &Solution<CycleInspection>,
     kind: Kind,
+    may_stagnate: bool,
 ) -> Result<Option<Located>, Error> {
     let multipliers = start.point.floquet.multipliers();
     let Some(eigenfunctions) = critical(&mut curve.collocation, &start.unknown, &multipliers, kind)? else {
@@ -152,6 +157,7 @@ pub(crate) fn converge(
     let nodes = (curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
     let parameters = (None, [curve.parameter_scale, 1.0]);
     let mut defining_curve = DefiningCurve::new(problem, kind, nodes, parameters, &unknown);
+    defining_curve.may_stagnate = may_stagnate;
     // The scalar of the second parameter has no effect and stays zero.
     let mut border = vec![0.0; unknown.len()];
     if let Some(last) = border.last_mut() {
@@ -203,6 +209,50 @@ fn fit_borders(
         }
     }
     false
+}
+
+/// A special cycle on a finer mesh.
+pub(crate) struct Finer<'a> {
+    /// The cycle alone, factorised there.
+    collocation: Collocation<LimitCycle<'a>>,
+    unknown: Vec<f64>,
+    eigenfunctions: Eigenfunctions,
+}
+
+impl Finer<'_> {
+    /// The coefficients of its normal form by name.
+    pub(crate) fn coefficients(&self, kind: Kind) -> Vec<(&'static str, f64)> {
+        CriticalCycle::of(&self.collocation, &self.unknown).coefficients(kind, &self.eigenfunctions)
+    }
+}
+
+/// The same special cycle with every interval of the mesh halved; `None` where Newton's method does not find it.
+pub(crate) fn on_halves<'a>(curve: &CycleCurve<'a>, located: &Located, kind: Kind) -> Option<Finer<'a>> {
+    let (collocation, n) = (&curve.collocation, curve.collocation.problem.dimension());
+    let (mesh, degree) = (collocation.mesh(), collocation.gauss().degree());
+    let halves: Vec<f64> = mesh
+        .windows(2)
+        .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
+        .chain(mesh.last().copied())
+        .collect();
+    let problem = &collocation.problem;
+    let parameters = (None, [curve.parameter_scale, 1.0]);
+    let unknown = join(&located.solution.unknown, n, &located.eigenfunctions);
+    let coarse = DefiningCurve::new(problem, kind, (mesh.to_vec(), degree), parameters, &unknown);
+    let mut unknown = coarse.collocation.carry(&unknown, &halves);
+    let mut fine = DefiningCurve::new(problem, kind, (halves.clone(), degree), parameters, &unknown);
+    let mut border = vec![0.0; unknown.len()];
+    *border.last_mut()? = 1.0;
+    correct(&mut fine, &mut unknown, &border, &curve.settings).ok()?;
+    let (mut unknown, eigenfunctions) = split(&unknown, n, kind);
+    unknown.pop();
+    let mut collocation = Collocation::new(problem.clone(), halves, degree);
+    collocation.set_reference(&unknown);
+    let mut border = vec![0.0; unknown.len()];
+    *border.last_mut()? = 1.0;
+    let mut residual = vec![0.0; unknown.len()];
+    collocation.factorize(&unknown, &border, &mut residual);
+    Some(Finer { collocation, unknown, eigenfunctions })
 }
 
 /// Sizes of all components of a defining system; `weight` multiplies those of the eigenfunctions.

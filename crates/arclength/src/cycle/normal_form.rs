@@ -22,6 +22,8 @@ pub(crate) struct CriticalCycle<'a> {
     pub states: &'a [f64],
     pub period: f64,
     pub linearization: Linearization<'a>,
+    /// Whether the field switches along the cycle: what borders do to the coefficients is not computed.
+    pub has_borders: bool,
 }
 
 /// The relative size of the shift along the cycle below which a fold's coefficient is not scaled by it.
@@ -40,6 +42,7 @@ impl<'a> CriticalCycle<'a> {
             states,
             period: scalars[0],
             linearization: Linearization::of(collocation, unknown),
+            has_borders: problem.has_borders(),
         }
     }
 
@@ -72,6 +75,41 @@ impl<'a> CriticalCycle<'a> {
         let across: NodeFunction = null.iter().zip(flow).map(|(value, flow)| value - share * flow).collect();
         let size = nodes.product(&across, &across).sqrt();
         (across, size)
+    }
+
+    /// The coefficients of the normal form by name, as far as they exist.
+    pub(crate) fn coefficients(
+        &self,
+        kind: Kind,
+        eigenfunctions: &Eigenfunctions,
+    ) -> Vec<(&'static str, f64)> {
+        match kind {
+            Kind::Torus if self.has_borders => {
+                eigenfunctions.1.first().map(|angle| ("argument", angle.abs())).into_iter().collect()
+            }
+            _ if self.has_borders => Vec::new(),
+            Kind::Fold => {
+                // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
+                let named = self.fold(eigenfunctions).map(|(own, scaled)| match scaled {
+                    Some(value) => ("quadratic_coefficient", value),
+                    None => ("quadratic_coefficient_of_unit_function", own),
+                });
+                named.into_iter().collect()
+            }
+            Kind::Doubling => {
+                let coefficient = self.doubling(eigenfunctions);
+                coefficient.map(|value| ("cubic_coefficient", value)).into_iter().collect()
+            }
+            Kind::Torus => {
+                let argument = eigenfunctions.1.first().map(|angle| ("argument", angle.abs()));
+                let mut named: Vec<_> = argument.into_iter().collect();
+                if let Some([real, imaginary]) = self.torus(eigenfunctions) {
+                    named.extend([("cubic_coefficient", real), ("cubic_coefficient_imaginary", imaginary)]);
+                }
+                named
+            }
+            Kind::Cycle | Kind::BranchPoint => Vec::new(),
+        }
     }
 
     /// Fold: `b` of `d tau/dt = 1 + kappa xi`, `d xi/dt = b xi^2` for the null function `v' = T f_x v + beta f` with the

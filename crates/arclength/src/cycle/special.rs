@@ -4,7 +4,7 @@
 use super::curve::{CycleCurve, CycleInspection};
 use super::defining::Kind;
 use super::floquet::Floquet;
-use super::locating::{Located, converge};
+use super::locating::{Located, converge, on_halves};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::switching::{doubled, other_branch};
@@ -18,9 +18,11 @@ use std::f64::consts::PI;
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
 const START_TOLERANCES: [f64; 4] = [0.5, 1e-2, 1e-4, 1e-7];
 /// Perturbation of the field at a branch point, relative to its size over one period, below which it is one of the field itself:
-/// a part of the tolerance of the cycles, whose mesh may break a symmetry by so much, and never less than this.
+/// the error of the cycle there, whose mesh may break a symmetry by so much, a part of the tolerance, and never less than this.
 const UNPERTURBED_PART: f64 = 0.1;
 const UNPERTURBED: f64 = 1e-10;
+/// No coefficient is told to be more exact than this part of itself.
+const LEAST_ERROR: f64 = 1e-13;
 /// A special cycle may lie this part of the step, and this far in the metric, outside it: cycles are known to the tolerance of
 /// Newton's method only, and close to homoclinic orbits brackets are shorter than what comes of it.
 const MARGIN: f64 = 0.01;
@@ -102,6 +104,15 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
 /// orbits multipliers change by orders of magnitude within the last digits of the parameter. Multipliers of the kind have crossed the circle
 /// between both ends, or the parameter has an extreme value.
 fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
+    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
+    let [one, other] = ends.map(|end| value(solution) - value(end));
+    // In the plane that is no witness, since the multiplier is known better than the parameter.
+    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
+    crosses(ends, kind) || (kind == Kind::Fold && is_extreme)
+}
+
+/// Whether the number of multipliers of the kind outside the circle differs between two cycles.
+fn crosses(ends: [&Node; 2], kind: Kind) -> bool {
     let outside = |node: &Node| {
         let floquet = &node.point.floquet;
         let argument = kind.critical().map(|critical| critical.argument);
@@ -109,12 +120,7 @@ fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
         let count = outside.filter(|multiplier| Some(multiplier.argument) == argument).count();
         (!floquet.is_contradictory()).then_some(count)
     };
-    let crosses = matches!(ends.map(outside), [Some(one), Some(other)] if one != other);
-    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
-    let [one, other] = ends.map(|end| value(solution) - value(end));
-    // In the plane that is no witness, since the multiplier is known better than the parameter.
-    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
-    crosses || (kind == Kind::Fold && is_extreme)
+    matches!(ends.map(outside), [Some(one), Some(other)] if one != other)
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.
@@ -180,14 +186,19 @@ fn newton(
         }
     };
     let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
-    for tolerance in START_TOLERANCES {
+    let attempts = START_TOLERANCES.map(|tolerance| (tolerance, false));
+    // Where multipliers change by orders of magnitude within rounding Newton's method gets no further than that; multipliers that
+    // cross the circle are the witness then.
+    let is_seen = matches!(kind, Kind::Fold | Kind::Doubling) && crosses([before, after], kind);
+    let last = (START_TOLERANCES[START_TOLERANCES.len() - 1], true);
+    for (tolerance, may_stagnate) in attempts.into_iter().chain(is_seen.then_some(last)) {
         let converged = match bracket.narrow(curve, &settings, tolerance, test) {
-            Ok(Some(start)) => converge(curve, &direction, start, kind)?,
+            Ok(Some(start)) => converge(curve, &direction, start, kind, may_stagnate)?,
             // Next to a branch point the equations of the branch are singular, but its ends are good starts.
             Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
                 let distance = |end: &Node| branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs);
                 let nearest = if distance(before) <= distance(after) { before } else { after };
-                converge(curve, &direction, nearest, kind)?
+                converge(curve, &direction, nearest, kind, may_stagnate)?
             }
             Ok(None) | Err(Error::NotFound { .. }) => None,
             Err(error) => return Err(error),
@@ -198,7 +209,9 @@ fn newton(
             let perturbation = located.eigenfunctions.1.first().filter(|_| kind == Kind::BranchPoint);
             let margin = MARGIN * length + LEAST_MARGIN;
             (-margin..=length + margin).contains(&position)
-                && perturbation.is_none_or(|perturbation| perturbation.abs() < unperturbed)
+                && perturbation.is_none_or(|perturbation| {
+                    perturbation.abs() < unperturbed.max(located.solution.point.error_estimate)
+                })
         });
         if located.is_some() {
             return Ok(located);
@@ -213,6 +226,7 @@ fn describe(
     located: Located,
     kind: Kind,
 ) -> Result<Solution<CycleInspection>, Error> {
+    let errors = coefficient_errors(curve, &located, kind);
     let Located { mut solution, eigenfunctions } = located;
     let end = solution.unknown.len() - 2;
     let mut residual = vec![0.0; solution.unknown.len()];
@@ -225,47 +239,63 @@ fn describe(
         states: solution.unknown[..end].to_vec(),
         period: solution.unknown[end],
     };
-    let point = &mut solution.point;
-    // What borders do to the coefficients, and to the directions of branches, is not computed.
-    let has_borders = curve.collocation.problem.has_borders();
-    (point.normal_form, point.branching) = match kind {
-        Kind::Doubling if has_borders => (Vec::new(), doubled(&orbit, &eigenfunctions)),
-        Kind::Torus if has_borders => (vec![("argument", eigenfunctions.1[0].abs())], None),
-        _ if has_borders => (Vec::new(), None),
-        Kind::Fold => {
-            // MatCont's scaling does not exist where the period stands still, as it does in a forced oscillator.
-            let named = critical.fold(&eigenfunctions).map(|(own, scaled)| match scaled {
-                Some(value) => ("quadratic_coefficient", value),
-                None => ("quadratic_coefficient_of_unit_function", own),
-            });
-            (named.into_iter().collect(), None)
-        }
-        Kind::Doubling => {
-            let coefficient = critical.doubling(&eigenfunctions);
-            let named = coefficient.map(|value| ("cubic_coefficient", value));
-            (named.into_iter().collect(), doubled(&orbit, &eigenfunctions))
-        }
-        Kind::Torus => {
-            let argument = eigenfunctions.1[0].abs();
-            let mut named = vec![("argument", argument)];
-            if let Some([real, imaginary]) = critical.torus(&eigenfunctions) {
-                named.extend([("cubic_coefficient", real), ("cubic_coefficient_imaginary", imaginary)]);
-            }
-            (named, None)
-        }
-        Kind::Cycle => (Vec::new(), None),
-        Kind::BranchPoint => {
-            let other = other_branch(
-                &orbit,
-                &eigenfunctions,
-                &critical,
-                (curve.collocation.problem.active, curve.parameter_scale),
-                &solution.tangent,
-            );
-            (Vec::new(), other)
-        }
+    let branching = match kind {
+        Kind::Doubling => doubled(&orbit, &eigenfunctions),
+        // What borders do to second derivatives is not computed.
+        Kind::BranchPoint if critical.has_borders => None,
+        Kind::BranchPoint => other_branch(
+            &orbit,
+            &eigenfunctions,
+            &critical,
+            (curve.collocation.problem.active, curve.parameter_scale),
+            &solution.tangent,
+        ),
+        Kind::Fold | Kind::Torus | Kind::Cycle => None,
     };
+    let mut normal_form = critical.coefficients(kind, &eigenfunctions);
+    // Each is followed by its error.
+    for (name, error) in errors {
+        if let Some(place) = normal_form.iter().position(|(known, _)| *known == name) {
+            normal_form.insert(place + 1, (error_name(name), error));
+        }
+    }
+    (solution.point.normal_form, solution.point.branching) = (normal_form, branching);
     Ok(solution)
+}
+
+/// Errors of the coefficients of the normal form by their names: the differences from those on intervals half as wide. Empty
+/// where the cycle does not exist there.
+fn coefficient_errors(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> Vec<(&'static str, f64)> {
+    if curve.collocation.problem.has_borders() {
+        return Vec::new();
+    }
+    if matches!(kind, Kind::BranchPoint | Kind::Cycle) {
+        return Vec::new();
+    }
+    let Some(finer) = on_halves(curve, located, kind) else { return Vec::new() };
+    let here = {
+        let mut collocation = curve.collocation.clone();
+        let mut residual = vec![0.0; located.solution.unknown.len()];
+        collocation.factorize(&located.solution.unknown, &located.solution.tangent, &mut residual);
+        CriticalCycle::of(&collocation, &located.solution.unknown).coefficients(kind, &located.eigenfunctions)
+    };
+    let there = finer.coefficients(kind);
+    let named = here.into_iter().filter_map(|(name, value)| {
+        let (_, finer) = there.iter().find(|(other, _)| *other == name)?;
+        Some((name, (value - finer).abs().max(LEAST_ERROR * value.abs())))
+    });
+    named.filter(|(_, error)| error.is_finite()).collect()
+}
+
+/// The name under which the error of a coefficient is told.
+fn error_name(name: &str) -> &'static str {
+    match name {
+        "quadratic_coefficient" => "quadratic_coefficient_error",
+        "quadratic_coefficient_of_unit_function" => "quadratic_coefficient_of_unit_function_error",
+        "cubic_coefficient" => "cubic_coefficient_error",
+        "cubic_coefficient_imaginary" => "cubic_coefficient_imaginary_error",
+        _ => "argument_error",
+    }
 }
 
 /// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation.

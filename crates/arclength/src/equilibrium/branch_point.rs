@@ -1,5 +1,6 @@
 //! Branch points of equilibria: the coefficients of the bifurcation equation and the other branch.
 
+use super::coefficient_error;
 use super::fold::null_vectors;
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
@@ -44,10 +45,17 @@ pub struct BranchPoint {
     pub mixed: f64,
     /// The second derivative of `<p, f>` along `(x1, 1)`.
     pub parametric: f64,
+    /// Errors of `quadratic`, `mixed` and `parametric`: how much they change where the equilibrium moves by its own error.
+    #[serde(default)]
+    pub quadratic_errors: Option<[f64; 3]>,
     /// At a pitchfork, the cubic coefficient of the flow on the centre manifold, `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6`:
     /// negative if the pitchfork is supercritical.
     pub cubic: Option<f64>,
-    /// The sense of a pitchfork; degenerate where the other branch is vertical within rounding.
+    /// Error of that coefficient, as of the others.
+    #[serde(default)]
+    pub cubic_error: Option<f64>,
+    /// The sense of a pitchfork; degenerate where the other branch is vertical within rounding, or the coefficient zero within its
+    /// error.
     #[serde(default)]
     pub criticality: Option<Criticality>,
     /// How the branches cross.
@@ -63,8 +71,50 @@ const PITCHFORK: f64 = 1e-6;
 const VERTICAL: f64 = 1e-10;
 
 impl BranchPoint {
+    /// Whether the parameter turns on the branch on which the point was found: it is the one that leaves a pitchfork to one side.
+    pub(crate) fn turns(&self) -> bool {
+        let rate = |tangent: &[f64]| tangent.last().map_or(0.0, |rate| rate.abs());
+        let [own, other] = &self.tangents;
+        self.crossing == Crossing::Pitchfork && rate(own) < rate(other)
+    }
+
     /// The branch point at a located singular equilibrium on a branch with the direction `tangent`.
     pub(crate) fn at(
+        problem: &EquilibriumProblem<'_>,
+        unknown: &[f64],
+        tangent: &[f64],
+        scales: &[f64],
+        location_error: f64,
+    ) -> Result<Option<Self>, Error> {
+        let found = Self::without_errors(problem, unknown, tangent, scales, location_error)?;
+        Ok(found.map(|point| point.with_errors(problem, tangent, scales)))
+    }
+
+    /// The same with the errors of its coefficients.
+    fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
+        let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
+        let part = scales.last().map_or(0.0, |range| self.location_error / range);
+        let place = (&self.state[..], &self.parameters[..]);
+        let errors = coefficient_error::errors(known, place, scales, part, |state, parameters| {
+            let moved = EquilibriumProblem::new(problem.field, parameters, &problem.active);
+            let unknown = [state, &[parameters[self.active]]].concat();
+            let near = Self::without_errors(&moved, &unknown, tangent, scales, 0.0).ok()??;
+            // A null vector may have either sign.
+            let product = near.null_vector.iter().zip(&self.null_vector).map(|(one, other)| one * other);
+            let sign = product.sum::<f64>().signum();
+            let cubic = if self.cubic.is_some() { near.cubic? } else { 0.0 };
+            Some([sign * near.quadratic, near.mixed, sign * near.parametric, cubic])
+        });
+        let quadratic_errors = errors.map(|[quadratic, mixed, parametric, _]| [quadratic, mixed, parametric]);
+        let cubic_error = self.cubic.and(errors).map(|errors| errors[3]);
+        let is_certain =
+            matches!((self.cubic, cubic_error), (Some(cubic), Some(error)) if cubic.abs() > error);
+        let criticality =
+            self.criticality.map(|sense| if is_certain { sense } else { Criticality::Degenerate });
+        Self { quadratic_errors, cubic_error, criticality, ..self }
+    }
+
+    fn without_errors(
         problem: &EquilibriumProblem<'_>,
         unknown: &[f64],
         tangent: &[f64],
@@ -160,6 +210,8 @@ impl BranchPoint {
         });
         Ok(Some(Self {
             criticality,
+            quadratic_errors: None,
+            cubic_error: None,
             value: parameters[active],
             parameters,
             active,

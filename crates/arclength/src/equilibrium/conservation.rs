@@ -19,6 +19,8 @@ use num_complex::Complex64;
 
 /// States, in units of their sizes, and parameters at which the field is sampled: from this much above the start up to one.
 const LEAST_DISPLACEMENT: f64 = 0.1;
+/// Part of their values by which parameters are displaced.
+const PARAMETER_PART: f64 = 0.1;
 /// Samples more than there are states.
 const MORE_SAMPLES: usize = 10;
 /// A combination of samples below this part of them is zero.
@@ -60,7 +62,7 @@ impl ConservedTotal {
 }
 
 /// The independent linear combinations of the states that the field conserves, whatever the parameters, found by sampling it
-/// around `state`.
+/// around `state`. Parameters that are zero stay so (an inflow that is shut), but for those that are to vary, given by their indices.
 ///
 /// ```
 /// use arclength::{Scalar, VectorField, equilibrium::conserved_totals};
@@ -74,10 +76,15 @@ impl ConservedTotal {
 ///         derivative[1] = p[0] * x[0] - x[1];
 ///     }
 /// }
-/// let totals = conserved_totals(&Exchange, &[1.0, 0.0], &[2.0]);
+/// let totals = conserved_totals(&Exchange, &[1.0, 0.0], &[2.0], &[0]);
 /// assert_eq!(totals[0].text(&["a".into(), "b".into()]), "a + b");
 /// ```
-pub fn conserved_totals<F: VectorField>(field: &F, state: &[f64], parameters: &[f64]) -> Vec<ConservedTotal> {
+pub fn conserved_totals<F: VectorField>(
+    field: &F,
+    state: &[f64],
+    parameters: &[f64],
+    varying: &[usize],
+) -> Vec<ConservedTotal> {
     let field = ErasedField::of(field);
     let n = state.len();
     let sizes = natural_scales(&field, state, parameters, &vec![0.0; n]);
@@ -89,7 +96,14 @@ pub fn conserved_totals<F: VectorField>(field: &F, state: &[f64], parameters: &[
     let mut rate = vec![0.0; n];
     for _ in 0..n + MORE_SAMPLES {
         let there: Vec<f64> = state.iter().zip(&sizes).map(|(value, size)| displaced(value, *size)).collect();
-        let with: Vec<f64> = parameters.iter().map(|value| displaced(value, 0.1 * value.abs())).collect();
+        let with: Vec<f64> = parameters
+            .iter()
+            .enumerate()
+            .map(|(index, value)| {
+                let size = if *value == 0.0 && varying.contains(&index) { 1.0 } else { value.abs() };
+                displaced(value, PARAMETER_PART * size)
+            })
+            .collect();
         field.evaluate(&there, &with, &mut rate);
         if rate.iter().all(|value| value.is_finite()) {
             samples.push(rate.clone());
@@ -192,9 +206,10 @@ const RATE: f64 = 1.618_033_988_749_895;
 const SAME_RATE: f64 = 1e-6;
 
 impl<'a, F: VectorField> WithTotals<'a, F> {
-    /// The field with the totals that it conserves at the values that they have at `state`.
-    pub fn at(field: &'a F, state: &[f64], parameters: &[f64]) -> Self {
-        let totals = conserved_totals(field, state, parameters);
+    /// The field with the totals that it conserves at the values that they have at `state`; `varying` are the indices of the
+    /// parameters that are to vary.
+    pub fn at(field: &'a F, state: &[f64], parameters: &[f64], varying: &[usize]) -> Self {
+        let totals = conserved_totals(field, state, parameters, varying);
         let rates = if totals.is_empty() {
             Vec::new()
         } else {

@@ -166,6 +166,13 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
+    fn turns_at(&self, point: &Inspection) -> Option<bool> {
+        match point.special.as_deref()? {
+            SpecialPoint::BranchPoint(point) => Some(point.turns()),
+            _ => None,
+        }
+    }
+
     fn ending(
         &mut self,
         before: &Solution<Inspection>,

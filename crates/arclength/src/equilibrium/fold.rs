@@ -1,5 +1,6 @@
 //! Folds of equilibria and their quadratic coefficient.
 
+use super::coefficient_error;
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{AlgebraicEquations, Differentiator};
@@ -27,6 +28,9 @@ pub struct FoldPoint {
     /// Coefficient `a = <p, B(q, q)>/2` of the normal form `w' = a w^2` on the centre manifold, with `<p, q> = 1`
     /// (Kuznetsov, equation 5.23); `None` where zero is a double eigenvalue, so that `<p, q> = 0`.
     pub quadratic: Option<f64>,
+    /// Error of that coefficient: how much it changes where the equilibrium moves by its own error.
+    #[serde(default)]
+    pub quadratic_error: Option<f64>,
     /// Speed `<p, f_p>` with which the parameter unfolds the fold; `None` as for `quadratic`.
     pub unfolding: Option<f64>,
 }
@@ -63,6 +67,7 @@ impl FoldPoint {
     pub(crate) fn at(
         problem: &EquilibriumProblem<'_>,
         unknown: &[f64],
+        scales: &[f64],
         location_error: f64,
     ) -> Result<Self, Error> {
         let n = problem.dimension;
@@ -77,8 +82,24 @@ impl FoldPoint {
         along[n + active] = 1.0;
         let quadratic = simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
         let unfolding = simple.then(|| project(forms.real(&[&along])));
+        let quadratic_error = quadratic.and_then(|value| {
+            let place = (&state[..], &parameters[..]);
+            let part = location_error / scales[n];
+            let [error] = coefficient_error::errors([value], place, scales, part, |state, parameters| {
+                let moved = EquilibriumProblem::new(problem.field, parameters, &[]);
+                let (right, left, simple) = null_vectors(&moved, state).ok()?;
+                let square =
+                    MultilinearForms { field: problem.field, state, parameters }.real(&[&right, &right]);
+                let product: f64 = square.iter().zip(&left).map(|(value, p)| value * p).sum();
+                // A null vector may have either sign.
+                let sign = right.iter().zip(&null_vector).map(|(a, b)| a * b).sum::<f64>().signum();
+                simple.then_some([0.5 * sign * product])
+            })?;
+            Some(error)
+        });
         Ok(Self {
             quadratic,
+            quadratic_error,
             unfolding,
             value: parameters[active],
             parameters,

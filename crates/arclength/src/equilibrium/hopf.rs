@@ -1,5 +1,6 @@
 //! Hopf points: frequency, speed of crossing and first Lyapunov coefficient.
 
+use super::coefficient_error;
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu};
@@ -37,9 +38,12 @@ pub struct HopfPoint {
     /// First Lyapunov coefficient in Kuznetsov's scaling, `Re(...)/(2 omega)` with `<q, q> = <p, q> = 1`; `None` where it
     /// does not exist because another eigenvalue is zero.
     pub first_lyapunov: Option<f64>,
+    /// Error of that coefficient: how much it changes where the equilibrium moves by its own error.
+    #[serde(default)]
+    pub first_lyapunov_error: Option<f64>,
     /// The first Lyapunov coefficient times `omega`, MatCont's scaling: the real part of the coefficient of `z |z|^2`.
     pub c1_real: Option<f64>,
-    /// Sense of the bifurcation.
+    /// Sense of the bifurcation; degenerate where the coefficient is zero within its error.
     pub criticality: Criticality,
 }
 
@@ -58,12 +62,23 @@ impl HopfPoint {
         let active = problem.active[0];
         let local = CriticalPair::at(problem.field, &state, &parameters, frequency, scales)?;
         let first = local.first_lyapunov();
-        let criticality = match first {
-            Some((value, size)) if value < -DEGENERATE * size => Criticality::Supercritical,
-            Some((value, size)) if value > DEGENERATE * size => Criticality::Subcritical,
+        let first_lyapunov_error = first.and_then(|(value, _)| {
+            let place = (&state[..], &parameters[..]);
+            let part = location_error / scales[n];
+            let [error] = coefficient_error::errors([value], place, scales, part, |state, parameters| {
+                let near = CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()?;
+                near.first_lyapunov().map(|(value, _)| [value])
+            })?;
+            Some(error)
+        });
+        let criticality = match (first, first_lyapunov_error) {
+            (Some((value, size)), Some(error)) if value.abs() > error.max(DEGENERATE * size) => {
+                if value < 0.0 { Criticality::Supercritical } else { Criticality::Subcritical }
+            }
             _ => Criticality::Degenerate,
         };
         Ok(Self {
+            first_lyapunov_error,
             crossing_speed: local.crossing_speed(active),
             first_lyapunov: first.map(|(value, _)| value),
             c1_real: first.map(|(value, _)| value * frequency),

@@ -115,7 +115,7 @@ pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
         let Ok(solved) = solve_square(&system, &start, &sizes) else { continue };
         let unknown = [&solved.unknown[..n], &solved.unknown[2 * n..]].concat();
         if inside(&scales, before, distance, &unknown) {
-            let point = FoldPoint::at(&curve.system.problem, &unknown, location_error(&solved))?;
+            let point = FoldPoint::at(&curve.system.problem, &unknown, &scales, location_error(&solved))?;
             return complete(curve, before, unknown, SpecialPoint::Fold(point));
         }
     }

@@ -6,6 +6,7 @@
 
 mod branch;
 mod branch_point;
+pub(crate) mod coefficient_error;
 mod conservation;
 mod contract;
 mod curve;

@@ -30,7 +30,7 @@ pub struct CodimensionTwoPoint {
     /// Its eigenvalues.
     pub eigenvalues: Vec<Complex64>,
     /// Coefficients of the normal form by name. Cusp: `c` of `w' = c w^3`; Bogdanov-Takens: `a` and `b` of
-    /// `w0' = w1, w1' = a w0^2 + b w0 w1`; generalised Hopf: `second_lyapunov`, `Re(c2)/omega` with `<q, q> = 1`.
+    /// `w0' = w1, w1' = a w0^2 + b w0 w1`; generalised Hopf: `second_lyapunov`, `Re(c2)/omega` with `<q, q> = 1`. Behind each stands its error, under its name with `_error`, where it could be measured.
     pub coefficients: Vec<(Cow<'static, str>, f64)>,
     /// Whether Newton's method on the defining system, or the secant method on the curve, located the point; if not, it is
     /// degenerate and was only bracketed.

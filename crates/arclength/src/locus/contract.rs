@@ -99,7 +99,7 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         _before: &Solution<Inspection>,
         after: &Solution<Inspection>,
     ) -> Option<Ending<Infallible>> {
-        if K::KIND != SpecialKind::BranchPoint {
+        if K::KIND != Some(SpecialKind::BranchPoint) {
             return None;
         }
         let perturbation = after.unknown[2 * self.states.len()];

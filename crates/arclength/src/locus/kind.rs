@@ -48,10 +48,10 @@ impl Monitor {
     }
 }
 
-/// A kind of special equilibria of which there are curves in two parameters.
+/// A kind of equilibria of which there are curves in two parameters.
 pub(super) trait LocusKind<'a>: AlgebraicEquations {
-    /// What the curve consists of.
-    const KIND: SpecialKind;
+    /// What the curve consists of; `None` for any equilibria.
+    const KIND: Option<SpecialKind>;
 
     /// Test functions of the points of codimension two on the curve; the directions counted are those of the eigenvalues that
     /// are not critical.
@@ -94,7 +94,7 @@ fn dual(vector: &[f64], scales: &[f64]) -> Vec<f64> {
 
 /// Product of the real eigenvalues, each divided by its modulus plus a tenth of the largest one: changes sign where one of
 /// them passes zero.
-fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
+pub(super) fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
     eigenvalues
         .iter()
         .filter(|value| value.im >= 0.0)
@@ -107,7 +107,7 @@ fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
 }
 
 impl<'a> LocusKind<'a> for FoldSystem<'a> {
-    const KIND: SpecialKind = SpecialKind::Fold;
+    const KIND: Option<SpecialKind> = Some(SpecialKind::Fold);
     const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
         TestFunction::new(SpecialKind::Cusp).changing(&[0]),
         TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
@@ -188,7 +188,7 @@ fn products(one: &[f64], other: &[f64], scales: &[f64]) -> f64 {
 }
 
 impl<'a> LocusKind<'a> for HopfSystem<'a> {
-    const KIND: SpecialKind = SpecialKind::Hopf;
+    const KIND: Option<SpecialKind> = Some(SpecialKind::Hopf);
     const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
         TestFunction::new(SpecialKind::BogdanovTakens).changing(&[0]),
         TestFunction::new(SpecialKind::ZeroHopf).changing(&[1]).of_spectrum(),
@@ -297,7 +297,7 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
 }
 
 impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
-    const KIND: SpecialKind = SpecialKind::BranchPoint;
+    const KIND: Option<SpecialKind> = Some(SpecialKind::BranchPoint);
     const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
         TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
         TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),

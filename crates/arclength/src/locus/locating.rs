@@ -35,8 +35,10 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     distance: f64,
     kind: SpecialKind,
 ) -> Result<Option<Node>, Error> {
-    // On a curve of branch points the defining systems of the others are singular.
-    let by_secant = kind == SpecialKind::GeneralizedHopf || K::KIND == SpecialKind::BranchPoint;
+    // On a curve of branch points the defining systems of the others are singular; where a quantity is held the curve itself
+    // says where a point lies.
+    let by_secant =
+        kind == SpecialKind::GeneralizedHopf || matches!(K::KIND, None | Some(SpecialKind::BranchPoint));
     if !by_secant {
         for tolerance in BRACKETS {
             let near = near_zero(curve, before, after, tolerance, kind);
@@ -94,9 +96,12 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
     });
     let unknown = near.unknown.clone();
     // Two real eigenvalues of opposite sign are no pair on the axis.
-    let eigenvalues = without(&near.point.spectrum.eigenvalues, &[Complex64::ZERO]);
+    let zero = [Complex64::ZERO];
+    let removed = if kind == SpecialKind::Hopf { &zero[..0] } else { &zero };
+    let eigenvalues = without(&near.point.spectrum.eigenvalues, removed);
     let pair = critical_pair(&eigenvalues);
-    if by_secant && kind == SpecialKind::ZeroHopf && pair.is_none_or(|pair| pair[0].im == 0.0) {
+    let has_pair = matches!(kind, SpecialKind::ZeroHopf | SpecialKind::Hopf);
+    if by_secant && has_pair && pair.is_none_or(|pair| pair[0].im == 0.0) {
         return Ok(None);
     }
     Ok(Some(complete(curve, near, unknown, error, kind, by_secant)?))
@@ -160,8 +165,12 @@ fn complete<'a, K: LocusKind<'a>>(
     let parameters = problem.parameters_at(&values);
     let active = [problem.active[0], problem.active[1]];
     let frequency = near.point.monitor.frequency;
-    let coefficients =
-        normal_form::coefficients(kind, problem.field, &unknown[..n], &parameters, &curve.states, frequency);
+    let part =
+        location_error.iter().zip(curve.ranges).map(|(error, range)| error / range).fold(0.0, f64::max);
+    let place = (&unknown[..n], &parameters[..]);
+    let coefficients = normal_form::with_errors(place, &curve.states, part, |state, parameters| {
+        normal_form::coefficients(kind, problem.field, state, parameters, &curve.states, frequency)
+    });
     let point = CodimensionTwoPoint {
         kind,
         parameters,

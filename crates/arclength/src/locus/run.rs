@@ -2,6 +2,8 @@
 
 use super::branch::{EquilibriumLocusBranch, LocusPoint};
 use super::curve::{Inspection, LocusCurve};
+use super::held::Held;
+use super::held_equilibria::HeldSystem;
 use super::kind::LocusKind;
 use super::request::{TwoParameters, point_forward};
 use crate::algebraic::Differentiator;
@@ -11,7 +13,8 @@ use crate::branch::{
 };
 use crate::continuation::events::around_start;
 use crate::continuation::{
-    BothWays, Observer, Request, Settings, Solution, Stop, both_ways, exact_start, follow,
+    BothWays, Observer, Request, Settings, Solution, Stop, both_ways, correct, exact_start, follow,
+    metric_image,
 };
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use crate::equilibrium::problem::EquilibriumProblem;
@@ -23,6 +26,9 @@ use crate::linear::eigenvectors::left_eigenvector;
 use num_complex::Complex64;
 use std::convert::Infallible;
 
+/// Part of its range by which a parameter may lie outside by rounding where the curve starts.
+const START_ROUNDING: f64 = 1e-12;
+
 /// Where a curve of special equilibria starts.
 #[derive(Clone, Debug)]
 pub enum EquilibriumLocusStart {
@@ -32,6 +38,8 @@ pub enum EquilibriumLocusStart {
     Hopf(Box<HopfPoint>),
     /// A branch point.
     BranchPoint(Box<BranchPoint>),
+    /// Any equilibrium, a state with all parameters, on which a quantity keeps its value.
+    Held(Held<[f64]>, Vec<f64>, Vec<f64>),
 }
 
 impl Problem for Option<EquilibriumLocusStart> {
@@ -42,7 +50,7 @@ impl Problem for Option<EquilibriumLocusStart> {
     }
 }
 
-/// A curve of folds, Hopf points or branch points of equilibria, followed both ways from one of them while two parameters
+/// A curve of folds, Hopf points or branch points of equilibria, or of any equilibria on which a quantity keeps its value, followed both ways from one of them while two parameters
 /// vary over ranges.
 ///
 /// ```
@@ -90,6 +98,12 @@ impl<'a> EquilibriumLocus<'a> {
         self
     }
 
+    /// Starts at any equilibrium, with all parameters there, and follows the equilibria on which a quantity keeps its value.
+    pub fn from_held_equilibrium(mut self, held: Held<[f64]>, state: &[f64], parameters: &[f64]) -> Self {
+        self.start = Some(EquilibriumLocusStart::Held(held, state.to_vec(), parameters.to_vec()));
+        self
+    }
+
     /// Follows the curve.
     ///
     /// # Errors
@@ -98,14 +112,20 @@ impl<'a> EquilibriumLocus<'a> {
     pub fn run(mut self) -> Result<EquilibriumLocusBranch, Error> {
         let (active, bounds) = self.active(2)?;
         let start = self.start.clone();
-        let start =
-            start.ok_or_else(|| invalid("start", "nothing", "a fold, a Hopf point or a branch point"))?;
+        let start = start.ok_or_else(|| {
+            invalid(
+                "start",
+                "nothing",
+                "a fold, a Hopf point, a branch point or an equilibrium with a held quantity",
+            )
+        })?;
         let (kind, state, parameters) = match &start {
-            EquilibriumLocusStart::Fold(point) => (SpecialKind::Fold, &point.state, &point.parameters),
-            EquilibriumLocusStart::Hopf(point) => (SpecialKind::Hopf, &point.state, &point.parameters),
+            EquilibriumLocusStart::Fold(point) => (Some(SpecialKind::Fold), &point.state, &point.parameters),
+            EquilibriumLocusStart::Hopf(point) => (Some(SpecialKind::Hopf), &point.state, &point.parameters),
             EquilibriumLocusStart::BranchPoint(point) => {
-                (SpecialKind::BranchPoint, &point.state, &point.parameters)
+                (Some(SpecialKind::BranchPoint), &point.state, &point.parameters)
             }
+            EquilibriumLocusStart::Held(_, state, parameters) => (None, state, parameters),
         };
         let n = self.field.dimension();
         let names = self.field.parameter_names();
@@ -134,7 +154,7 @@ impl<'a> EquilibriumLocus<'a> {
         followed.mark_requested(at, |solution| ordered.bounds[0].value(&solution.unknown));
         let place = (&run.parameters[..], &active[..]);
         let branch = Branch::assemble(&run.field, place, followed, |solution, label| point(&solution, label));
-        Ok(Branch { kind: Some(kind), ..branch })
+        Ok(Branch { kind, ..branch })
     }
 }
 
@@ -194,7 +214,58 @@ impl<'a> Run<'a> {
                 let kind = BranchPointSystem { equilibria, normal: left, scales: scales.clone(), rate: 1.0 };
                 self.follow(kind, unknown, scales, request, observer)
             }
+            EquilibriumLocusStart::Held(held, ..) => {
+                let value = held.value().or_else(|| held.of(state, &self.parameters)).ok_or_else(|| {
+                    invalid(
+                        held.name(),
+                        "a quantity without a value where the curve starts",
+                        "one that has a value",
+                    )
+                })?;
+                let sizes = [&scales[..], &ranges].concat();
+                let kind = HeldSystem { equilibria, held: held.clone(), value, sizes, fastest: 0.0 };
+                let unknown = self.with_held_value(&kind, point, &scales)?;
+                self.follow(kind, unknown, scales, request, observer)
+            }
         }
+    }
+
+    /// The equilibrium near the start on which the quantity to be held has its value, with one of the parameters fixed where
+    /// that is possible, and both inside their ranges.
+    fn with_held_value(
+        &self,
+        kind: &HeldSystem<'a>,
+        start: Vec<f64>,
+        scales: &[f64],
+    ) -> Result<Vec<f64>, Error> {
+        const SOUGHT: &str = "equilibrium on which the quantity to be held has its value";
+        let mut curve = LocusCurve::new(kind.clone(), scales.to_vec(), self.ordered.ranges(), self.settings);
+        let bounds = &self.ordered.bounds;
+        let is_inside =
+            |unknown: &[f64]| bounds.iter().all(|bound| bound.holds(bound.value(unknown), START_ROUNDING));
+        let fixed = [1, 2].map(|from_end| {
+            let mut border = vec![0.0; start.len()];
+            border[start.len() - from_end] = 1.0;
+            border
+        });
+        // At a fold on the curve neither parameter may be fixed: across the curve, then.
+        let across = curve.system.tangent(&start).map(|tangent| metric_image(&curve, &tangent)).ok();
+        let mut failure = None;
+        for border in fixed.into_iter().chain(across) {
+            let mut unknown = start.clone();
+            match correct(&mut curve, &mut unknown, &border, &self.settings) {
+                Ok(_) if is_inside(&unknown) => return Ok(unknown),
+                Ok(_) => {
+                    failure = Some(invalid(
+                        "start",
+                        &format!("{SOUGHT}, outside the ranges"),
+                        "one inside the ranges of both parameters",
+                    ));
+                }
+                Err(cause) => failure = failure.or(Some(Error::NotFound { sought: SOUGHT, cause })),
+            }
+        }
+        Err(failure.unwrap_or(Error::Eigenvalues { quantity: "eigenvalues" }))
     }
 
     fn follow<K: LocusKind<'a> + Clone>(

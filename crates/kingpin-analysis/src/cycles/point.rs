@@ -61,7 +61,11 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
         eigenvalues.iter().map(|eigenvalue| (eigenvalue * period).exp()).collect();
     let nearest =
         multipliers.iter().map(|multiplier| (multiplier - 1.0).norm()).fold(f64::INFINITY, f64::min);
-    let coefficients = [("first_lyapunov", hopf.first_lyapunov), ("c1_real", hopf.detail.c1_real)];
+    let coefficients = [
+        ("first_lyapunov", hopf.first_lyapunov),
+        ("first_lyapunov_error", hopf.detail.first_lyapunov_error),
+        ("c1_real", hopf.detail.c1_real),
+    ];
     let coefficients = coefficients.into_iter().filter_map(|(name, value)| Some((name.to_owned(), value?)));
     Ok(CyclePointResult {
         branch,

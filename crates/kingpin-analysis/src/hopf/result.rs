@@ -39,6 +39,9 @@ pub struct HopfPointResult {
     /// The first Lyapunov coefficient times the frequency, MatCont's scaling.
     #[serde(default)]
     pub c1_real: Option<f64>,
+    /// Error of the first Lyapunov coefficient.
+    #[serde(default)]
+    pub first_lyapunov_error: Option<f64>,
     /// Error estimate of the value.
     #[serde(default)]
     pub location_error: Option<f64>,
@@ -168,6 +171,7 @@ fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPoi
         state: named_state(&point.state),
         label: label(index),
         c1_real: point.detail.c1_real,
+        first_lyapunov_error: point.detail.first_lyapunov_error,
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
         tests: motion.map(named_tests).unwrap_or_default(),

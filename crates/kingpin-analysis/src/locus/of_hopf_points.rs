@@ -53,7 +53,8 @@ impl HopfLocusResult {
     pub(super) fn new(wheel: Wheel, plane: ParameterPlane, from: Origin, curve: &HopfCurve) -> Self {
         let kind = SpecialKind::Hopf;
         let HopfCurve { points, stops, unlocated } = curve;
-        let curve = EquilibriumCurve::new(kind, plane.varying(), from, points, stops, unlocated, named_state);
+        let curve =
+            EquilibriumCurve::new(Some(kind), plane.varying(), from, points, stops, unlocated, named_state);
         Self { wheel, plane, curve }
     }
 }

@@ -2,6 +2,7 @@
 //! are searched again.
 
 use super::count::reachable;
+use super::event::Unlocated;
 use super::node::Node;
 use super::scan::Scan;
 use crate::continuation::corrector::across;
@@ -33,13 +34,15 @@ impl<C: Curve> Scan<'_, C> {
         searches: usize,
     ) -> Result<Vec<EventOf<C>>, Error> {
         self.trials = self.settings.most_trials;
+        let missed = self.unlocated.len();
         self.part([before, after], 1.0)?;
         let found = std::mem::take(&mut self.found);
         if found.is_empty() {
             return self.checked(Vec::new(), before, after, before, 0);
         }
         let origin = before.solution.clone();
-        let placed = self.in_order(found, &origin);
+        let mut placed = self.in_order(found, &origin);
+        self.drop_invented_turns(&mut placed, missed, [before, after]);
         let mut checked = Vec::new();
         let mut group = Vec::new();
         let mut left = Node::new(self.curve, origin);
@@ -75,6 +78,48 @@ impl<C: Curve> Scan<'_, C> {
         placed.sort_by(|one, other| one.0.total_cmp(&other.0));
         placed.dedup_by(|next, previous| self.is_repeated(next, previous));
         placed
+    }
+
+    /// Drops what was taken for a fold and is the turn of the parameter at a branch point.
+    ///
+    /// The branch that leaves a pitchfork to one side turns there. Discretised it is a perturbed one: the orientation changes at the
+    /// branch point, and the parameter may turn beside it, at a fold that satisfies its defining system and does not exist, or
+    /// where no fold can be located. The number of turns tells: folds and branch points at which the parameter turns are
+    /// together odd where its direction differs between both ends, and even where it does not. `missed` are the changes noted
+    /// before this search.
+    fn drop_invented_turns(
+        &mut self,
+        placed: &mut Vec<(f64, EventOf<C>)>,
+        missed: usize,
+        [before, after]: [&Node<C>; 2],
+    ) {
+        let tests = self.curve.test_functions();
+        let Some(index) = tests.iter().position(|test| test.is_turn) else { return };
+        let (Some(here), Some(there)) = (before.readings[index], after.readings[index]) else { return };
+        let turning: Vec<f64> = placed
+            .iter()
+            .filter(|(_, event)| self.curve.turns_at(&event.solution.point) == Some(true))
+            .map(|(place, _)| *place)
+            .collect();
+        if turning.is_empty() || !here.is_decided() || !there.is_decided() {
+            return;
+        }
+        let fold = tests[index].kind;
+        let is_odd = (here.value > 0.0) != (there.value > 0.0);
+        let folds = placed.iter().enumerate().filter(|(_, (_, event))| event.kind == fold);
+        let is_explained = (folds.clone().count() + turning.len()) % 2 == usize::from(is_odd);
+        let is_missed = |change: &Unlocated<C::Kind>| change.kind == Some(fold);
+        if is_explained {
+            let notes = self.unlocated.split_off(missed);
+            self.unlocated.extend(notes.into_iter().filter(|change| !is_missed(change)));
+        } else if !self.unlocated[missed..].iter().any(is_missed) {
+            let distance =
+                |place: f64| turning.iter().map(|turn| (turn - place).abs()).fold(f64::INFINITY, f64::min);
+            let invented = folds.min_by(|(_, one), (_, other)| distance(one.0).total_cmp(&distance(other.0)));
+            if let Some(index) = invented.map(|(index, _)| index) {
+                placed.remove(index);
+            }
+        }
     }
 
     /// Whether two neighbours are one point found twice.

@@ -24,7 +24,8 @@ pub struct CycleLocusPoint {
     pub multipliers: Vec<Complex64>,
     /// Distance of the computed trivial multiplier from 1.
     pub trivial_multiplier_error: f64,
-    /// Error estimate of cycle and eigenfunctions relative to their sizes.
+    /// Error of cycle and eigenfunctions relative to their sizes: what the defect of the polynomials does through the linearised
+    /// equations.
     pub error_estimate: f64,
     /// Argument of the multipliers of a torus bifurcation.
     pub argument: Option<f64>,

@@ -5,11 +5,14 @@ use super::hold::Hold;
 use super::monitor;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
+use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::{error_profile, fit_jumps, fit_mesh};
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
-use crate::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate};
+use crate::continuation::{
+    Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate, metric_image,
+};
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
 use crate::cycle::extrema::{Range, ranges};
@@ -64,6 +67,7 @@ const HALF_SAMPLES: usize = 64;
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
 pub(super) struct Inspection {
+    /// Error of cycle and eigenfunctions relative to their sizes; as long as it is not measured, the local estimate.
     pub error_estimate: f64,
     pub floquet: Floquet,
     pub ranges: Vec<Range>,
@@ -90,6 +94,7 @@ pub(super) struct CycleLocusCurve<'a> {
     second: usize,
     sizes: StateSizes,
     error_estimate: f64,
+    global_error: GlobalError,
     /// Smallest scales of the states: their natural sizes where they rest, otherwise zero.
     least: Vec<f64>,
     /// Sign of the null function of a fold with which its coefficient is positive where the curve starts.
@@ -108,6 +113,7 @@ impl<'a> CycleLocusCurve<'a> {
         (resolution, settings): (Resolution, Settings),
         least: Vec<f64>,
     ) -> Self {
+        let global_error = GlobalError::new(system.collocation.gauss());
         let states = system.collocation.problem.scales.len();
         let kind = system.collocation.problem.kind;
         system.scales = component_scales(&system.collocation.problem.scales, kind, EIGENFUNCTION_WEIGHT);
@@ -120,6 +126,7 @@ impl<'a> CycleLocusCurve<'a> {
             second,
             sizes,
             error_estimate: f64::INFINITY,
+            global_error,
             least,
             sign: None,
             schur: None,
@@ -169,6 +176,21 @@ impl<'a> CycleLocusCurve<'a> {
             all.extend(scales.iter().map(|scale| scale * largest));
         }
         all
+    }
+
+    /// The error of cycle and eigenfunctions at a solution at which the system was factorised last, relative to their sizes: what
+    /// the defect of the polynomials does through the linearised equations, across the curve.
+    fn error(&mut self, unknown: &[f64]) -> f64 {
+        let mut error = self.global_error.of(&mut self.system.collocation, unknown);
+        if let Some(hold) = &self.hold {
+            hold.change_by(0.0, &self.system, &mut error);
+        }
+        let (_, eigenfunctions) = split(unknown, self.states, self.kind());
+        let sizes = self.error_scales(&eigenfunctions);
+        let problem = &self.system.collocation.problem;
+        let (nodes, scalars) = error.split_at(error.len() - problem.scalars());
+        let relative = nodes.iter().zip(sizes.iter().cycle()).map(|(error, size)| error / size);
+        largest(relative.chain([scalars[0] / problem.period_scale]).map(f64::abs))
     }
 
     /// Coefficient of the normal form, and what it counts against; the base has just been factorised.
@@ -226,7 +248,7 @@ impl<'a> CycleLocusCurve<'a> {
             largest = value.map_or(largest, |value| largest.max(value.abs()));
             value
         };
-        let found = match locate(self, before, after, &settings, LOCATION, test) {
+        let mut found = match locate(self, before, after, &settings, LOCATION, test) {
             Ok(Some(found)) => found,
             Ok(None) | Err(Error::NotFound { .. }) => return Ok(Zero::Missed),
             Err(error) => return Err(error),
@@ -246,6 +268,11 @@ impl<'a> CycleLocusCurve<'a> {
             if speed(&found) > TURN * speed(before).max(speed(after)) {
                 return Ok(Zero::Missed);
             }
+        }
+        let border = metric_image(self, &found.tangent);
+        let mut residual = vec![0.0; found.unknown.len()];
+        if self.factorize(&found.unknown, &border, &mut residual) != 0.0 {
+            self.measure(&mut found);
         }
         // The parameters are known as well as the test function: its slope along the bracket gives the error.
         let noise = if coefficient {
@@ -436,6 +463,10 @@ impl Curve for CycleLocusCurve<'_> {
             location_error: None,
             floquet,
         })
+    }
+
+    fn measure(&mut self, solution: &mut Solution<Inspection>) {
+        solution.point.error_estimate = self.error(&solution.unknown);
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {

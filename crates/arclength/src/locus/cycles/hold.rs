@@ -4,10 +4,10 @@
 //! is: by a difference quotient. The equations are therefore factorised with another condition in its place, linear in the
 //! scalars, and corrected by what the quantity says along the direction in which only that condition changes.
 
-use super::held::Held;
 use crate::continuation::{Equations, norm};
 use crate::cycle::Orbit;
 use crate::cycle::locating::DefiningCurve;
+use crate::locus::held::Held;
 
 /// Step of a difference quotient, in the metric of the curve: its error is the square of this, relative to the rates.
 const STEP: f64 = 1e-5;
@@ -97,8 +97,14 @@ impl Hold {
         let row = right_hand_side.len() - 2;
         let wanted = std::mem::take(&mut right_hand_side[row]);
         system.solve(right_hand_side);
-        let missing = (wanted - self.along(system, right_hand_side)) / self.rate;
-        for (entry, slope) in right_hand_side.iter_mut().zip(&self.direction) {
+        self.change_by(wanted, system, right_hand_side);
+    }
+
+    /// Moves a vector along the direction in which only the condition in its place changes, so that the quantity changes by
+    /// `wanted` along it.
+    pub(super) fn change_by(&self, wanted: f64, system: &DefiningCurve<'_>, vector: &mut [f64]) {
+        let missing = (wanted - self.along(system, vector)) / self.rate;
+        for (entry, slope) in vector.iter_mut().zip(&self.direction) {
             *entry += missing * slope;
         }
     }

@@ -8,12 +8,10 @@ mod branch;
 mod curve;
 mod end;
 mod ends;
-mod held;
 mod hold;
 mod monitor;
 mod run;
 
 pub use branch::{CycleLocusBranch, CycleLocusPoint};
 pub use end::CycleLocusEnd;
-pub use held::Held;
 pub use run::{CycleLocus, CycleLocusProblem};

@@ -3,7 +3,6 @@
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
 use super::end::CycleLocusEnd;
-use super::held::Held;
 use super::hold::Hold;
 use crate::branch::{
     Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
@@ -24,6 +23,7 @@ use crate::cycle::{Orbit, Resolution};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
+use crate::locus::held::Held;
 use crate::locus::request::{TwoParameters, point_forward};
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers as people read them, in messages and in tables alike.
 
 /// Significant digits in tables.
 const DIGITS: usize = 8;
@@ -6,7 +6,7 @@ const DIGITS: usize = 8;
 /// A number with eight significant digits, without trailing zeros, in scientific notation where that is shorter.
 ///
 /// ```
-/// use arclength::numbers::readable;
+/// use arclength_numbers::readable;
 /// assert_eq!(readable(8.431036970140001), "8.431037");
 /// assert_eq!(readable(0.0), "0");
 /// assert_eq!(readable(-6.520929e-5), "-6.520929e-5");
@@ -34,6 +34,11 @@ pub fn significant(value: f64, digits: usize) -> String {
 fn trimmed(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }
+
+/// The code of the README, which is tested.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 #[cfg(test)]
 mod tests {
