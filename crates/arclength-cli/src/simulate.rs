@@ -1,8 +1,8 @@
 //! `arclength simulate`: a time history of a model.
 
 use crate::model_options::ModelOptions;
-use arclength_analysis::simulate::SimulateRequest;
-use clap::Args;
+use arclength_analysis::simulate::{IntegrationMethod, SimulateRequest};
+use clap::{Args, ValueEnum};
 use kingpin_terminal::{Failure, OutputOptions};
 
 /// Time history from the initial state of the model
@@ -43,8 +43,30 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "T")]
     max_step: Option<f64>,
 
+    /// Method of integration; auto is the explicit one, and the implicit one where the model is stiff
+    #[arg(long, value_enum, default_value = "auto")]
+    method: Method,
+
     #[command(flatten)]
     output: OutputOptions,
+}
+
+/// Names of methods of integration.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Method {
+    Auto,
+    Explicit,
+    Implicit,
+}
+
+impl From<Method> for IntegrationMethod {
+    fn from(method: Method) -> Self {
+        match method {
+            Method::Auto => Self::Auto,
+            Method::Explicit => Self::Explicit,
+            Method::Implicit => Self::Implicit,
+        }
+    }
 }
 
 impl Simulate {
@@ -63,6 +85,7 @@ impl Simulate {
             bound: self.bound,
             tolerance: self.tolerance,
             max_step: self.max_step,
+            method: self.method.into(),
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());

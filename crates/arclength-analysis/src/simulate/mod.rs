@@ -1,8 +1,9 @@
 //! A time history of a model.
 
+mod flow;
 mod motion;
 mod request;
 mod result;
 
-pub use request::{SimulateAnalysis, SimulateRequest};
+pub use request::{IntegrationMethod, SimulateAnalysis, SimulateRequest};
 pub use result::{Histories, HistoryResult};

@@ -6,7 +6,8 @@
 //!
 //! Samples inside a step come from its dense output, as long as a step of its own to one of them agrees.
 
-use arclength::integration::{IntegrationError, Integrator, Stepper, System, from_fn};
+use super::flow::Flow;
+use arclength::integration::{IntegrationError, Integrator, Method, Stepper, System};
 use arclength_ode::{GivenUp, Model, Switch};
 
 /// Largest difference of a sample from a step of its own, in units of the tolerance.
@@ -23,6 +24,8 @@ pub(super) struct Accuracy {
     pub largest_step: f64,
     /// Largest number of steps.
     pub most_steps: usize,
+    /// Method of integration.
+    pub method: Method,
 }
 
 impl Accuracy {
@@ -31,6 +34,7 @@ impl Accuracy {
             .relative_tolerance(self.relative)
             .absolute_tolerances(&self.absolute)
             .maximum_step(self.largest_step)
+            .method(self.method)
     }
 
     /// The root mean square of the differences of two states in units of their tolerances.
@@ -89,12 +93,7 @@ impl Course<'_> {
                 });
             // A switch where the piece begins only says on which side that is.
             if high > low.max(time) || switch.is_none() {
-                let field = || {
-                    from_fn(self.start.len(), |time: f64, state: &[f64], derivative: &mut [f64]| {
-                        let time = time.min(high).max(low);
-                        self.model.evaluate_at(time, state, self.parameters, derivative);
-                    })
-                };
+                let field = || Flow::new(self.model, self.parameters, [low, high]);
                 if !self.piece(field, (time, end), &mut state, (accuracy, times), &mut motion)? {
                     return Ok(motion);
                 }

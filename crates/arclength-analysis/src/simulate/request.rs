@@ -5,7 +5,7 @@ use super::result::HistoryResult;
 use crate::error::Error;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
-use arclength::integration::IntegrationError;
+use arclength::integration::{IntegrationError, Method};
 use arclength_ode::{NamedSet, Options};
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
@@ -49,6 +49,32 @@ pub struct SimulateRequest {
     /// Largest step of the integrator.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_step: Option<f64>,
+    /// Method of integration.
+    #[serde(default)]
+    pub method: IntegrationMethod,
+}
+
+/// A method of integration by its name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum IntegrationMethod {
+    /// The explicit one, and the implicit one where the model is stiff.
+    #[default]
+    Auto,
+    /// The explicit method of Dormand and Prince, of order 8.
+    Explicit,
+    /// The implicit method Radau IIA, of order 5.
+    Implicit,
+}
+
+impl From<IntegrationMethod> for Method {
+    fn from(method: IntegrationMethod) -> Self {
+        match method {
+            IntegrationMethod::Auto => Self::Automatic,
+            IntegrationMethod::Explicit => Self::Explicit,
+            IntegrationMethod::Implicit => Self::Implicit,
+        }
+    }
 }
 
 /// A request that makes sense, with its model.
@@ -91,6 +117,7 @@ impl SimulateRequest {
             bound: None,
             tolerance: None,
             max_step: None,
+            method: IntegrationMethod::Auto,
         }
     }
 
@@ -158,8 +185,13 @@ impl SimulateRequest {
         let bound =
             self.bound.or_else(|| file.number("bound").filter(|bound| *bound > 0.0)).unwrap_or(f64::INFINITY);
         let states = chosen.model.states().len();
-        let accuracy =
-            Accuracy { relative, absolute: vec![absolute; states], largest_step, most_steps: MOST_STEPS };
+        let accuracy = Accuracy {
+            relative,
+            absolute: vec![absolute; states],
+            largest_step,
+            most_steps: MOST_STEPS,
+            method: self.method.into(),
+        };
         Ok(SimulateAnalysis { chosen, warnings, start, times, bound, absolute, accuracy })
     }
 }

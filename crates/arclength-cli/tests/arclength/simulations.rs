@@ -192,3 +192,21 @@ fn models_are_read_as_xppaut_reads_them() {
         &["line 2, column 1", "boundary conditions", "remove the lines"],
     );
 }
+
+/// Right values: SciPy's `solve_ivp`, method Radau, relative tolerance 1e-13, absolute 1e-16; those of the linear model are 1.
+#[test]
+fn stiff_models_are_followed() {
+    let oregonator =
+        "x'=77.27*(y-x*y+x-8.375e-6*x*x)\ny'=(-y-x*y+z)/77.27\nz'=.161*(x-z)\ninit x=1,y=1,z=1\n";
+    let linear = "par p=1,k=1e12\ninit x=3,y=1\nx'=k*(p-x)\ny'=x-y\n";
+    let van_der_pol = "par mu=1e6\nx'=y\ny'=((1-x^2)*y-x)*mu\ninit x=2\n";
+    for method in ["", "--method implicit"] {
+        let end = |model: &str, duration: &str, state: &str| {
+            let history = simulate(model, &format!("--duration {duration} --points 101 {method}"));
+            *list(&history, "states", state).last().unwrap()
+        };
+        close(end(oregonator, "360", "y") / 742.867_093_089_627_8, 1.0, 1e-7);
+        close(end(linear, "100", "y"), 1.0, 1e-9);
+        close(end(van_der_pol, "2", "x"), 1.706_167_732_170_435_6, 1e-8);
+    }
+}

@@ -5,7 +5,7 @@ use crate::collocation::mesh::dividing_equally;
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
-use crate::integration::{Event, Integrator, Stepper, autonomous};
+use crate::integration::{Event, Integrator, Method, Stepper, autonomous};
 use serde::{Deserialize, Serialize};
 
 /// A periodic orbit, piecewise polynomial in the unit time `t / period`.
@@ -202,7 +202,7 @@ impl Orbit {
         let position = |state: &[f64]| {
             normal.iter().zip(state).zip(initial).map(|((n, x), x0)| n * (x - x0)).sum::<f64>()
         };
-        let integrator = Integrator::with_tolerance(HISTORY_TOLERANCE);
+        let integrator = Integrator::with_tolerance(HISTORY_TOLERANCE).method(Method::Automatic);
         let mut events = [Event::new(|_, state: &[f64]| position(state)).rising()];
         let system = autonomous(field, parameters);
         let history = integrator.with_events(system, 0.0, initial, longest_period, &[], &mut events)?;

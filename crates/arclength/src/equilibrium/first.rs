@@ -6,10 +6,11 @@
 
 use super::newton::find_erased;
 use crate::algebraic::scales::natural_scales;
+use crate::differentiation::Dual;
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
-use crate::integration::{Integrator, Stepper, from_fn};
+use crate::integration::{Integrator, Method, Stepper, System, exact_jacobian};
 use crate::random::Random;
 
 /// How an equilibrium was found.
@@ -108,6 +109,28 @@ pub(crate) fn seek_erased(
     Err(failure)
 }
 
+/// The flow of a field of unknown type.
+struct Flow<'a> {
+    field: ErasedField<'a>,
+    parameters: &'a [f64],
+    dimension: usize,
+}
+
+impl System for Flow<'_> {
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
+        self.field.evaluate(state, self.parameters, derivative);
+    }
+
+    fn jacobian(&mut self, _time: f64, state: &[f64], jacobian: &mut [f64]) {
+        let parameters: Vec<_> = self.parameters.iter().map(|value| Dual::constant(*value)).collect();
+        exact_jacobian(|state, slope| self.field.evaluate(state, &parameters, slope), state, jacobian);
+    }
+}
+
 /// The first equilibrium that is found from a state on the way of the flow; `visited` grows to the ranges of the states.
 fn along_flow(
     field: ErasedField<'_>,
@@ -116,8 +139,8 @@ fn along_flow(
     visited: &mut [[f64; 2]],
     found_from: impl Fn(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Vec<f64>> {
-    let system = from_fn(start.len(), |_, state, derivative| field.evaluate(state, parameters, derivative));
-    let integrator = Integrator::with_tolerance(FLOW_TOLERANCE);
+    let system = Flow { field, parameters, dimension: start.len() };
+    let integrator = Integrator::with_tolerance(FLOW_TOLERANCE).method(Method::Automatic);
     let mut stepper = Stepper::new(system, &integrator, 0.0, start, FLOW_TIME).ok()?;
     for step in 1..=FLOW_STEPS {
         if stepper.is_finished() || stepper.advance().is_err() {

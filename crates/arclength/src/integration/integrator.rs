@@ -5,6 +5,18 @@ use super::IntegrationError;
 /// Smallest relative tolerance: below it the error estimate is rounding.
 const SMALLEST_RELATIVE_TOLERANCE: f64 = 10.0 * f64::EPSILON;
 
+/// By which method an integration is advanced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The explicit Runge-Kutta method of order 8.
+    #[default]
+    Explicit,
+    /// The implicit Runge-Kutta method Radau IIA of order 5, for stiff problems.
+    Implicit,
+    /// The explicit one, and the implicit one where the problem is stiff.
+    Automatic,
+}
+
 /// Tolerances and limits of an integration.
 ///
 /// A step is accepted when the root mean square over the components of error / (absolute + relative |x|)
@@ -31,10 +43,11 @@ pub struct Integrator {
     pub(super) initial_step: Option<f64>,
     pub(super) maximum_step: f64,
     pub(super) maximum_steps: usize,
+    pub(super) method: Method,
 }
 
 impl Default for Integrator {
-    /// Relative tolerance 1e-10, absolute tolerance 1e-12, at most a million steps of any size.
+    /// Relative tolerance 1e-10, absolute tolerance 1e-12, at most a million steps of any size, by the explicit method.
     fn default() -> Self {
         Self {
             relative_tolerance: 1e-10,
@@ -42,6 +55,7 @@ impl Default for Integrator {
             initial_step: None,
             maximum_step: f64::INFINITY,
             maximum_steps: 1_000_000,
+            method: Method::Explicit,
         }
     }
 }
@@ -86,6 +100,19 @@ impl Integrator {
     pub fn maximum_steps(mut self, steps: usize) -> Self {
         self.maximum_steps = steps;
         self
+    }
+
+    /// Sets the method.
+    pub fn method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// Size of what is left to be found of the stages of an implicit step, in units of the tolerance: well below the error of the
+    /// step, above rounding.
+    pub(super) fn newton_tolerance(&self) -> f64 {
+        let rounding = 10.0 * f64::EPSILON / self.relative_tolerance.max(f64::EPSILON);
+        self.relative_tolerance.sqrt().min(0.03).max(1e-3).max(rounding.min(0.1))
     }
 
     /// Refuses settings that are out of range for a system of `dimension` equations.

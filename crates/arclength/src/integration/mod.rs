@@ -3,7 +3,8 @@
 //! An [`Integrator`] holds tolerances and limits and runs the explicit Runge-Kutta method of
 //! Dormand and Prince of order 8(5,3) with dense output of order 7 and PI step control (Hairer,
 //! Norsett and Wanner, *Solving Ordinary Differential Equations I*, 2nd edition, 1993, sections
-//! II.4 to II.6). It integrates any [`System`]: a [`VectorField`](crate::VectorField) with its parameters
+//! II.4 to II.6), or the implicit one Radau IIA of order 5 for stiff problems, or one or the other as the problem asks for
+//! ([`Method`]). It integrates any [`System`]: a [`VectorField`](crate::VectorField) with its parameters
 //! ([`autonomous`]), a closure ([`from_fn`]), or the variational equations of a vector field
 //! ([`VariationalEquations`], [`state_transition_matrix`]). Solutions can be sampled at given
 //! times, and zeros of event functions ([`Event`]) are located to rounding.
@@ -26,8 +27,10 @@ mod equal_steps;
 mod error;
 mod event;
 mod integrator;
+mod radau;
 mod solution;
 mod stepper;
+mod stiffness;
 mod system;
 mod tableau;
 mod variational;
@@ -38,8 +41,8 @@ mod tests;
 pub(crate) use equal_steps::equal_steps;
 pub use error::IntegrationError;
 pub use event::{Crossing, Direction, Event};
-pub use integrator::Integrator;
+pub use integrator::{Integrator, Method};
 pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
-pub use system::{Autonomous, ClosureSystem, System, autonomous, from_fn};
+pub use system::{Autonomous, ClosureSystem, JacobianColumns, System, autonomous, exact_jacobian, from_fn};
 pub use variational::{StateTransition, VariationalEquations, state_transition_matrix};

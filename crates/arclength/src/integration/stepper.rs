@@ -1,5 +1,8 @@
-//! One step at a time: the Runge-Kutta stages, the error estimate, step control and dense output.
+//! One step at a time: the Runge-Kutta stages, the error estimate, step control and dense output; or an implicit step.
 
+use super::integrator::Method;
+use super::radau::{Origin, Radau};
+use super::stiffness::StiffnessWatch;
 use super::tableau::{
     DENSE, DENSE_COEFFICIENTS, ERROR_FIFTH_ORDER, ERROR_THIRD_ORDER, MATRIX, NODES, Row, STAGES,
     STAGES_WITH_DENSE_OUTPUT,
@@ -18,6 +21,9 @@ const PI_EXPONENT: f64 = 1.0 / 8.0 - 0.2 * PI_WEIGHT;
 const SMALLEST_ERROR: f64 = 1e-4;
 /// Factor on a step whose stages were not finite.
 const NOT_FINITE_RATIO: f64 = 0.25;
+
+/// The first implicit step where explicit ones are too short to be told apart, in units of the shortest that can.
+const FIRST_STEP: f64 = 100.0;
 
 /// Work done by an integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,6 +70,11 @@ pub struct Stepper<S> {
     step: f64,
     previous_error: f64,
     statistics: Statistics,
+    implicit: Option<Box<Radau>>,
+    is_implicit: bool,
+    /// Whether the last step was an implicit one.
+    last_is_implicit: bool,
+    watch: StiffnessWatch,
 }
 
 impl<S: System> Stepper<S> {
@@ -96,6 +107,10 @@ impl<S: System> Stepper<S> {
             step: 0.0,
             previous_error: SMALLEST_ERROR,
             statistics: Statistics::default(),
+            implicit: None,
+            is_implicit: settings.method == Method::Implicit,
+            last_is_implicit: false,
+            watch: StiffnessWatch::new(),
         };
         stepper.restart(time, state, end)?;
         Ok(stepper)
@@ -124,6 +139,10 @@ impl<S: System> Stepper<S> {
         self.previous_time = time;
         self.end = end;
         self.dense_is_ready = false;
+        self.last_is_implicit = false;
+        if let Some(radau) = &mut self.implicit {
+            radau.restart();
+        }
         self.previous_error = SMALLEST_ERROR;
         let last = (STAGES - 1) * self.dimension..STAGES * self.dimension;
         self.system.evaluate(time, &self.state, &mut self.stages[last.clone()]);
@@ -163,6 +182,11 @@ impl<S: System> Stepper<S> {
         self.time == self.end
     }
 
+    /// Whether the next step will be one of the implicit method.
+    pub fn is_implicit(&self) -> bool {
+        self.is_implicit
+    }
+
     /// Work done so far.
     pub fn statistics(&self) -> Statistics {
         self.statistics
@@ -188,11 +212,40 @@ impl<S: System> Stepper<S> {
                 steps: self.statistics.accepted_steps,
             });
         }
+        if self.is_implicit {
+            self.advance_implicitly()?;
+            if self.settings.method == Method::Automatic {
+                self.leave_implicit_steps();
+            }
+            return Ok(());
+        }
+        match self.advance_explicitly() {
+            Ok(()) => {
+                if self.settings.method == Method::Automatic && self.watch.looks() {
+                    let rate = self.fastest_rate_times_step();
+                    if self.watch.is_stiff(rate) {
+                        self.begin_implicit_steps();
+                    }
+                }
+                Ok(())
+            }
+            // A problem may be too stiff for its first steps.
+            Err(IntegrationError::StepTooSmall { .. }) if self.settings.method == Method::Automatic => {
+                self.begin_implicit_steps();
+                self.step = self.smallest_step() * FIRST_STEP;
+                self.advance_implicitly()
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn advance_explicitly(&mut self) -> Result<(), IntegrationError> {
         let direction = (self.end - self.time).signum();
         let remaining = (self.end - self.time).abs();
         // The slope at the end of the last step is the first stage of this one.
         self.stages.copy_within((STAGES - 1) * self.dimension..STAGES * self.dimension, 0);
         self.dense_is_ready = false;
+        self.last_is_implicit = false;
         let mut was_finite = true;
         let mut was_rejected = false;
         let mut step = self.step.min(self.settings.maximum_step);
@@ -202,7 +255,7 @@ impl<S: System> Stepper<S> {
             if is_last {
                 step = remaining;
             }
-            if step <= 4.0 * f64::EPSILON * self.time.abs() && !is_last || step == 0.0 {
+            if step <= self.smallest_step() && !is_last || step == 0.0 {
                 self.restore_slope();
                 return Err(if was_finite {
                     IntegrationError::StepTooSmall { time: self.time, step }
@@ -234,6 +287,105 @@ impl<S: System> Stepper<S> {
             self.statistics.rejected_steps += 1;
             was_rejected = true;
             step *= factor.min(SAFETY);
+            self.step = step;
+        }
+    }
+
+    fn smallest_step(&self) -> f64 {
+        4.0 * f64::EPSILON * self.time.abs()
+    }
+
+    fn begin_implicit_steps(&mut self) {
+        self.is_implicit = true;
+        if let Some(radau) = &mut self.implicit {
+            radau.restart();
+        }
+    }
+
+    /// Goes back to explicit steps where these would do as well.
+    fn leave_implicit_steps(&mut self) {
+        let Some(radau) = &mut self.implicit else { return };
+        let rate = radau.spectral_radius();
+        if self.watch.is_over(rate * (self.time - self.previous_time).abs()) {
+            self.is_implicit = false;
+            self.step = self.step.min(1.0 / rate.max(f64::MIN_POSITIVE));
+            self.previous_error = SMALLEST_ERROR;
+        }
+    }
+
+    /// The fastest rate by which slopes differ at the end of an explicit step, times the step.
+    fn fastest_rate_times_step(&self) -> f64 {
+        let step = self.time - self.previous_time;
+        let last = STAGES - 1;
+        let (mut slopes, mut states) = (0.0, 0.0);
+        for index in 0..self.dimension {
+            let scale = self.settings.scale(index, self.state[index].abs());
+            let slope =
+                self.stages[last * self.dimension + index] - self.stages[(last - 1) * self.dimension + index];
+            let way = self.combination(MATRIX[last], index) - self.combination(MATRIX[last - 1], index);
+            slopes += (slope / scale).powi(2);
+            states += (step * way / scale).powi(2);
+        }
+        if states > 0.0 { step.abs() * (slopes / states).sqrt() } else { 0.0 }
+    }
+
+    fn advance_implicitly(&mut self) -> Result<(), IntegrationError> {
+        let n = self.dimension;
+        let radau = self.implicit.get_or_insert_with(|| Box::new(Radau::new(n)));
+        let direction = (self.end - self.time).signum();
+        let remaining = (self.end - self.time).abs();
+        let smallest = 4.0 * f64::EPSILON * self.time.abs();
+        let last = (STAGES - 1) * n..STAGES * n;
+        self.dense_is_ready = false;
+        let (mut was_rejected, mut was_finite) = (false, true);
+        let mut step = self.step.min(self.settings.maximum_step);
+        loop {
+            let is_last = step * (1.0 + 1e-10) >= remaining;
+            if is_last {
+                step = remaining;
+            }
+            if step <= smallest && !is_last || step == 0.0 {
+                return Err(if was_finite {
+                    IntegrationError::StepTooSmall { time: self.time, step }
+                } else {
+                    IntegrationError::NotFinite { time: self.time }
+                });
+            }
+            let end = if is_last { self.end } else { self.time + direction * step };
+            let (slope, behind) = self.stages.split_at_mut(n);
+            let behind = &behind[..last.end - n];
+            let origin = Origin {
+                time: self.time,
+                state: &self.state,
+                slope: &behind[last.start - n..],
+                step: end - self.time,
+            };
+            let trial =
+                radau.try_step(&mut self.system, &self.settings, origin, was_rejected, &mut self.trial);
+            self.statistics.evaluations += trial.evaluations;
+            was_finite = trial.error.is_finite();
+            if trial.error <= 1.0 {
+                self.system.evaluate(end, &self.trial, slope);
+                self.statistics.evaluations += 1;
+                was_finite = slope.iter().all(|slope| slope.is_finite());
+            }
+            if trial.error <= 1.0 && was_finite {
+                let factor = radau.accept(origin, trial);
+                self.stages.copy_within(..n, last.start);
+                self.statistics.accepted_steps += 1;
+                self.previous_time = self.time;
+                self.time = end;
+                std::mem::swap(&mut self.state, &mut self.previous_state);
+                std::mem::swap(&mut self.state, &mut self.trial);
+                let proposal = step * if was_rejected { factor.min(1.0) } else { factor };
+                self.step = if is_last { proposal.max(self.step) } else { proposal };
+                self.last_is_implicit = true;
+                self.dense_is_ready = true;
+                return Ok(());
+            }
+            self.statistics.rejected_steps += 1;
+            was_rejected = true;
+            step *= if was_finite { trial.factor.min(SAFETY) } else { NOT_FINITE_RATIO };
             self.step = step;
         }
     }
@@ -342,7 +494,7 @@ impl<S: System> Stepper<S> {
         self.dense_is_ready = true;
     }
 
-    /// State at a time in the last step, of order 7, after [`Stepper::prepare_dense_output`].
+    /// State at a time in the last step, of order 7, or 3 in an implicit step, after [`Stepper::prepare_dense_output`].
     ///
     /// `state` must have the dimension of the system. Before the first step it is the initial state.
     pub fn interpolate(&self, time: f64, state: &mut [f64]) {
@@ -352,6 +504,10 @@ impl<S: System> Stepper<S> {
             } else {
                 &self.state
             });
+            return;
+        }
+        if let Some(radau) = self.implicit.as_ref().filter(|_| self.last_is_implicit) {
+            radau.interpolate(time, state);
             return;
         }
         let x = (time - self.previous_time) / (self.time - self.previous_time);

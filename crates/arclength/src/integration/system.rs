@@ -1,6 +1,7 @@
 //! Systems of ordinary differential equations that can be integrated.
 
 use crate::VectorField;
+use crate::differentiation::Dual;
 
 /// The right-hand side of `x' = f(t, x)`.
 ///
@@ -11,6 +12,55 @@ pub trait System {
 
     /// Writes `f(time, state)` into `derivative`; outside its domain, numbers that are not finite.
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]);
+
+    /// Writes the derivatives of the right-hand side with respect to the state into `jacobian`, column by column; by default they are
+    /// difference quotients. Implicit methods use them.
+    fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
+        let n = state.len();
+        let (mut point, mut slope) = (state.to_vec(), vec![0.0; n]);
+        self.evaluate(time, state, &mut slope);
+        for (index, column) in jacobian.chunks_exact_mut(n.max(1)).enumerate() {
+            point[index] += f64::EPSILON.sqrt() * state[index].abs().max(SMALLEST_SIZE);
+            self.evaluate(time, &point, column);
+            let difference = point[index] - state[index];
+            column.iter_mut().zip(&slope).for_each(|(entry, slope)| *entry = (*entry - slope) / difference);
+            point[index] = state[index];
+        }
+    }
+}
+
+/// Size of a state from which difference quotients are not finer.
+const SMALLEST_SIZE: f64 = 1e-5;
+
+/// Directions in which a right-hand side is differentiated at once.
+const DIRECTIONS: usize = 4;
+
+/// A scalar that carries some columns of a Jacobian.
+pub type JacobianColumns = Dual<f64, DIRECTIONS>;
+
+/// Writes the exact Jacobian of a right-hand side, column by column, by automatic differentiation; `evaluate` writes the derivative at a
+/// state.
+pub fn exact_jacobian(
+    mut evaluate: impl FnMut(&[JacobianColumns], &mut [JacobianColumns]),
+    state: &[f64],
+    jacobian: &mut [f64],
+) {
+    let n = state.len();
+    let mut point: Vec<JacobianColumns> = state.iter().map(|value| Dual::constant(*value)).collect();
+    let mut slope = vec![Dual::constant(0.0); n];
+    for first in (0..n).step_by(DIRECTIONS) {
+        let last = n.min(first + DIRECTIONS);
+        (first..last).for_each(|index| point[index] = Dual::variable(state[index], index - first));
+        evaluate(&point, &mut slope);
+        for index in first..last {
+            let column = &mut jacobian[index * n..(index + 1) * n];
+            column
+                .iter_mut()
+                .zip(&slope)
+                .for_each(|(entry, slope)| *entry = slope.derivatives[index - first]);
+            point[index] = Dual::constant(state[index]);
+        }
+    }
 }
 
 impl<S: System> System for &mut S {
@@ -20,6 +70,9 @@ impl<S: System> System for &mut S {
     #[inline]
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]) {
         (**self).evaluate(time, state, derivative);
+    }
+    fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
+        (**self).jacobian(time, state, jacobian);
     }
 }
 
@@ -66,5 +119,9 @@ impl<F: VectorField> System for Autonomous<'_, F> {
     #[inline]
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         self.field.evaluate(state, self.parameters, derivative);
+    }
+    fn jacobian(&mut self, _time: f64, state: &[f64], jacobian: &mut [f64]) {
+        let parameters: Vec<JacobianColumns> = self.parameters.iter().map(|p| Dual::constant(*p)).collect();
+        exact_jacobian(|state, slope| self.field.evaluate(state, &parameters, slope), state, jacobian);
     }
 }

@@ -1,4 +1,4 @@
-//! LU factorisation of complex matrices that are singular on purpose, as inverse iteration needs it.
+//! LU factorisation of complex matrices: those of implicit steps, and those that are singular on purpose, as inverse iteration needs it.
 //!
 //! Inverse iteration solves with `A - lambda I` where `lambda` is an eigenvalue: a vanishing pivot is
 //! expected and is replaced by one of the size of the rounding errors (Wilkinson 1965, chapter 9), so that
@@ -8,7 +8,7 @@ use num_complex::Complex64;
 
 /// `P A = L U` with partial pivoting, column-major in place of `A`.
 #[derive(Clone, Debug)]
-pub(super) struct ComplexLu {
+pub(crate) struct ComplexLu {
     n: usize,
     factors: Vec<Complex64>,
     pivots: Vec<usize>,
@@ -20,7 +20,7 @@ fn size(z: Complex64) -> f64 {
 
 impl ComplexLu {
     /// Factorises `matrix`; pivots smaller than `smallest_pivot`, which must be positive, are replaced by it.
-    pub(super) fn of(n: usize, mut matrix: Vec<Complex64>, smallest_pivot: f64) -> Self {
+    pub(crate) fn of(n: usize, mut matrix: Vec<Complex64>, smallest_pivot: f64) -> Self {
         let mut pivots = vec![0; n];
         for k in 0..n {
             let mut pivot = k;
@@ -53,7 +53,7 @@ impl ComplexLu {
     }
 
     /// Solves `A x = b` in place of `b`.
-    pub(super) fn solve(&self, vector: &mut [Complex64]) {
+    pub(crate) fn solve(&self, vector: &mut [Complex64]) {
         let n = self.n;
         for (k, pivot) in self.pivots.iter().enumerate() {
             vector.swap(k, *pivot);
