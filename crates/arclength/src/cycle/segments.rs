@@ -241,7 +241,8 @@ impl Segments {
                 let Dual { value, derivatives: [rate] } = results[n + border.switch];
                 let change = (value - border.value) / rate;
                 delay -= change;
-                if !(delay.abs() <= reach) || (rate > 0.0) != border.upwards {
+                let is_near = delay.abs() <= reach;
+                if !is_near || (rate > 0.0) != border.upwards {
                     return None;
                 }
                 let is_rounding = change.abs() <= STAGNATION * period && change.abs() >= last_change;
