@@ -112,7 +112,7 @@ impl Integrator {
     /// step, above rounding.
     pub(super) fn newton_tolerance(&self) -> f64 {
         let rounding = 10.0 * f64::EPSILON / self.relative_tolerance.max(f64::EPSILON);
-        self.relative_tolerance.sqrt().min(0.03).max(1e-3).max(rounding.min(0.1))
+        self.relative_tolerance.sqrt().clamp(1e-3, 0.03).max(rounding.min(0.1))
     }
 
     /// Refuses settings that are out of range for a system of `dimension` equations.

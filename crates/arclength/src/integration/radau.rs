@@ -35,14 +35,14 @@ const REAL: f64 = 3.637_834_252_744_496;
 const COMPLEX: Complex64 = Complex64::new(2.681_082_873_627_752, -3.050_430_199_247_410_5);
 /// Their eigenvectors, and the inverse of that matrix.
 const VECTORS: [[f64; 3]; 3] = [
-    [0.094_438_762_488_975_24, -0.141_255_295_020_954_21, 0.030_029_194_105_147_42],
+    [0.094_438_762_488_975_24, -0.141_255_295_020_954_2, 0.030_029_194_105_147_42],
     [0.250_213_122_965_333_3, 0.204_129_352_293_799_94, -0.382_942_112_757_261_9],
     [1.0, 1.0, 0.0],
 ];
 const INVERSE_VECTORS: [[f64; 3]; 3] = [
     [4.178_718_591_551_905, 0.327_682_820_761_062_4, 0.523_376_445_499_449_5],
     [-4.178_718_591_551_905, -0.327_682_820_761_062_4, 0.476_623_554_500_550_5],
-    [0.502_872_634_945_786_8, -2.571_926_949_855_605_2, 0.596_039_204_828_224_9],
+    [0.502_872_634_945_786_8, -2.571_926_949_855_605, 0.596_039_204_828_224_9],
 ];
 /// Coefficients of the collocation polynomial from the stages.
 const POLYNOMIAL: [[f64; 3]; 3] = [
@@ -198,10 +198,10 @@ impl Radau {
     /// Keeps the step that was tried, from a state whose slope at the end is known; gives the factor on the next step.
     pub(super) fn accept(&mut self, from: Origin<'_>, trial: Trial) -> f64 {
         let n = self.n;
-        for index in 0..n {
-            for power in 0..3 {
-                self.polynomial[power * n + index] =
-                    (0..3).map(|stage| self.stages[stage * n + index] * POLYNOMIAL[stage][power]).sum();
+        for (power, coefficients) in self.polynomial.chunks_exact_mut(n).enumerate() {
+            for (index, coefficient) in coefficients.iter_mut().enumerate() {
+                let terms = POLYNOMIAL.iter().enumerate();
+                *coefficient = terms.map(|(stage, row)| self.stages[stage * n + index] * row[power]).sum();
             }
         }
         self.origin.copy_from_slice(from.state);
@@ -420,9 +420,9 @@ impl Radau {
     /// The error of the step in units of the tolerance, by the slope before it.
     fn estimate(&mut self, settings: &Integrator, from: Origin<'_>, end: &[f64], slope: &[f64]) -> f64 {
         let n = self.n;
-        for index in 0..n {
+        for (index, (error, slope)) in self.error.iter_mut().zip(slope).enumerate() {
             let stages = [0, 1, 2].map(|stage| self.stages[stage * n + index]);
-            self.error[index] = slope[index] + dot(&ERROR, &stages) / from.step;
+            *error = slope + dot(&ERROR, &stages) / from.step;
         }
         lu::solve(&self.real, n, &self.pivots, &mut self.error);
         let squares = (0..n).map(|index| {
