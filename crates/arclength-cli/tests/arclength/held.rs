@@ -66,7 +66,7 @@ fn equilibria_are_followed_on_which_a_quantity_keeps_its_value() {
     };
     let (first, _) = product(&points(&held)[0]);
     for (held, residual) in points(&held).iter().map(product) {
-        assert!((held - first).abs() < 1e-12 && residual.abs() < 1e-12, "{held} {first}");
+        assert!((held - first).abs() < 1e-10 && residual.abs() < 1e-10, "{held} {first}");
     }
 }
 

@@ -25,8 +25,6 @@ pub(crate) struct DefiningCurve<'a> {
     pub scales: Vec<f64>,
     /// Sizes of the two parameters.
     pub parameter_scales: [f64; 2],
-    /// Whether updates of Newton's method that are rounding end it.
-    may_stagnate: bool,
 }
 
 impl<'a> DefiningCurve<'a> {
@@ -54,7 +52,7 @@ impl<'a> DefiningCurve<'a> {
         let scales = component_scales(&problem.scales, kind, 1.0);
         let mut collocation = Collocation::new(defining, mesh, degree);
         collocation.set_reference(unknown);
-        Self { collocation, scales, parameter_scales, may_stagnate: false }
+        Self { collocation, scales, parameter_scales }
     }
 }
 
@@ -121,7 +119,7 @@ impl Curve for DefiningCurve<'_> {
         Ok(())
     }
     fn may_stagnate(&self) -> bool {
-        self.may_stagnate
+        false
     }
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         unknown.iter().map(|value| (*value, 1.0)).collect()
@@ -136,15 +134,13 @@ pub(crate) struct Located {
 
 /// Newton's method on the defining system from a nearby solution of the branch.
 ///
-/// `tangent` is the direction of the branch nearby. With `may_stagnate` updates that are rounding end it: something else has to
-/// show that there is such a cycle. `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
+/// `tangent` is the direction of the branch nearby. `None` when it does not converge to a cycle of this kind: then there is none, for instance because two real
 /// multipliers met on the unit circle's side of it.
 pub(crate) fn converge(
     curve: &mut CycleCurve<'_>,
     tangent: &[f64],
     start: &Solution<CycleInspection>,
     kind: Kind,
-    may_stagnate: bool,
 ) -> Result<Option<Located>, Error> {
     let multipliers = start.point.floquet.multipliers();
     let Some(eigenfunctions) = critical(&mut curve.collocation, &start.unknown, &multipliers, kind)? else {
@@ -157,7 +153,6 @@ pub(crate) fn converge(
     let nodes = (curve.collocation.mesh().to_vec(), curve.collocation.gauss().degree());
     let parameters = (None, [curve.parameter_scale, 1.0]);
     let mut defining_curve = DefiningCurve::new(problem, kind, nodes, parameters, &unknown);
-    defining_curve.may_stagnate = may_stagnate;
     // The scalar of the second parameter has no effect and stays zero.
     let mut border = vec![0.0; unknown.len()];
     if let Some(last) = border.last_mut() {

@@ -104,15 +104,6 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
 /// orbits multipliers change by orders of magnitude within the last digits of the parameter. Multipliers of the kind have crossed the circle
 /// between both ends, or the parameter has an extreme value.
 fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
-    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
-    let [one, other] = ends.map(|end| value(solution) - value(end));
-    // In the plane that is no witness, since the multiplier is known better than the parameter.
-    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
-    crosses(ends, kind) || (kind == Kind::Fold && is_extreme)
-}
-
-/// Whether the number of multipliers of the kind outside the circle differs between two cycles.
-fn crosses(ends: [&Node; 2], kind: Kind) -> bool {
     let outside = |node: &Node| {
         let floquet = &node.point.floquet;
         let argument = kind.critical().map(|critical| critical.argument);
@@ -120,7 +111,12 @@ fn crosses(ends: [&Node; 2], kind: Kind) -> bool {
         let count = outside.filter(|multiplier| Some(multiplier.argument) == argument).count();
         (!floquet.is_contradictory()).then_some(count)
     };
-    matches!(ends.map(outside), [Some(one), Some(other)] if one != other)
+    let crosses = matches!(ends.map(outside), [Some(one), Some(other)] if one != other);
+    let value = |node: &Node| node.unknown[node.unknown.len() - 1];
+    let [one, other] = ends.map(|end| value(solution) - value(end));
+    // In the plane that is no witness, since the multiplier is known better than the parameter.
+    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
+    crosses || (kind == Kind::Fold && is_extreme)
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.
@@ -186,19 +182,14 @@ fn newton(
         }
     };
     let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
-    let attempts = START_TOLERANCES.map(|tolerance| (tolerance, false));
-    // Where multipliers change by orders of magnitude within rounding Newton's method gets no further than that; multipliers that
-    // cross the circle are the witness then.
-    let is_seen = matches!(kind, Kind::Fold | Kind::Doubling) && crosses([before, after], kind);
-    let last = (START_TOLERANCES[START_TOLERANCES.len() - 1], true);
-    for (tolerance, may_stagnate) in attempts.into_iter().chain(is_seen.then_some(last)) {
+    for tolerance in START_TOLERANCES {
         let converged = match bracket.narrow(curve, &settings, tolerance, test) {
-            Ok(Some(start)) => converge(curve, &direction, start, kind, may_stagnate)?,
+            Ok(Some(start)) => converge(curve, &direction, start, kind)?,
             // Next to a branch point the equations of the branch are singular, but its ends are good starts.
             Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
                 let distance = |end: &Node| branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs);
                 let nearest = if distance(before) <= distance(after) { before } else { after };
-                converge(curve, &direction, nearest, kind, may_stagnate)?
+                converge(curve, &direction, nearest, kind)?
             }
             Ok(None) | Err(Error::NotFound { .. }) => None,
             Err(error) => return Err(error),

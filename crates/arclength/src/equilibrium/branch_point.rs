@@ -46,13 +46,13 @@ pub struct BranchPoint {
     /// The second derivative of `<p, f>` along `(x1, 1)`.
     pub parametric: f64,
     /// Errors of `quadratic`, `mixed` and `parametric`: how much they change where the equilibrium moves by its own error.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quadratic_errors: Option<[f64; 3]>,
     /// At a pitchfork, the cubic coefficient of the flow on the centre manifold, `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6`:
     /// negative if the pitchfork is supercritical.
     pub cubic: Option<f64>,
     /// Error of that coefficient, as of the others.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cubic_error: Option<f64>,
     /// The sense of a pitchfork; degenerate where the other branch is vertical within rounding, or the coefficient zero within its
     /// error.

@@ -29,7 +29,7 @@ pub struct FoldPoint {
     /// (Kuznetsov, equation 5.23); `None` where zero is a double eigenvalue, so that `<p, q> = 0`.
     pub quadratic: Option<f64>,
     /// Error of that coefficient: how much it changes where the equilibrium moves by its own error.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quadratic_error: Option<f64>,
     /// Speed `<p, f_p>` with which the parameter unfolds the fold; `None` as for `quadratic`.
     pub unfolding: Option<f64>,

@@ -39,7 +39,7 @@ pub struct HopfPoint {
     /// does not exist because another eigenvalue is zero.
     pub first_lyapunov: Option<f64>,
     /// Error of that coefficient: how much it changes where the equilibrium moves by its own error.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_lyapunov_error: Option<f64>,
     /// The first Lyapunov coefficient times `omega`, MatCont's scaling: the real part of the coefficient of `z |z|^2`.
     pub c1_real: Option<f64>,

@@ -40,7 +40,7 @@ pub struct HopfPointResult {
     #[serde(default)]
     pub c1_real: Option<f64>,
     /// Error of the first Lyapunov coefficient.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_lyapunov_error: Option<f64>,
     /// Error estimate of the value.
     #[serde(default)]
