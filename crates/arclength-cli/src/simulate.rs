@@ -39,7 +39,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "X")]
     tolerance: Option<f64>,
 
-    /// Largest step; what switches on a state for a shorter time may be missed. What switches on the time is always met
+    /// Largest step. Switches on a state are located inside steps; a visit beyond one that is much shorter than a step, on a way that
+    /// touches it, may be missed. What switches on the time is always met
     #[arg(long, value_name = "T")]
     max_step: Option<f64>,
 

@@ -2,6 +2,7 @@
 
 mod flow;
 mod motion;
+mod phase;
 mod request;
 mod result;
 

@@ -1,14 +1,20 @@
 //! A motion of a model: piece by piece between the times at which its field switches, with samples that are checked.
 //!
 //! Where a field switches in time a step of the integrator would see one side only and pass a pulse without noticing it. So every
-//! switch that depends on the time alone ends a piece, in which the field is that of one side. What switches on the state is met
-//! by the step control, not more finely than the largest step.
+//! switch that depends on the time alone ends a piece, in which the field is that of one side. What switches on a state divides a
+//! piece into phases: in each the field of one region goes on, and where its border is crossed is located.
 //!
 //! Samples inside a step come from its dense output, as long as a step of its own to one of them agrees.
 
-use super::flow::Flow;
-use arclength::integration::{IntegrationError, Integrator, Method, Stepper, System};
+use super::phase::{Phase, Stage};
+use arclength::VectorField;
+use arclength::integration::{EventLocator, IntegrationError, Integrator, Method, Stepper, System};
 use arclength_ode::{GivenUp, Model, Switch};
+
+/// Phases that may follow each other without time passing, for every switch, and some more.
+const PHASES_AT_ONCE: usize = 4;
+/// Part of the time that is none.
+const NO_TIME: f64 = 64.0 * f64::EPSILON;
 
 /// Largest difference of a sample from a step of its own, in units of the tolerance.
 const AGREEMENT: f64 = 10.0;
@@ -80,6 +86,7 @@ impl Course<'_> {
     /// # Errors
     /// [`IntegrationError`]; a sample that is no number is one.
     pub(super) fn follow(&self, accuracy: &Accuracy, times: &[f64]) -> Result<Motion, IntegrationError> {
+        let thresholds = self.model.thresholds();
         let mut motion = Motion { sizes: vec![0.0; self.start.len()], ..Motion::default() };
         let mut state = self.start.to_vec();
         let mut time = self.start_time;
@@ -93,8 +100,13 @@ impl Course<'_> {
                 });
             // A switch where the piece begins only says on which side that is.
             if high > low.max(time) || switch.is_none() {
-                let field = || Flow::new(self.model, self.parameters, [low, high]);
-                if !self.piece(field, (time, end), &mut state, (accuracy, times), &mut motion)? {
+                let stage = Stage {
+                    model: self.model,
+                    parameters: self.parameters,
+                    thresholds: &thresholds,
+                    interval: [low, high],
+                };
+                if !self.piece(&stage, (time, end), &mut state, (accuracy, times), &mut motion)? {
                     return Ok(motion);
                 }
                 time = end;
@@ -119,48 +131,108 @@ impl Course<'_> {
         }
     }
 
-    /// Follows the motion over a piece without switches in time; says whether to its end.
-    fn piece<S: System>(
+    /// Follows the motion over a piece without switches in time, phase by phase; says whether to its end.
+    fn piece(
         &self,
-        field: impl Fn() -> S,
+        stage: &Stage<'_>,
         (start, end): (f64, f64),
         state: &mut [f64],
         (accuracy, times): (&Accuracy, &[f64]),
         motion: &mut Motion,
     ) -> Result<bool, IntegrationError> {
-        let left = accuracy.most_steps.saturating_sub(motion.steps).max(1);
-        let integrator = accuracy.integrator().maximum_steps(left);
-        let mut stepper = Stepper::new(field(), &integrator, start, state, end)?;
-        let samples = Samples { field: &field, accuracy, integrator: &integrator, times };
-        loop {
-            samples.record(&mut stepper, motion)?;
-            let mut outside = false;
-            for (size, value) in motion.sizes.iter_mut().zip(stepper.state()) {
-                *size = size.max(value.abs());
-                outside |= value.abs() > self.bound;
+        let mut time = start;
+        let mut phase = stage.phase_at(time, state);
+        let mut at_once = 0;
+        while time < end {
+            let before = time;
+            let next = self.phase(stage, &phase, (&mut time, end), state, (accuracy, times), motion)?;
+            match next {
+                PhaseEnd::Passed(next) => phase = next,
+                PhaseEnd::LeftBound => return Ok(false),
+                PhaseEnd::Reached => break,
             }
+            let has_passed = time - before > NO_TIME * time.abs();
+            at_once = if has_passed { 0 } else { at_once + 1 };
+            if at_once > PHASES_AT_ONCE * (stage.thresholds.len() + 1) {
+                return Err(IntegrationError::SwitchesWithoutEnd { time });
+            }
+        }
+        Ok(true)
+    }
+
+    /// Follows the motion in a phase, at most to `end`; `time` and `state` become those at its end.
+    fn phase(
+        &self,
+        stage: &Stage<'_>,
+        phase: &Phase,
+        (time, end): (&mut f64, f64),
+        state: &mut [f64],
+        (accuracy, times): (&Accuracy, &[f64]),
+        motion: &mut Motion,
+    ) -> Result<PhaseEnd, IntegrationError> {
+        let steps_before = motion.steps;
+        let too_many = |error| match error {
+            IntegrationError::TooManySteps { time, steps } => {
+                IntegrationError::TooManySteps { time, steps: steps + steps_before }
+            }
+            other => other,
+        };
+        let left = accuracy.most_steps.saturating_sub(motion.steps);
+        if left == 0 {
+            return Err(IntegrationError::TooManySteps { time: *time, steps: motion.steps });
+        }
+        let integrator = accuracy.integrator().maximum_steps(left);
+        let field = || stage.flow(phase);
+        let exits = stage.exits(phase);
+        let mut events = stage.events(phase, &exits);
+        let mut locator = EventLocator::from_positive(events.len(), state.len());
+        let mut stepper = Stepper::new(field(), &integrator, *time, state, end)?;
+        let samples = Samples { field: &field, accuracy, integrator: &integrator, times };
+        let mut crossings = Vec::new();
+        loop {
+            let is_over = stepper.time() != stepper.previous_time()
+                && !events.is_empty()
+                && locator.locate(&mut stepper, &mut events, &mut crossings);
+            let crossing = crossings.pop().filter(|_| is_over);
+            let reached = crossing.as_ref().map_or(stepper.time(), |crossing| crossing.time);
+            samples.record(&mut stepper, reached, motion)?;
+            let outside = {
+                let end = crossing.as_ref().map_or(stepper.state(), |crossing| &crossing.state);
+                let sizes = motion.sizes.iter_mut().zip(end);
+                sizes.for_each(|(size, value)| *size = size.max(value.abs()));
+                end.iter().any(|value| value.abs() > self.bound)
+            };
             if outside {
-                motion.left_bound = Some(stepper.time());
+                motion.left_bound = Some(reached);
                 let beyond = |sample: &Vec<f64>| sample.iter().any(|value| value.abs() > self.bound);
                 let within = motion.samples.iter().position(beyond).unwrap_or(motion.samples.len());
                 motion.samples.truncate(within.max(1));
-                return Ok(false);
+                return Ok(PhaseEnd::LeftBound);
             }
-            if stepper.is_finished() {
-                break;
+            if crossing.is_some() || stepper.is_finished() {
+                let done = stepper.statistics();
+                motion.steps += done.accepted_steps + done.rejected_steps;
+                *time = reached;
+                let Some(crossing) = crossing else {
+                    state.copy_from_slice(stepper.state());
+                    return Ok(PhaseEnd::Reached);
+                };
+                state.copy_from_slice(&crossing.state);
+                return Ok(PhaseEnd::Passed(stage.behind(phase, exits[crossing.event], reached, state)));
             }
-            stepper.advance().map_err(|error| match error {
-                IntegrationError::TooManySteps { time, steps } => {
-                    IntegrationError::TooManySteps { time, steps: steps + motion.steps }
-                }
-                other => other,
-            })?;
+            stepper.advance().map_err(too_many)?;
         }
-        let done = stepper.statistics();
-        motion.steps += done.accepted_steps + done.rejected_steps;
-        state.copy_from_slice(stepper.state());
-        Ok(true)
     }
+}
+
+/// How a phase ended.
+enum PhaseEnd {
+    /// At the end of the piece.
+    Reached,
+    /// By a switch, behind which there is another phase.
+    Passed(Phase),
+    /// By a state beyond the bound.
+    LeftBound,
 }
 
 /// Samples of the steps of an integrator.
@@ -172,12 +244,17 @@ struct Samples<'a, F> {
 }
 
 impl<S: System, F: Fn() -> S> Samples<'_, F> {
-    /// Adds the samples up to the end of the last step.
-    fn record(&self, stepper: &mut Stepper<S>, motion: &mut Motion) -> Result<(), IntegrationError> {
+    /// Adds the samples of the last step up to a time in it.
+    fn record(
+        &self,
+        stepper: &mut Stepper<S>,
+        reached: f64,
+        motion: &mut Motion,
+    ) -> Result<(), IntegrationError> {
         let left = &self.times[motion.samples.len()..];
         let (start, end) = (stepper.previous_time(), stepper.time());
-        let inside = &left[..left.iter().take_while(|time| **time < end).count()];
-        let at_end = left[inside.len()..].iter().take_while(|time| **time == end).count();
+        let inside = &left[..left.iter().take_while(|time| **time < end && **time <= reached).count()];
+        let at_end = left[inside.len()..].iter().take_while(|time| **time == end && end == reached).count();
         if !inside.is_empty() {
             stepper.prepare_dense_output();
             let interpolated = |time: f64| {

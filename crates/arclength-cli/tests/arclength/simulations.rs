@@ -51,13 +51,51 @@ fn no_pulse_is_stepped_over() {
     close(decay("flr(t)", "3"), 2.0 - (-1.0_f64).exp() - (-2.0_f64).exp(), 1e-9);
 }
 
+/// The state at the end.
+fn end(model: &str, duration: f64) -> Vec<f64> {
+    let history = simulate(model, &format!("--duration {duration} --points 3"));
+    let states = history["states"].as_object().unwrap().values();
+    states.map(|values| values.as_array().unwrap().last().unwrap().as_f64().unwrap()).collect()
+}
+
 #[test]
-fn what_switches_on_a_state_is_met() {
+fn what_switches_on_a_state_is_located() {
     // x rises to 1, then falls: a tent.
-    let history = simulate("x'=if(s<1)then(1)else(-1)\ns'=1\n", "--duration 2 --points 201 --max-step 0.1");
+    let history = simulate("x'=if(s<1)then(1)else(-1)\ns'=1\n", "--duration 2 --points 201");
     for (t, x) in list(&history, "states", "s").iter().zip(list(&history, "states", "x")) {
-        close(x, 1.0 - (t - 1.0).abs(), 1e-8);
+        close(x, 1.0 - (t - 1.0).abs(), 1e-9);
     }
+    // A pulse of width 1e-3, a stair, and an oscillator that is pushed away on the left.
+    let pulse = 1e3 * -(-1e-3_f64).exp_m1() * (-0.999_f64).exp();
+    close(end("s'=1\nx'=1000*(s>5&s<5.001)-x\n", 6.0)[1], pulse, 1e-9);
+    close(end("s'=1\nx'=flr(s)-x\n", 3.0)[1], 2.0 - (-1.0_f64).exp() - (-2.0_f64).exp(), 1e-9);
+    let left = 3_f64.sqrt() * (3.0 - std::f64::consts::FRAC_PI_2 / 3_f64.sqrt()).sinh();
+    close(end("x'=y\ny'=-x-2*abs(x)\ninit x=1\n", 3.0)[0], -left, 1e-8);
+}
+
+#[test]
+fn motions_slide_along_switches() {
+    let history = simulate("x'=if(x<.5)then(5)else(-1)\n", "--duration 3 --points 301");
+    for (t, x) in history["t"].as_array().unwrap().iter().zip(list(&history, "states", "x")) {
+        close(x, (5.0 * t.as_f64().unwrap()).min(0.5), 1e-12);
+    }
+    // Two switches at the same place, and a kink on the way.
+    let kinked = "x'=1-2*heav(x-.5)-3*heav(2*x-1)\ny'=min(x,.2)-y\n";
+    let at_kink = 0.2 - 1.0 + (-0.2_f64).exp();
+    close(end(kinked, 4.0)[1], 0.2 + (at_kink - 0.2) * (-3.8_f64).exp(), 1e-10);
+    // A mass on a belt: from rest to the belt's speed, held by it until the spring is as strong as the friction, then a circle.
+    let belt = "par v=.2,f=.5\nx'=y\ny'=-x-f*sign(y-v)\n";
+    let (held, slips) = (0.4_f64.asin(), 0.4_f64.asin() + (0.5 - 0.5 * (1.0 - 0.84_f64.sqrt())) / 0.2);
+    close(end(belt, held + 1.0)[1], 0.2, 1e-12);
+    let turn = 5.0 - slips;
+    close(end(belt, 5.0)[0], 0.5 + 0.2 * turn.sin(), 1e-9);
+    close(end(belt, 5.0)[1], 0.2 * turn.cos(), 1e-9);
+}
+
+#[test]
+fn motions_that_are_held_twice_end_with_a_reason() {
+    let folder = Folder::with_text("model.ode", "x'=-sign(x)\ny'=-2*sign(y)\ninit x=1,y=1\n");
+    folder.fails("simulate model.ode --duration 3", 1, &["again and again", "t = 1"]);
 }
 
 #[test]

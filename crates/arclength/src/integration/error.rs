@@ -33,6 +33,14 @@ pub enum IntegrationError {
         /// Number of steps that were taken.
         steps: usize,
     },
+    /// The right-hand side switches again and again without time passing.
+    #[error(
+        "at t = {time} the right-hand side switches again and again while no time passes: the motion is held at several switches at once, or comes to an end there"
+    )]
+    SwitchesWithoutEnd {
+        /// Time that was reached.
+        time: f64,
+    },
     /// Whoever waits for the solution asked for the end.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),

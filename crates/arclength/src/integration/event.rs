@@ -83,9 +83,9 @@ pub struct Crossing {
     pub direction: Direction,
 }
 
-/// Follows the signs of event functions along an integration.
+/// Follows the signs of event functions along an integration that is advanced step by step.
 #[derive(Debug)]
-pub(super) struct EventLocator {
+pub struct EventLocator {
     partition: ChebyshevPartition,
     /// Last sign that was not zero of each function.
     signs: Vec<f64>,
@@ -93,14 +93,21 @@ pub(super) struct EventLocator {
 }
 
 impl EventLocator {
-    pub(super) fn new(events: &mut [Event], time: f64, state: &[f64]) -> Self {
+    /// At the start of an integration.
+    pub fn new(events: &mut [Event], time: f64, state: &[f64]) -> Self {
         let signs = events.iter_mut().map(|event| sign((event.function)(time, state))).collect();
         Self { partition: ChebyshevPartition::new(), signs, scratch: vec![0.0; state.len()] }
     }
 
+    /// At the start of an integration of a state of `dimension` numbers from where `count` event functions count as positive, even if
+    /// they are zero or, by rounding, below.
+    pub fn from_positive(count: usize, dimension: usize) -> Self {
+        Self { partition: ChebyshevPartition::new(), signs: vec![1.0; count], scratch: vec![0.0; dimension] }
+    }
+
     /// Appends the crossings of the last step to `crossings`, in the order in which they are passed, up to
     /// the first terminal one; returns whether there was a terminal one.
-    pub(super) fn locate<S: System>(
+    pub fn locate<S: System>(
         &mut self,
         stepper: &mut Stepper<S>,
         events: &mut [Event],

@@ -40,7 +40,7 @@ mod tests;
 
 pub(crate) use equal_steps::equal_steps;
 pub use error::IntegrationError;
-pub use event::{Crossing, Direction, Event};
+pub use event::{Crossing, Direction, Event, EventLocator};
 pub use integrator::{Integrator, Method};
 pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
