@@ -48,7 +48,8 @@ fn the_curve_of_folds_of_cycles_passes_through_both_folds_of_the_isola() {
         close(&fold["values"][1], speed, 2e-7);
         close(&fold["period"], period, 2e-7);
     }
-    assert!(points(&curve).iter().all(|point| number(&point["error_estimate"]) < 1e-9));
+    // Meshes follow the local estimate; what is told knows how the model multiplies it.
+    assert!(points(&curve).iter().all(|point| number(&point["error_estimate"]) < 3e-9));
 }
 
 #[test]
