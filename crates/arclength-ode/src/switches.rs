@@ -46,16 +46,9 @@ impl TimeSwitches {
     /// The switches of a field, given by its nodes.
     pub(crate) fn of(graph: &Graph, field: &[NodeId]) -> Self {
         let all = graph.operations();
-        let mut used = vec![false; all.len()];
-        field.iter().for_each(|&node| used[node as usize] = true);
+        let used = graph.needed_for(field.iter().copied());
         let mut of_time = vec![false; all.len()];
         let mut of_state = vec![false; all.len()];
-        // Operands come before what uses them.
-        for index in (0..all.len()).rev() {
-            if used[index] {
-                all[index].operands().for_each(|operand| used[operand as usize] = true);
-            }
-        }
         for (index, operation) in all.iter().enumerate() {
             of_time[index] = matches!(operation, Operation::Time)
                 || operation.operands().any(|operand| of_time[operand as usize]);
@@ -79,13 +72,7 @@ impl TimeSwitches {
         if triggers.is_empty() {
             return Self::default();
         }
-        let mut needed = vec![false; all.len()];
-        triggers.iter().flat_map(|trigger| trigger.nodes()).for_each(|node| needed[node as usize] = true);
-        for index in (0..all.len()).rev() {
-            if needed[index] {
-                all[index].operands().for_each(|operand| needed[operand as usize] = true);
-            }
-        }
+        let needed = graph.needed_for(triggers.iter().flat_map(|trigger| trigger.nodes()));
         let operations = (0..).zip(all).filter(|(node, _)| needed[*node as usize]);
         Self {
             operations: operations.map(|(node, operation)| (node, *operation)).collect(),

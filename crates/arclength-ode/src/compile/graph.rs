@@ -51,6 +51,19 @@ impl Graph {
         &self.operations
     }
 
+    /// Which nodes some are computed from, they themselves included.
+    pub(crate) fn needed_for(&self, nodes: impl IntoIterator<Item = NodeId>) -> Vec<bool> {
+        let mut needed = vec![false; self.operations.len()];
+        nodes.into_iter().for_each(|node| needed[node as usize] = true);
+        // Operands come before what uses them.
+        for index in (0..needed.len()).rev() {
+            if needed[index] {
+                self.operations[index].operands().for_each(|operand| needed[operand as usize] = true);
+            }
+        }
+        needed
+    }
+
     pub(crate) fn insert(&mut self, operation: Operation) -> NodeId {
         *self.known.entry(operation).or_insert_with(|| {
             self.operations.push(operation);

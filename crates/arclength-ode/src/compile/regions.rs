@@ -21,14 +21,7 @@ impl Regions {
     /// Of a field, given by its nodes, with this many parameters; `None` where nothing switches on a state.
     pub(crate) fn of(graph: &Graph, field: &[NodeId], parameters: usize) -> Option<Self> {
         let all = graph.operations();
-        let mut used = vec![false; all.len()];
-        field.iter().for_each(|&node| used[node as usize] = true);
-        // Operands come before what uses them.
-        for index in (0..all.len()).rev() {
-            if used[index] {
-                all[index].operands().for_each(|operand| used[operand as usize] = true);
-            }
-        }
+        let used = graph.needed_for(field.iter().copied());
         let mut rewriting = Rewriting {
             graph: Graph::default(),
             parameters,

@@ -391,22 +391,19 @@ fn find_segments(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64])
 
 /// Finds the segments of a cycle with the borders where they are.
 fn find_exact_segments(collocation: &mut Collocation<LimitCycle<'_>>, unknown: &[f64]) -> Result<(), Error> {
-    let problem = &collocation.problem;
-    let mut parameters = problem.parameters.clone();
-    parameters[problem.active] = unknown[unknown.len() - 1];
-    collocation.problem.segments =
-        Segments::of(problem.field, collocation.polynomials(unknown), &parameters)?;
+    let value = unknown[unknown.len() - 1];
+    let found = collocation.problem.segments_of(collocation.polynomials(unknown), value)?;
+    collocation.problem.segments = found;
     Ok(())
 }
 
 /// A mesh with more points; those of before that are close to one of them give way.
 fn with_points(mesh: &[f64], times: &[f64]) -> Vec<f64> {
     let is_apart = |(index, point): &(usize, &f64)| {
-        let gap = if *index == 0 || *index + 1 == mesh.len() {
+        if *index == 0 || *index + 1 == mesh.len() {
             return true;
-        } else {
-            GIVES_WAY * (mesh[index + 1] - mesh[index - 1])
-        };
+        }
+        let gap = GIVES_WAY * (mesh[index + 1] - mesh[index - 1]);
         times.iter().all(|time| (time - **point).abs() > gap)
     };
     let kept = mesh.iter().enumerate().filter(is_apart).map(|(_, point)| *point);

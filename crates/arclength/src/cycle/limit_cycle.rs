@@ -25,19 +25,14 @@ pub(crate) struct LimitCycle<'a> {
 }
 
 impl LimitCycle<'_> {
-    /// Finds the segments of the cycle that polynomials describe, with the borders at points of their mesh, at a value of the
-    /// active parameter.
+    /// The segments of the cycle that polynomials describe at a value of the active parameter, with the borders where they are.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
-    pub(crate) fn find_segments(&mut self, cycle: Polynomials<'_>, value: f64) -> Result<(), Error> {
+    pub(crate) fn segments_of(&self, cycle: Polynomials<'_>, value: f64) -> Result<Option<Segments>, Error> {
         let mut parameters = self.parameters.clone();
         parameters[self.active] = value;
-        self.segments = Segments::of(self.field, cycle, &parameters)?;
-        if let Some(segments) = &mut self.segments {
-            segments.snap_to(cycle.mesh);
-        }
-        Ok(())
+        Segments::of(self.field, cycle, &parameters)
     }
 
     /// Whether the field switches along the cycle.

@@ -329,7 +329,10 @@ pub(crate) fn doubling_near(
         *scale = if high > low { 0.5 * (high - low) } else { *scale };
     }
     let polynomials = Polynomials { mesh: &mesh, gauss: &gauss, n, states: &cycle };
-    problem.find_segments(polynomials, parameter).ok()?;
+    problem.segments = problem.segments_of(polynomials, parameter).ok()?;
+    if let Some(segments) = &mut problem.segments {
+        segments.snap_to(&mesh);
+    }
     let nodes = Nodes { mesh: &mesh, gauss: &gauss, jumps: &[] };
     let weighted: Vec<f64> = eigenfunction
         .iter()
