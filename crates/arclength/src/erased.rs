@@ -6,6 +6,7 @@
 //! is not on the list does not compile.
 
 use crate::differentiation::{Dual, Scalar};
+use crate::direction::Direction;
 use crate::field::VectorField;
 use crate::threshold::Threshold;
 
@@ -30,6 +31,16 @@ pub trait FieldScalar: Scalar {
     /// Writes `f(state, parameters)` into `derivative`, by the entry for this scalar.
     #[doc(hidden)]
     fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]);
+
+    /// Writes the condition of an event and the state behind it into `values`, by the entry for this scalar.
+    #[doc(hidden)]
+    fn evaluate_event(
+        field: &dyn Table,
+        event: usize,
+        state: &[Self],
+        parameters: &[Self],
+        values: &mut [Self],
+    );
 }
 
 /// A scalar that Jacobians are computed with: `f64` for the value, dual numbers with four or eight directions for the columns.
@@ -67,7 +78,7 @@ impl<T: Scalar, const N: usize> Lift<N> for T {
 }
 
 macro_rules! scalars {
-    ($($method:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
         /// A field, for the scalars in use.
         pub trait Table: Sync {
             /// As [`VectorField::state_names`].
@@ -78,9 +89,19 @@ macro_rules! scalars {
             fn dimension(&self) -> usize;
             /// As [`VectorField::thresholds`].
             fn thresholds(&self) -> Vec<Threshold>;
+            /// As [`VectorField::events`].
+            fn events(&self) -> Vec<Direction>;
             $(
                 /// As [`VectorField::evaluate`].
                 fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);
+                /// As [`VectorField::evaluate_event`].
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                );
             )*
         }
 
@@ -97,9 +118,23 @@ macro_rules! scalars {
             fn thresholds(&self) -> Vec<Threshold> {
                 VectorField::thresholds(self)
             }
-            $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
-                self.evaluate(state, parameters, derivative);
-            })*
+            fn events(&self) -> Vec<Direction> {
+                VectorField::events(self)
+            }
+            $(
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                    self.evaluate(state, parameters, derivative);
+                }
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                ) {
+                    self.evaluate_event(event, state, parameters, values);
+                }
+            )*
         }
 
         $(impl FieldScalar for $scalar {
@@ -107,25 +142,36 @@ macro_rules! scalars {
             fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]) {
                 field.$method(state, parameters, derivative);
             }
+
+            #[inline(always)]
+            fn evaluate_event(
+                field: &dyn Table,
+                event: usize,
+                state: &[Self],
+                parameters: &[Self],
+                values: &mut [Self],
+            ) {
+                field.$event(event, state, parameters, values);
+            }
         })*
     };
 }
 
 scalars! {
-    evaluate_value: f64;
-    evaluate_narrow: Narrow;
-    evaluate_wide: Wide;
-    evaluate_narrow_along: NarrowAlong;
-    evaluate_wide_along: WideAlong;
-    evaluate_narrow_along_pair: NarrowAlongPair;
-    evaluate_wide_along_pair: WideAlongPair;
-    evaluate_narrow_along_twice: NarrowAlongTwice;
-    evaluate_pair: Pair;
-    evaluate_first: First;
-    evaluate_second: Second;
-    evaluate_third: Third;
-    evaluate_fourth: Fourth;
-    evaluate_fifth: Fifth;
+    evaluate_value, event_value: f64;
+    evaluate_narrow, event_narrow: Narrow;
+    evaluate_wide, event_wide: Wide;
+    evaluate_narrow_along, event_narrow_along: NarrowAlong;
+    evaluate_wide_along, event_wide_along: WideAlong;
+    evaluate_narrow_along_pair, event_narrow_along_pair: NarrowAlongPair;
+    evaluate_wide_along_pair, event_wide_along_pair: WideAlongPair;
+    evaluate_narrow_along_twice, event_narrow_along_twice: NarrowAlongTwice;
+    evaluate_pair, event_pair: Pair;
+    evaluate_first, event_first: First;
+    evaluate_second, event_second: Second;
+    evaluate_third, event_third: Third;
+    evaluate_fourth, event_fourth: Fourth;
+    evaluate_fifth, event_fifth: Fifth;
 }
 
 /// A field of unknown type.
@@ -156,6 +202,24 @@ impl<'a> ErasedField<'a> {
     /// As [`VectorField::thresholds`].
     pub(crate) fn thresholds(&self) -> Vec<Threshold> {
         self.0.thresholds()
+    }
+
+    /// As [`VectorField::events`].
+    #[expect(dead_code, reason = "cycles do not jump yet")]
+    pub(crate) fn events(&self) -> Vec<Direction> {
+        self.0.events()
+    }
+
+    /// As [`VectorField::evaluate_event`], for the scalars of the list.
+    #[expect(dead_code, reason = "cycles do not jump yet")]
+    pub(crate) fn evaluate_event<T: FieldScalar>(
+        &self,
+        event: usize,
+        state: &[T],
+        parameters: &[T],
+        values: &mut [T],
+    ) {
+        T::evaluate_event(self.0, event, state, parameters, values);
     }
 
     /// As [`VectorField::evaluate`], for the scalars of the list.

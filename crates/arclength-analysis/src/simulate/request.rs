@@ -147,6 +147,7 @@ impl SimulateRequest {
             let problem = "the model does not say how long the motion lasts";
             return Err(Error::invalid(&["duration"], given, problem, "a positive time"));
         };
+        chosen.has_continuous_cycles()?;
         let start = self.t0.or_else(|| file.number("t0").filter(|time| time.is_finite())).unwrap_or(0.0);
         let end = start + duration;
         if end <= start {

@@ -10,6 +10,7 @@ use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::differentiation::Scalar;
+use crate::direction::Direction;
 use crate::erased::ErasedField;
 use crate::field::VectorField;
 use crate::numbers::readable;
@@ -262,6 +263,14 @@ impl<F: VectorField> VectorField for WithTotals<'_, F> {
 
     fn thresholds(&self) -> Vec<Threshold> {
         self.field.thresholds()
+    }
+
+    fn events(&self) -> Vec<Direction> {
+        self.field.events()
+    }
+
+    fn evaluate_event<T: Scalar>(&self, event: usize, state: &[T], parameters: &[T], values: &mut [T]) {
+        self.field.evaluate_event(event, state, parameters, values);
     }
 
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {

@@ -2,23 +2,12 @@
 
 use super::chebyshev::ChebyshevPartition;
 use super::{Stepper, System};
+use crate::direction::Direction;
 
 /// Relative resolution of the time of an event: four units in the last place.
 const TIME_RESOLUTION: f64 = 4.0 * f64::EPSILON;
 /// Iterations of root finding; each one at least halves the bracket every second time.
 const MAXIMUM_ITERATIONS: usize = 200;
-
-/// Which crossings of zero count, in the direction of integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
-    /// From negative to positive.
-    Rising,
-    /// From positive to negative.
-    Falling,
-    /// Both.
-    #[default]
-    Either,
-}
 
 /// A function of time and state.
 type EventFunction<'a> = dyn FnMut(f64, &[f64]) -> f64 + 'a;
