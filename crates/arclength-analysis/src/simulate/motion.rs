@@ -9,12 +9,15 @@ use super::accuracy::Accuracy;
 use super::events::{Events, Happening};
 use super::phase::{Exit, Phase, Stage};
 use super::samples::{Again, Samples};
-use arclength::integration::{EventLocator, IntegrationError, Stepper};
+use arclength::integration::{Crossing, EventLocator, IntegrationError, Stepper};
 use arclength::{Threshold, VectorField};
 use arclength_ode::{GivenUp, Model, Switch};
 
 /// Phases that may follow each other without time passing, for every switch, and some more.
 const PHASES_AT_ONCE: usize = 4;
+/// How often a crossing is located with smaller steps where the dense output does not agree with a step to it, and how much smaller.
+const REFINEMENTS: usize = 4;
+const FINER: f64 = 4.0;
 /// Distance from a switch, in tolerances, at which a motion that slides along it is drawn back.
 const LARGEST_DRIFT: f64 = 1.0;
 /// Part of the time that is none.
@@ -222,11 +225,30 @@ impl Pursuit<'_, '_> {
         let mut stepper = Stepper::new(field(), &integrator, self.time, &self.state, end)?;
         let again = Again { field: &field, accuracy: self.accuracy, integrator: &integrator };
         let mut crossings = Vec::new();
+        let mut refinements = 0;
         loop {
+            let signs = locator.signs().to_vec();
             let is_over = stepper.time() != stepper.previous_time()
                 && !events.is_empty()
                 && locator.locate(&mut stepper, &mut events, &mut crossings);
             let crossing = crossings.pop().filter(|_| is_over);
+            if let Some(Crossing { time, state, .. }) = &crossing
+                && refinements < REFINEMENTS
+                && !again.confirms(&stepper, *time, state)?
+            {
+                // The dense output is worse than the step: smaller steps, from where this one began.
+                refinements += 1;
+                let start = stepper.previous_time();
+                let step = (stepper.time() - start) / FINER;
+                let mut state = vec![0.0; self.state.len()];
+                stepper.interpolate(start, &mut state);
+                let done = stepper.statistics();
+                self.motion.steps += done.accepted_steps + done.rejected_steps;
+                let finer = integrator.clone().maximum_step(step);
+                stepper = Stepper::new(field(), &finer, start, &state, end)?;
+                locator = EventLocator::from_signs(signs, state.len());
+                continue;
+            }
             let reached = crossing.as_ref().map_or(stepper.time(), |crossing| crossing.time);
             self.motion.samples.record(&mut stepper, reached, &again)?;
             let bound = self.course.bound;

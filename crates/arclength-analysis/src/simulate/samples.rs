@@ -115,6 +115,19 @@ impl<'a> Samples<'a> {
 }
 
 impl<S: System, F: Fn() -> S> Again<'_, F> {
+    /// Whether the dense output of the last step agrees at a time in it with a step to there.
+    pub(super) fn confirms(
+        &self,
+        stepper: &Stepper<S>,
+        time: f64,
+        state: &[f64],
+    ) -> Result<bool, IntegrationError> {
+        let mut origin = vec![0.0; state.len()];
+        stepper.interpolate(stepper.previous_time(), &mut origin);
+        let own = self.step(stepper.previous_time(), &origin, time)?;
+        Ok(self.accuracy.distance(&own, state) <= AGREEMENT)
+    }
+
     /// The state at a time, by steps of its own.
     fn step(&self, time: f64, state: &[f64], end: f64) -> Result<Vec<f64>, IntegrationError> {
         if end <= time {

@@ -126,3 +126,25 @@ fn events_meet_switches_and_slides() {
     let times: Vec<f64> = history.jumps().iter().map(|jump| jump[0][0]).collect();
     close(&times[..2], &[fall, fall + speed / 3.0], 1e-8);
 }
+
+/// A neuron behind a filter of the rate `rate`, from slow to stiff: `w'=rate*(v-w)`, and both are reset where `w` reaches 1.
+#[test]
+fn events_are_located_where_the_model_is_stiff() {
+    for rate in [3.0, 20.0, 100.0, 300.0, 1e4, 1e6, 1e9, 1e12] {
+        let w = |t: f64| 1.5 - (1.5 * rate * (-t).exp() - 1.5 * (-rate * t).exp()) / (rate - 1.0);
+        let [mut low, mut high] = [0.5, 5.0];
+        while high - low > 1e-15 * high {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if w(middle) < 1.0 { low = middle } else { high = middle }
+        }
+        let text = format!("v'=1.5-v\nw'={rate}*(v-w)\nglobal 1 w-1 {{v=0;w=0}}\n");
+        let history = History::of(&text, 6.5 * high, 2);
+        let times: Vec<f64> = history.jumps().iter().map(|jump| jump[0][0]).collect();
+        let right: Vec<f64> = (1..=6).map(|k| f64::from(k) * high).collect();
+        close(&times, &right, 2e-9);
+        close(&history.end()[2..], &[w(0.5 * high)], 2e-9);
+    }
+}
