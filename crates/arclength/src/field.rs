@@ -4,6 +4,7 @@
 //! with dual numbers where derivatives are needed.
 
 use crate::differentiation::Scalar;
+use crate::erased::*;
 use crate::threshold::Threshold;
 
 /// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`, at least
@@ -58,7 +59,42 @@ pub trait VectorField: Sync {
     fn thresholds(&self) -> Vec<Threshold> {
         Vec::new()
     }
+
+    /// The field without its type, as equilibria, cycles and curves in two parameters take it.
+    ///
+    /// A field that is large, and used in other crates, says this again where it is defined, with `#[inline(never)]` and
+    /// [`ErasedField::new`]: then it is compiled there, once, and not in every crate that follows one of its branches.
+    fn erased(&self) -> ErasedField<'_>
+    where
+        Self: Sized,
+    {
+        ErasedField::new(self)
+    }
 }
+
+macro_rules! vector_field_table {
+    ($($method:ident: $scalar:ty;)*) => {
+        impl<F: VectorField> Table for F {
+            fn state_names(&self) -> Vec<String> {
+                VectorField::state_names(self)
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                VectorField::parameter_names(self)
+            }
+            fn dimension(&self) -> usize {
+                VectorField::dimension(self)
+            }
+            fn thresholds(&self) -> Vec<Threshold> {
+                VectorField::thresholds(self)
+            }
+            $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                self.evaluate(state, parameters, derivative);
+            })*
+        }
+    };
+}
+
+with_field_scalars!(vector_field_table);
 
 impl<F: VectorField> VectorField for &F {
     fn state_names(&self) -> Vec<String> {
@@ -76,5 +112,8 @@ impl<F: VectorField> VectorField for &F {
     }
     fn thresholds(&self) -> Vec<Threshold> {
         (**self).thresholds()
+    }
+    fn erased(&self) -> ErasedField<'_> {
+        (**self).erased()
     }
 }
