@@ -119,6 +119,17 @@ impl ChosenModel {
         Err(Error::invalid(fields, interval.to_string(), "the interval is infinite", "two finite ends"))
     }
 
+    /// That cycles of the model can be followed.
+    ///
+    /// # Errors
+    /// A model with events, whose cycles may jump.
+    pub fn has_continuous_cycles(&self) -> Result<(), Error> {
+        self.model.global_events().first().map_or(Ok(()), |event| {
+            let snippet = event.place().snippet();
+            Err(Error::Jumps { model: self.stored.name.clone(), snippet })
+        })
+    }
+
     /// That the interval contains the value of the parameter where a computation starts.
     ///
     /// # Errors

@@ -3,11 +3,13 @@
 use crate::assignments::{Assignment, assignments};
 use crate::compile::{FunctionDefinition, Lowering, QuantityDefinition, Symbol, Symbols, TableDefinition};
 use crate::error::{OdeError, Span, Warning, nearest};
+use crate::event::Action;
 use crate::expand::expanded_lines;
 use crate::expression::{Expression, Node, parse_expression, parse_number, reserved};
 use crate::options::Options;
 use crate::source::Text;
-use crate::statement::{Name, Statement, classify};
+use crate::statement::{EventStatement, Name, Statement, classify};
+use arclength::Direction;
 use std::collections::HashMap;
 
 /// A name with the number it is given.
@@ -24,6 +26,15 @@ pub(crate) struct SetDefinition {
     pub entries: Vec<(Name, String, Span)>,
 }
 
+/// `global sign condition {name=expression; ...}`
+#[derive(Debug)]
+pub(crate) struct EventDefinition {
+    pub span: Span,
+    pub direction: Direction,
+    pub condition: Expression,
+    pub assignments: Vec<QuantityDefinition>,
+}
+
 /// Everything that a model declares.
 #[derive(Debug, Default)]
 pub(crate) struct Declarations {
@@ -33,6 +44,7 @@ pub(crate) struct Declarations {
     pub auxiliaries: Vec<QuantityDefinition>,
     pub initial_values: Vec<Value>,
     pub initial_formulas: Vec<QuantityDefinition>,
+    pub events: Vec<EventDefinition>,
     pub sets: Vec<SetDefinition>,
     pub options: Options,
     pub warnings: Vec<Warning>,
@@ -93,6 +105,18 @@ impl Declarations {
             Statement::InitialFormula(name, right) => {
                 let expression = self.expression(line, right)?;
                 self.initial_formulas.push(QuantityDefinition { name, expression });
+            }
+            Statement::Event(event) => {
+                let EventStatement { span, direction, condition: (start, end), assignments } = event;
+                let condition = parse_expression(line, start, end, &mut self.warnings)?;
+                let assignments = assignments
+                    .into_iter()
+                    .map(|(name, start, end)| {
+                        let expression = parse_expression(line, start, end, &mut self.warnings)?;
+                        Ok(QuantityDefinition { name, expression })
+                    })
+                    .collect::<Result<_, OdeError>>()?;
+                self.events.push(EventDefinition { span, direction, condition, assignments });
             }
             Statement::Parameters(rest) => {
                 for assignment in assignments(line, rest, line.len())? {
@@ -201,6 +225,25 @@ impl Declarations {
         self.declared.insert(key.clone(), name.span);
         self.symbols.names.insert(key, symbol);
         Ok(())
+    }
+
+    /// What an event does with the value that it gives to a name; nothing for a word that has no meaning here.
+    pub(crate) fn action(&self, name: &Name) -> Result<Option<Action>, OdeError> {
+        match (self.symbols.names.get(&name.key()), name.key().as_str()) {
+            (Some(&Symbol::State(index)), _) => Ok(Some(Action::Assign(index))),
+            (Some(Symbol::Parameter(_)), _) => Err(OdeError::unsupported(
+                name.span,
+                format!("an event that changes the parameter `{}` is", name.text),
+                format!(
+                    "make it a state that rests: in place of its par write {0}'=0 and init {0}=..",
+                    name.text
+                ),
+            )),
+            (None, "arret") => Ok(Some(Action::Stop)),
+            (None, "out_put") => Ok(Some(Action::PutOut)),
+            (None, "no_interp") => Ok(None),
+            _ => self.state(name).map(|index| Some(Action::Assign(index))),
+        }
     }
 
     /// Index of the state of that name.

@@ -30,8 +30,10 @@
 //! matters). Directives are known by their first letters, names may begin with a digit, and a line that
 //! begins with no directive is left out, all as in XPPAUT. A table of a formula is a function.
 //!
+//! Lines `global` are [events](Event), which set states where a condition passes zero.
+//!
 //! What makes a model something else than a smooth system of ordinary differential equations (delays,
-//! algebraic equations, noise, tables from files, integral equations, Markov variables, events, boundary
+//! algebraic equations, noise, tables from files, integral equations, Markov variables, boundary
 //! conditions, maps, external libraries) is refused with an [`OdeError::Unsupported`] that says what to do.
 //! Where only outputs (`aux`) depend on it, they are left out with a warning.
 
@@ -41,6 +43,7 @@ mod assignments;
 mod compile;
 mod declarations;
 mod error;
+mod event;
 mod expand;
 mod expression;
 mod interval;
@@ -53,6 +56,7 @@ mod switches;
 mod tape;
 
 pub use error::{OdeError, Place, Warning};
+pub use event::{Event, Outcome};
 pub use model::{Model, NamedSet};
 pub use options::{OptionEntry, Options};
 pub use quantity::Quantity;

@@ -3,12 +3,13 @@
 use crate::compile::{Lowering, Regions, Scope, Symbol};
 use crate::declarations::{Declarations, SetDefinition};
 use crate::error::{OdeError, Place, Warning};
+use crate::event::Event;
 use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
 use crate::source::{decode, physical_lines};
 use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
-use arclength::{ErasedField, Scalar, Threshold, VectorField};
+use arclength::{Direction, ErasedField, Scalar, Threshold, VectorField};
 
 /// A model read from a `.ode` text.
 ///
@@ -35,6 +36,7 @@ pub struct Model {
     /// The field in a region, and the switch functions.
     regions: Option<Tape>,
     thresholds: Vec<Threshold>,
+    events: Vec<Event>,
     auxiliary: Tape,
     derivation: Tape,
     initial: Tape,
@@ -170,8 +172,13 @@ impl Model {
         }
     }
 
-    /// The first time in `from..=until` at which the right-hand side at these parameters jumps or has a kink, because of something
-    /// that depends on the time alone.
+    /// The events (`global`), in the order of the text.
+    pub fn global_events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// The first time in `from..=until` at which the right-hand side at these parameters, or the condition of an event, jumps or has
+    /// a kink, or such a condition passes zero, because of something that depends on the time alone.
     ///
     /// # Errors
     /// [`GivenUp`] where the times cannot be told apart from others.
@@ -232,6 +239,20 @@ impl VectorField for Model {
         self.thresholds.clone()
     }
 
+    fn events(&self) -> Vec<Direction> {
+        self.events.iter().map(Event::direction).collect()
+    }
+
+    fn evaluate_event<T: Scalar>(&self, event: usize, state: &[T], parameters: &[T], values: &mut [T]) {
+        let time = T::from(self.frozen.unwrap_or(0.0));
+        let Some((condition, next)) = values.split_first_mut() else { return };
+        *condition = self.events[event].condition(time, state, parameters);
+        if !next.is_empty() {
+            next.copy_from_slice(state);
+            self.events[event].apply(time, next, parameters);
+        }
+    }
+
     fn dimension(&self) -> usize {
         self.states.len()
     }
@@ -268,6 +289,26 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         .iter()
         .map(|equation| lowering.lower(equation, Scope::Field))
         .collect::<Result<Vec<_>, _>>()?;
+    let conditions = declarations
+        .events
+        .iter()
+        .map(|event| lowering.lower(&event.condition, Scope::Field))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut actions = Vec::new();
+    for event in &declarations.events {
+        let mut list = Vec::new();
+        for assignment in &event.assignments {
+            let value = lowering.lower(&assignment.expression, Scope::Field)?;
+            match declarations.action(&assignment.name)? {
+                Some(action) => list.push((action, value)),
+                None => lowering.warnings.push(Warning::new(
+                    assignment.name.span,
+                    format!("`{}` is ignored: events are located where they happen", assignment.name.text),
+                )),
+            }
+        }
+        actions.push(list);
+    }
     let mut auxiliary = Vec::new();
     let mut auxiliaries = Vec::new();
     let mut left_out = Vec::new();
@@ -308,7 +349,21 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
             schedule(&graph, &results, states, parameters + thresholds.len()).ok_or_else(too_large)
         })
         .transpose()?;
-    let switches = TimeSwitches::of(&lowering.graph, &field);
+    let switches = TimeSwitches::of(&lowering.graph, &field, &conditions);
+    let events = declarations.events.iter().zip(&conditions).zip(&actions);
+    let events = events
+        .map(|((definition, &condition), actions)| {
+            Ok(Event {
+                place: filled(definition.span.into(), source_lines),
+                direction: definition.direction,
+                condition: compile(&[condition], states)?,
+                actions: actions
+                    .iter()
+                    .map(|&(action, value)| Ok((action, compile(&[value], states)?)))
+                    .collect::<Result<_, OdeError>>()?,
+            })
+        })
+        .collect::<Result<_, OdeError>>()?;
     let field = compile(&field, states)?;
     let time =
         if field.uses_time() { lowering.time.map(|span| filled(span.into(), source_lines)) } else { None };
@@ -360,6 +415,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         field,
         regions,
         thresholds,
+        events,
         auxiliary,
         derivation,
         initial,

@@ -7,6 +7,7 @@
 use crate::error::{OdeError, Span, nearest};
 use crate::expression::parse_number;
 use crate::source::Text;
+use arclength::Direction;
 
 /// A name as written, and where.
 #[derive(Clone, Debug)]
@@ -49,12 +50,23 @@ pub(crate) enum Statement {
     Options(usize),
     /// `table f % 101 0 1 sin(t)`: the name, number of points and their range, and where the formula starts.
     Table(Name, TableRange, usize),
+    /// `global 1 {x-1} {x=0;y=y+1}`
+    Event(EventStatement),
     /// A line that has no meaning here, with what to say about it.
     Ignored(Span, String),
 }
 
+/// `global sign condition {name=expression; ...}`; the numbers are where expressions start and end.
+#[derive(Debug)]
+pub(crate) struct EventStatement {
+    pub span: Span,
+    pub direction: Direction,
+    pub condition: (usize, usize),
+    pub assignments: Vec<(Name, usize, usize)>,
+}
+
 /// Directives that are understood, for suggestions.
-const DIRECTIVES: [&str; 8] = ["par", "number", "init", "aux", "set", "table", "only", "done"];
+const DIRECTIVES: [&str; 9] = ["par", "number", "init", "aux", "set", "table", "only", "global", "done"];
 
 /// Where the points of a table lie.
 #[derive(Clone, Copy, Debug)]
@@ -231,10 +243,7 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
             "a file of options is not read: give the options on a line @".to_owned(),
         )),
         [b'g', b'r', ..] => refuse("a group is", "write its parts as plain equations"),
-        [b'g', ..] => refuse(
-            "events that reset the state (global) are",
-            "only smooth systems can be continued; remove the line to follow the flow between events",
-        ),
+        [b'g', ..] => event(line, &word, rest),
         [b'w', ..] => {
             refuse("noise (wiener) is", "remove the line and declare the noise as a parameter with value 0")
         }
@@ -304,6 +313,54 @@ fn table(line: &Text, word: &Name, rest: usize) -> Result<Statement, OdeError> {
     }
     let range = TableRange { points: points as u32, low, high };
     Ok(Statement::Table(Name { text: name, span: name_span }, range, position))
+}
+
+/// `global 1 {x-1} {x=0;y=y+1}`, the first braces being optional.
+fn event(line: &Text, word: &Name, rest: usize) -> Result<Statement, OdeError> {
+    let malformed = |start: usize, end: usize, what: &str| {
+        let message = format!("{what}; an event is written global 1 {{x-1}} {{x=0;y=y+1}}");
+        Err(OdeError::syntax(line.span(start, end), message))
+    };
+    let sign_end = line.find(rest, |character| character.is_whitespace() || character == '{');
+    let direction = match line.string(rest, sign_end).as_str() {
+        "1" | "+1" => Direction::Rising,
+        "-1" => Direction::Falling,
+        "0" => Direction::Either,
+        _ => {
+            return malformed(
+                rest,
+                sign_end,
+                "expected the sign of the passage of the condition through zero: 1 (rising), -1 (falling) or 0 (both)",
+            );
+        }
+    };
+    let start = line.skip_blanks(sign_end);
+    let is_braced = line.at(start) == '{';
+    let condition_start = start + usize::from(is_braced);
+    let condition_end = line.find(condition_start, |character| matches!(character, '{' | '}'));
+    let open = line.find(condition_end, |character| character == '{');
+    let close = line.find(open, |character| character == '}');
+    if line.skip_blanks(condition_start) >= condition_end {
+        return malformed(start, condition_end, "expected a condition");
+    }
+    if close == line.len() {
+        return malformed(open, line.len(), "expected assignments in braces");
+    }
+    let mut assignments = Vec::new();
+    let mut position = open + 1;
+    while position < close {
+        let end = line.find(position, |character| character == ';').min(close);
+        if line.skip_blanks(position) < end {
+            let (name, name_end) = name_at(line, position)?;
+            assignments.push((name, after_equals(line, name_end)?, end));
+        }
+        position = end + 1;
+    }
+    if assignments.is_empty() {
+        return malformed(open, close + 1, "expected an assignment");
+    }
+    let condition = (condition_start, condition_end);
+    Ok(Statement::Event(EventStatement { span: word.span, direction, condition, assignments }))
 }
 
 fn set(line: &Text, rest: usize) -> Result<Statement, OdeError> {

@@ -43,10 +43,10 @@ pub(crate) struct TimeSwitches {
 }
 
 impl TimeSwitches {
-    /// The switches of a field, given by its nodes.
-    pub(crate) fn of(graph: &Graph, field: &[NodeId]) -> Self {
+    /// The switches of a field, given by its nodes, and of the conditions of events, which switch at zero, too.
+    pub(crate) fn of(graph: &Graph, field: &[NodeId], conditions: &[NodeId]) -> Self {
         let all = graph.operations();
-        let used = graph.needed_for(field.iter().copied());
+        let used = graph.needed_for(field.iter().chain(conditions).copied());
         let mut of_time = vec![false; all.len()];
         let mut of_state = vec![false; all.len()];
         for (index, operation) in all.iter().enumerate() {
@@ -62,6 +62,7 @@ impl TimeSwitches {
             .zip(&used)
             .filter(|(_, used)| **used)
             .filter_map(|(operation, _)| trigger(*operation))
+            .chain(conditions.iter().map(|condition| Trigger::Zero(*condition)))
             .filter(|trigger| match *trigger {
                 Trigger::Zero(a) | Trigger::Whole(a) => varies(a),
                 Trigger::Equal(a, b) | Trigger::WholeQuotient(a, b) => {

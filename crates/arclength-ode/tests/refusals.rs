@@ -35,7 +35,13 @@ fn what_is_not_an_ordinary_differential_equation() {
     refused("x(t)=int{exp(-t)#x}\n", 1, 1, "integral equations");
     refused("x'=-x+int{exp(-t)#x}\n", 1, 7, "integrals over the past");
     refused("x'=z\nmarkov z 2\n{0} {1}\n{1} {0}\n", 2, 1, "Markov");
-    refused("x'=1\nglobal 1 x-1 {x=0}\n", 2, 1, "events that reset");
+    refused(
+        "x'=a\npar a=1\nglobal 1 x-1 {x=0;a=2}\n",
+        3,
+        19,
+        "the parameter `a` is not supported; make it a state",
+    );
+    refused("x'=1\nglobal 1 delay(x,1) {x=0}\n", 2, 10, "delays");
     refused("x'=1\nexport {x} {y}\n", 2, 1, "external library");
     refused("x(t+1)=x/2\n", 1, 1, "maps");
     refused("x'=x/2\n@ total=10,meth=discrete\n", 2, 17, "maps");
@@ -50,6 +56,13 @@ fn what_is_not_an_ordinary_differential_equation() {
 fn slips_of_the_pen() {
     refused("x' = -gama*x\npar gamma=1\n", 1, 7, "unknown name `gama`; did you mean `gamma`?");
     refused("x'=sni(x)\n", 1, 4, "unknown function `sni`; did you mean `sin`?");
+    refused("x'=1\nglobal 2 x-1 {x=0}\n", 2, 8, "the sign of the passage");
+    refused("x'=1\nglobal x-1 {x=0}\n", 2, 8, "the sign of the passage");
+    refused("x'=1\nglobal 1 x-1\n", 2, 13, "assignments in braces");
+    refused("x'=1\nglobal 1 {x-1} {}\n", 2, 16, "expected an assignment");
+    refused("x'=1\nglobal 1 {} {x=0}\n", 2, 10, "expected a condition");
+    refused("x'=1\nglobal 1 x-1 {x=0;z=1}\n", 2, 19, "unknown state `z`");
+    refused("x'=1\nk=x\nglobal 1 x-1 {k=0}\n", 3, 15, "unknown state `k`");
     refused("voltage'=1\ninit votlage=2\n", 2, 6, "unknown state `votlage`; did you mean `voltage`?");
     refused("x'=2x\n", 1, 5, "products are written with *");
     refused("x'=20sin(x)\n", 1, 6, "products are written with *");

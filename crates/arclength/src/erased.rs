@@ -6,6 +6,7 @@
 //! is not on the list does not compile.
 
 use crate::differentiation::{Dual, Scalar};
+use crate::direction::Direction;
 use crate::threshold::Threshold;
 
 /// Chunks of directions of a Jacobian, and the same with one and two more infinitesimals.
@@ -29,6 +30,16 @@ pub trait FieldScalar: Scalar {
     /// Writes `f(state, parameters)` into `derivative`, by the entry for this scalar.
     #[doc(hidden)]
     fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]);
+
+    /// Writes the condition of an event and the state behind it into `values`, by the entry for this scalar.
+    #[doc(hidden)]
+    fn evaluate_event(
+        field: &dyn Table,
+        event: usize,
+        state: &[Self],
+        parameters: &[Self],
+        values: &mut [Self],
+    );
 }
 
 /// A scalar that Jacobians are computed with: `f64` for the value, dual numbers with four or eight directions for the columns.
@@ -69,27 +80,27 @@ impl<T: Scalar, const N: usize> Lift<N> for T {
 macro_rules! with_field_scalars {
     ($macro:ident) => {
         $macro! {
-            evaluate_value: f64;
-            evaluate_narrow: Narrow;
-            evaluate_wide: Wide;
-            evaluate_narrow_along: NarrowAlong;
-            evaluate_wide_along: WideAlong;
-            evaluate_narrow_along_pair: NarrowAlongPair;
-            evaluate_wide_along_pair: WideAlongPair;
-            evaluate_narrow_along_twice: NarrowAlongTwice;
-            evaluate_pair: Pair;
-            evaluate_first: First;
-            evaluate_second: Second;
-            evaluate_third: Third;
-            evaluate_fourth: Fourth;
-            evaluate_fifth: Fifth;
+            evaluate_value, event_value: f64;
+            evaluate_narrow, event_narrow: Narrow;
+            evaluate_wide, event_wide: Wide;
+            evaluate_narrow_along, event_narrow_along: NarrowAlong;
+            evaluate_wide_along, event_wide_along: WideAlong;
+            evaluate_narrow_along_pair, event_narrow_along_pair: NarrowAlongPair;
+            evaluate_wide_along_pair, event_wide_along_pair: WideAlongPair;
+            evaluate_narrow_along_twice, event_narrow_along_twice: NarrowAlongTwice;
+            evaluate_pair, event_pair: Pair;
+            evaluate_first, event_first: First;
+            evaluate_second, event_second: Second;
+            evaluate_third, event_third: Third;
+            evaluate_fourth, event_fourth: Fourth;
+            evaluate_fifth, event_fifth: Fifth;
         }
     };
 }
 pub(crate) use with_field_scalars;
 
 macro_rules! table {
-    ($($method:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
         /// A field, for the scalars in use.
         pub trait Table: Sync {
             /// As `VectorField::state_names`.
@@ -100,9 +111,19 @@ macro_rules! table {
             fn dimension(&self) -> usize;
             /// As `VectorField::thresholds`.
             fn thresholds(&self) -> Vec<Threshold>;
+            /// As `VectorField::events`.
+            fn events(&self) -> Vec<Direction>;
             $(
                 /// As `VectorField::evaluate`.
                 fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);
+                /// As `VectorField::evaluate_event`.
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                );
             )*
         }
 
@@ -110,6 +131,17 @@ macro_rules! table {
             #[inline(always)]
             fn evaluate(field: &dyn Table, state: &[Self], parameters: &[Self], derivative: &mut [Self]) {
                 field.$method(state, parameters, derivative);
+            }
+
+            #[inline(always)]
+            fn evaluate_event(
+                field: &dyn Table,
+                event: usize,
+                state: &[Self],
+                parameters: &[Self],
+                values: &mut [Self],
+            ) {
+                field.$event(event, state, parameters, values);
             }
         })*
     };
@@ -145,6 +177,22 @@ impl<'a> ErasedField<'a> {
     /// As [`crate::VectorField::thresholds`].
     pub(crate) fn thresholds(&self) -> Vec<Threshold> {
         self.0.thresholds()
+    }
+
+    /// As [`crate::VectorField::events`].
+    pub(crate) fn events(&self) -> Vec<Direction> {
+        self.0.events()
+    }
+
+    /// As [`crate::VectorField::evaluate_event`], for the scalars of the list.
+    pub(crate) fn evaluate_event<T: FieldScalar>(
+        &self,
+        event: usize,
+        state: &[T],
+        parameters: &[T],
+        values: &mut [T],
+    ) {
+        T::evaluate_event(self.0, event, state, parameters, values);
     }
 
     /// As [`crate::VectorField::evaluate`], for the scalars of the list.

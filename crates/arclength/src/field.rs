@@ -4,6 +4,7 @@
 //! with dual numbers where derivatives are needed.
 
 use crate::differentiation::Scalar;
+use crate::direction::Direction;
 use crate::erased::*;
 use crate::threshold::Threshold;
 
@@ -70,10 +71,51 @@ pub trait VectorField: Sync {
     {
         ErasedField::new(self)
     }
+
+    /// The events of the field, at which the state jumps: for each, in which direction its condition passes zero where it happens;
+    /// empty for a field whose motions are continuous.
+    ///
+    /// ```
+    /// use arclength::{Direction, Scalar, VectorField};
+    ///
+    /// /// `v' = i - v`, set back to 0 where `v` reaches 1.
+    /// struct IntegrateAndFire;
+    /// impl VectorField for IntegrateAndFire {
+    ///     fn state_names(&self) -> Vec<String> { vec!["v".into()] }
+    ///     fn parameter_names(&self) -> Vec<String> { vec!["i".into()] }
+    ///     fn evaluate<T: Scalar>(&self, v: &[T], i: &[T], slope: &mut [T]) {
+    ///         slope[0] = i[0] - v[0];
+    ///     }
+    ///     fn events(&self) -> Vec<Direction> { vec![Direction::Rising] }
+    ///     fn evaluate_event<T: Scalar>(&self, _event: usize, v: &[T], _i: &[T], values: &mut [T]) {
+    ///         let (condition, next) = values.split_at_mut(1);
+    ///         condition[0] = v[0] - 1.0;
+    ///         if let [next] = next {
+    ///             *next = T::zero();
+    ///         }
+    ///     }
+    /// }
+    ///
+    /// let mut values = [0.0; 2];
+    /// IntegrateAndFire.evaluate_event(0, &[1.25], &[2.0], &mut values);
+    /// assert_eq!(values, [0.25, 0.0]);
+    /// ```
+    fn events(&self) -> Vec<Direction> {
+        Vec::new()
+    }
+
+    /// Writes the condition of an event at a state into the first of `values`, and behind it, if there is room, the state to which
+    /// the event takes this one.
+    ///
+    /// A field with [events](Self::events) defines it. Events that happen at the same state follow each other in their order, each
+    /// from the state to which the one before has led.
+    fn evaluate_event<T: Scalar>(&self, event: usize, state: &[T], parameters: &[T], values: &mut [T]) {
+        let _ = (event, state, parameters, values);
+    }
 }
 
 macro_rules! vector_field_table {
-    ($($method:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
         impl<F: VectorField> Table for F {
             fn state_names(&self) -> Vec<String> {
                 VectorField::state_names(self)
@@ -87,9 +129,23 @@ macro_rules! vector_field_table {
             fn thresholds(&self) -> Vec<Threshold> {
                 VectorField::thresholds(self)
             }
-            $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
-                self.evaluate(state, parameters, derivative);
-            })*
+            fn events(&self) -> Vec<Direction> {
+                VectorField::events(self)
+            }
+            $(
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                    self.evaluate(state, parameters, derivative);
+                }
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                ) {
+                    self.evaluate_event(event, state, parameters, values);
+                }
+            )*
         }
     };
 }
@@ -115,5 +171,11 @@ impl<F: VectorField> VectorField for &F {
     }
     fn erased(&self) -> ErasedField<'_> {
         (**self).erased()
+    }
+    fn events(&self) -> Vec<Direction> {
+        (**self).events()
+    }
+    fn evaluate_event<T: Scalar>(&self, event: usize, state: &[T], parameters: &[T], values: &mut [T]) {
+        (**self).evaluate_event(event, state, parameters, values);
     }
 }

@@ -10,6 +10,7 @@ pub mod continuation;
 pub mod control;
 pub mod cycle;
 pub mod differentiation;
+mod direction;
 pub mod equilibrium;
 mod erased;
 pub mod error;
@@ -25,6 +26,7 @@ mod threshold;
 
 pub use arclength_numbers as numbers;
 pub use differentiation::{Dual, Scalar};
+pub use direction::Direction;
 pub use erased::ErasedField;
 pub use error::Error;
 pub use field::VectorField;

@@ -143,6 +143,7 @@ impl CyclesRequest {
     fn change(&self, mut chosen: ChosenModel, start: &str) -> Result<ChosenModel, Error> {
         chosen.set(&self.set)?;
         chosen.along(&["along"], &self.along)?;
+        chosen.has_continuous_cycles()?;
         chosen.starts_within(&["along"], &self.along, start)?;
         self.along.check_values(&self.at)?;
         Ok(chosen)

@@ -128,9 +128,13 @@ impl LocusRequest {
                 point.label
             ))
         })?;
+        let is_of_cycles = matches!(start, Start::Cycle(..) | Start::HeldCycle(..));
+        if is_of_cycles {
+            chosen.has_continuous_cycles()?;
+        }
         let mut monitors = Monitors::default();
         for asked in &self.monitors {
-            if let Start::Cycle(..) | Start::HeldCycle(..) = start {
+            if is_of_cycles {
                 monitors.on_cycles.push((asked.clone(), asked.on_cycles(chosen)?));
             } else {
                 monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(chosen)?));

@@ -3,8 +3,9 @@
 //! Where the fields on both sides of a switch push towards it the motion slides along it, by the mean of both fields that keeps the
 //! switch function at its border (Filippov, *Differential Equations with Discontinuous Righthand Sides*, 1988).
 
+use super::condition::Condition;
 use arclength::integration::{JacobianColumns, System, exact_jacobian};
-use arclength_ode::Model;
+use arclength_ode::{Event, Model, Outcome};
 
 /// The right-hand side of a model in an interval of time, at times beyond it that at its ends.
 #[derive(Clone, Debug)]
@@ -62,6 +63,47 @@ impl<'a> Flow<'a> {
         let mut values = vec![0.0; state.len() + count];
         self.model.evaluate_at(self.clamped(time), state, &self.parameters, &mut values);
         values.split_off(state.len())
+    }
+
+    /// The condition of an event.
+    pub(super) fn condition_value(&self, event: &Event, time: f64, state: &[f64]) -> f64 {
+        event.condition(self.clamped(time), state, &self.parameters)
+    }
+
+    /// The condition of an event, with its rate along the motion; `sizes` are magnitudes of states that rounding is
+    /// measured by where they are larger than the state.
+    pub(super) fn condition(&self, event: &Event, time: f64, state: &[f64], sizes: &[f64]) -> Condition {
+        let parameters = constants(&self.parameters);
+        let last = state.len();
+        let clamped = self.clamped(time);
+        let mut gradients = vec![0.0; (last + 1) * (last + 1)];
+        exact_jacobian(
+            |state, value| value[0] = event.condition(state[last], &state[..last], &parameters),
+            &[state, &[clamped]].concat(),
+            &mut gradients,
+        );
+        let mut velocity = self.velocity(time, state);
+        velocity.push(if clamped == time { 1.0 } else { 0.0 });
+        let sizes = sizes.iter().copied().chain(std::iter::repeat(0.0));
+        let sizes = state.iter().zip(sizes).map(|(value, size)| value.abs().max(size)).chain([time.abs()]);
+        let mut condition = Condition {
+            value: self.condition_value(event, time, state),
+            rate: 0.0,
+            value_noise: 0.0,
+            rate_noise: 0.0,
+        };
+        for ((gradient, velocity), size) in gradients.iter().step_by(last + 1).zip(&velocity).zip(sizes) {
+            condition.rate += gradient * velocity;
+            condition.rate_noise += (gradient * velocity).abs();
+            condition.value_noise += (gradient * size).abs();
+        }
+        condition.value_noise += condition.rate_noise * time.abs();
+        condition
+    }
+
+    /// Takes a state to that behind an event.
+    pub(super) fn apply(&self, event: &Event, time: f64, state: &mut [f64]) -> Outcome {
+        event.apply(self.clamped(time), state, &self.parameters)
     }
 
     /// The rates of a switch function along motions with these two velocities.

@@ -121,6 +121,18 @@ impl<'a> Stage<'a> {
             .collect()
     }
 
+    /// The conditions of the events of the model.
+    pub(super) fn model_events(&self, phase: &Phase) -> impl Iterator<Item = Event<'a>> {
+        let flow = self.flow(phase);
+        self.model.global_events().iter().map(move |event| {
+            let flow = flow.clone();
+            Event::new(move |time, state: &[f64]| flow.condition_value(event, time, state))
+                .direction(event.direction())
+                .before()
+                .terminal()
+        })
+    }
+
     fn border(&self, phase: &Phase, switch: usize, upwards: bool) -> f64 {
         let (Phase::Within(cells) | Phase::Sliding { below: cells, .. }) = phase;
         self.thresholds[switch].borders(cells[switch])[usize::from(upwards)]

@@ -1,6 +1,7 @@
 //! What a time history is asked for by, and how it is computed.
 
-use super::motion::{Accuracy, Course, Motion};
+use super::accuracy::Accuracy;
+use super::motion::{Course, Ending, Motion};
 use super::result::HistoryResult;
 use crate::error::Error;
 use crate::model::ChosenModel;
@@ -257,23 +258,8 @@ impl SimulateAnalysis {
         let chosen = &self.chosen;
         let mut warnings = Vec::new();
         let motion = self.follow(&mut warnings)?;
-        let count = motion.samples.len();
-        if let Some(time) = motion.left_bound {
-            let bound = readable(self.bound);
-            if count == 0 {
-                let problem =
-                    format!("the motion leaves it at t = {}, before the first sample", readable(time));
-                return Err(Error::invalid(
-                    &["bound"],
-                    bound,
-                    problem,
-                    "a larger one, or an earlier first sample",
-                ));
-            }
-            warnings.push(format!(
-                "the motion left the bound {bound} by t = {} and was not followed further; a larger --bound does",
-                readable(time)
-            ));
+        if let Some((time, ending)) = motion.ending {
+            self.tell(time, ending, motion.samples.times.is_empty(), &mut warnings)?;
         }
         if let Some(time) = motion.unknown_switches {
             warnings.push(format!(
@@ -282,13 +268,63 @@ impl SimulateAnalysis {
             ));
         }
         let states = (0..chosen.model.states().len())
-            .map(|index| motion.samples.iter().map(|sample| sample[index]).collect())
+            .map(|index| motion.samples.states.iter().map(|sample| sample[index]).collect())
             .collect();
-        Ok(HistoryResult::new(chosen, self.times[..count].to_vec(), states, warnings))
+        Ok(HistoryResult::new(chosen, motion.samples.times, states, warnings))
+    }
+
+    /// Says why the motion was not followed to the end.
+    fn tell(
+        &self,
+        time: f64,
+        ending: Ending,
+        is_empty: bool,
+        warnings: &mut Vec<String>,
+    ) -> Result<(), Error> {
+        let line = |event: usize| self.chosen.model.global_events()[event].place().line;
+        let time = readable(time);
+        let bound = readable(self.bound);
+        let (fields, given, story, allowed): (&'static [&'static str], _, _, _) = match ending {
+            Ending::LeftBound => (
+                &["bound"],
+                bound.clone(),
+                format!("the motion leaves it at t = {time}"),
+                "a larger one, or an earlier first sample",
+            ),
+            Ending::Stopped(event) => (
+                &["transient"],
+                readable(self.times[0]),
+                format!("the motion ends at t = {time}, by the event of line {} (arret)", line(event)),
+                "an earlier first sample",
+            ),
+            Ending::Accumulation(event) => (
+                &["transient"],
+                readable(self.times[0]),
+                format!(
+                    "the event of line {} happens again and again by t = {time} while no time passes",
+                    line(event)
+                ),
+                "an earlier first sample",
+            ),
+        };
+        if is_empty {
+            return Err(Error::invalid(fields, given, format!("{story}, before the first sample"), allowed));
+        }
+        warnings.push(match ending {
+            Ending::LeftBound => format!(
+                "the motion left the bound {bound} by t = {time} and was not followed further; a larger --bound does"
+            ),
+            Ending::Stopped(_) => story,
+            Ending::Accumulation(_) => format!(
+                "{story}: what the model does behind that is not said, and the motion ends there (Zeno); write what holds then \
+                 into the equations"
+            ),
+        });
+        Ok(())
     }
 
     /// Follows the motion, again where a state is so small that its absolute tolerance leaves it too few digits.
-    fn follow(&self, warnings: &mut Vec<String>) -> Result<Motion, IntegrationError> {
+    fn follow(&self, warnings: &mut Vec<String>) -> Result<Motion<'_>, IntegrationError> {
         let chosen = &self.chosen;
         let course = Course {
             model: &chosen.model,

@@ -10,6 +10,7 @@ use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::differentiation::Scalar;
+use crate::direction::Direction;
 use crate::erased::*;
 use crate::field::VectorField;
 use crate::numbers::readable;
@@ -272,6 +273,14 @@ impl<F: VectorField> VectorField for WithTotals<'_, F> {
         self.field.thresholds()
     }
 
+    fn events(&self) -> Vec<Direction> {
+        self.field.events()
+    }
+
+    fn evaluate_event<T: Scalar>(&self, event: usize, state: &[T], parameters: &[T], values: &mut [T]) {
+        self.field.evaluate_event(event, state, parameters, values);
+    }
+
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
         self.field.evaluate(state, parameters, derivative);
         self.drawn.draw(state, derivative);
@@ -299,7 +308,7 @@ impl DrawnToTotals<'_> {
 }
 
 macro_rules! drawn_table {
-    ($($method:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
         impl Table for DrawnToTotals<'_> {
             fn state_names(&self) -> Vec<String> {
                 self.field.state_names()
@@ -313,10 +322,24 @@ macro_rules! drawn_table {
             fn thresholds(&self) -> Vec<Threshold> {
                 self.field.thresholds()
             }
-            $(fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
-                self.field.evaluate(state, parameters, derivative);
-                self.draw(state, derivative);
-            })*
+            fn events(&self) -> Vec<Direction> {
+                self.field.events()
+            }
+            $(
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                    self.field.evaluate(state, parameters, derivative);
+                    self.draw(state, derivative);
+                }
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                ) {
+                    self.field.evaluate_event(event, state, parameters, values);
+                }
+            )*
         }
     };
 }

@@ -2,23 +2,12 @@
 
 use super::chebyshev::ChebyshevPartition;
 use super::{Stepper, System};
+use crate::direction::Direction;
 
 /// Relative resolution of the time of an event: four units in the last place.
 const TIME_RESOLUTION: f64 = 4.0 * f64::EPSILON;
 /// Iterations of root finding; each one at least halves the bracket every second time.
 const MAXIMUM_ITERATIONS: usize = 200;
-
-/// Which crossings of zero count, in the direction of integration.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Direction {
-    /// From negative to positive.
-    Rising,
-    /// From positive to negative.
-    Falling,
-    /// Both.
-    #[default]
-    Either,
-}
 
 /// A function of time and state.
 type EventFunction<'a> = dyn FnMut(f64, &[f64]) -> f64 + 'a;
@@ -32,12 +21,24 @@ pub struct Event<'a> {
     pub(super) function: Box<EventFunction<'a>>,
     direction: Direction,
     pub(super) is_terminal: bool,
+    is_before: bool,
 }
 
 impl<'a> Event<'a> {
     /// An event at the zeros of `function(time, state)`, in either direction, that does not end the integration.
     pub fn new(function: impl FnMut(f64, &[f64]) -> f64 + 'a) -> Self {
-        Self { function: Box::new(function), direction: Direction::Either, is_terminal: false }
+        Self {
+            function: Box::new(function),
+            direction: Direction::Either,
+            is_terminal: false,
+            is_before: false,
+        }
+    }
+
+    /// Counts crossings in these directions only.
+    pub fn direction(mut self, direction: Direction) -> Self {
+        self.direction = direction;
+        self
     }
 
     /// Counts crossings from negative to positive only.
@@ -52,6 +53,12 @@ impl<'a> Event<'a> {
         self
     }
 
+    /// Locates crossings at the last time before the zero, not at the first one behind it.
+    pub fn before(mut self) -> Self {
+        self.is_before = true;
+        self
+    }
+
     /// Ends the integration at the first crossing that counts.
     pub fn terminal(mut self) -> Self {
         self.is_terminal = true;
@@ -61,11 +68,12 @@ impl<'a> Event<'a> {
 
 impl std::fmt::Debug for Event<'_> {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { direction, is_terminal, .. } = self;
+        let Self { direction, is_terminal, is_before, .. } = self;
         formatter
             .debug_struct("Event")
             .field("direction", direction)
             .field("is_terminal", is_terminal)
+            .field("is_before", is_before)
             .finish()
     }
 }
@@ -75,7 +83,7 @@ impl std::fmt::Debug for Event<'_> {
 pub struct Crossing {
     /// Index of the event function.
     pub event: usize,
-    /// Time of the crossing: on the far side of the zero, within rounding.
+    /// Time of the crossing, within rounding: on the far side of the zero, or on the near one for an event that asks for that.
     pub time: f64,
     /// State at that time.
     pub state: Vec<f64>,
@@ -99,10 +107,15 @@ impl EventLocator {
         Self { partition: ChebyshevPartition::new(), signs, scratch: vec![0.0; state.len()] }
     }
 
-    /// At the start of an integration of a state of `dimension` numbers from where `count` event functions count as positive, even if
-    /// they are zero or, by rounding, below.
-    pub fn from_positive(count: usize, dimension: usize) -> Self {
-        Self { partition: ChebyshevPartition::new(), signs: vec![1.0; count], scratch: vec![0.0; dimension] }
+    /// At the start of an integration of a state of `dimension` numbers from where the event functions count as having these signs,
+    /// even if they are zero or, by rounding, have others.
+    pub fn from_signs(signs: Vec<f64>, dimension: usize) -> Self {
+        Self { partition: ChebyshevPartition::new(), signs, scratch: vec![0.0; dimension] }
+    }
+
+    /// The last sign that was not zero of each event function, at the end of the last step without a terminal crossing.
+    pub fn signs(&self) -> &[f64] {
+        &self.signs
     }
 
     /// Appends the crossings of the last step to `crossings`, in the order in which they are passed, up to
@@ -118,7 +131,7 @@ impl EventLocator {
         let (start, end) = (stepper.previous_time(), stepper.time());
         let scratch = &mut self.scratch;
         for (index, event) in events.iter_mut().enumerate() {
-            let Event { function, direction, is_terminal } = event;
+            let Event { function, direction, is_terminal, is_before } = event;
             let function = std::cell::RefCell::new((function, &mut *scratch));
             let evaluate = |time: f64| {
                 let (function, scratch) = &mut *function.borrow_mut();
@@ -136,10 +149,10 @@ impl EventLocator {
                     if new_sign * *last_sign < 0.0 {
                         let passed = if new_sign > 0.0 { Direction::Rising } else { Direction::Falling };
                         if *direction == Direction::Either || *direction == passed {
-                            let crossing_time = far_side_of_zero(&evaluate, last_time, time, value);
+                            let [before, behind] = sides_of_zero(&evaluate, last_time, time, value);
                             crossings.push(Crossing {
                                 event: index,
-                                time: crossing_time,
+                                time: if *is_before { before } else { behind },
                                 state: Vec::new(),
                                 direction: passed,
                             });
@@ -179,17 +192,12 @@ fn sign(value: f64) -> f64 {
 }
 
 /// Narrows a change of sign between `near` and `far` (Illinois variant of regula falsi, with a bisection
-/// whenever that is slow) and returns the end of the bracket with the sign of the far end.
-pub(crate) fn far_side_of_zero(
-    function: &impl Fn(f64) -> f64,
-    near: f64,
-    far: f64,
-    value_at_far: f64,
-) -> f64 {
+/// whenever that is slow) and returns the ends of the bracket, of which the second has the sign of the far end.
+fn sides_of_zero(function: &impl Fn(f64) -> f64, near: f64, far: f64, value_at_far: f64) -> [f64; 2] {
     let far_sign = sign(value_at_far);
     let (mut a, mut b, mut value_a, mut value_b) = (near, far, function(near), value_at_far);
     if sign(value_a) == far_sign {
-        return near;
+        return [near; 2];
     }
     for iteration in 0..MAXIMUM_ITERATIONS {
         let width = (b - a).abs();
@@ -212,5 +220,5 @@ pub(crate) fn far_side_of_zero(
             value_b *= 0.5;
         }
     }
-    b
+    [a, b]
 }

@@ -38,9 +38,10 @@ mod variational;
 #[cfg(test)]
 mod tests;
 
+pub use crate::direction::Direction;
 pub(crate) use equal_steps::equal_steps;
 pub use error::IntegrationError;
-pub use event::{Crossing, Direction, Event, EventLocator};
+pub use event::{Crossing, Event, EventLocator};
 pub use integrator::{Integrator, Method};
 pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
