@@ -3,8 +3,14 @@
 mod flow;
 mod motion;
 mod phase;
+mod picture;
+mod plot;
 mod request;
 mod result;
+mod section;
+mod smooth;
 
+pub use plot::{PlotError, PlotRequest};
 pub use request::{IntegrationMethod, SimulateAnalysis, SimulateRequest};
 pub use result::{Histories, HistoryResult};
+pub use section::{SectionDirection, SectionError, SectionRequest};

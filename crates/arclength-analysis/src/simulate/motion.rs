@@ -7,6 +7,7 @@
 //! Samples inside a step come from its dense output, as long as a step of its own to one of them agrees.
 
 use super::phase::{Phase, Stage};
+use super::section::{Section, SectionWatch};
 use arclength::VectorField;
 use arclength::integration::{EventLocator, IntegrationError, Integrator, Method, Stepper, System};
 use arclength_ode::{GivenUp, Model, Switch};
@@ -63,10 +64,12 @@ pub(super) struct Course<'a> {
     pub end_time: f64,
     /// Magnitude of a state at which it ends.
     pub bound: f64,
+    /// A section whose crossings are wanted.
+    pub section: Option<&'a Section>,
 }
 
 /// A motion as far as it was followed.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Motion {
     /// The states at the sampling times that were reached.
     pub samples: Vec<Vec<f64>>,
@@ -78,6 +81,8 @@ pub(super) struct Motion {
     pub steps: usize,
     /// The time from which on switches in time are not known.
     pub unknown_switches: Option<f64>,
+    /// The section with its crossings.
+    pub section: Option<SectionWatch>,
 }
 
 impl Course<'_> {
@@ -87,7 +92,8 @@ impl Course<'_> {
     /// [`IntegrationError`]; a sample that is no number is one.
     pub(super) fn follow(&self, accuracy: &Accuracy, times: &[f64]) -> Result<Motion, IntegrationError> {
         let thresholds = self.model.thresholds();
-        let mut motion = Motion { sizes: vec![0.0; self.start.len()], ..Motion::default() };
+        let section = self.section.map(|section| section.watch(self.start_time, self.start));
+        let mut motion = Motion { sizes: vec![0.0; self.start.len()], section, ..Motion::default() };
         let mut state = self.start.to_vec();
         let mut time = self.start_time;
         // The side of the last switch on which the field is evaluated.
@@ -196,6 +202,10 @@ impl Course<'_> {
             let crossing = crossings.pop().filter(|_| is_over);
             let reached = crossing.as_ref().map_or(stepper.time(), |crossing| crossing.time);
             samples.record(&mut stepper, reached, motion)?;
+            if let Some(section) = &mut motion.section {
+                section
+                    .record(&mut stepper, reached, |origin, time| samples.step(origin.0, origin.1, time))?;
+            }
             let outside = {
                 let end = crossing.as_ref().map_or(stepper.state(), |crossing| &crossing.state);
                 let sizes = motion.sizes.iter_mut().zip(end);
