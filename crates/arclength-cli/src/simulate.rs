@@ -55,8 +55,8 @@ pub(crate) struct Simulate {
 
     /// What the picture shows; repeatable. Two states x,y: their phase plane (y over x), for a model of two states with nullclines,
     /// directions, equilibria and the invariant curves of saddles. Other lists, as v,ica or t,x,y: each over the time. x:y: always y
-    /// over x, auxiliary quantities too
-    #[arg(long, value_name = "X,Y|A,B,..|X:Y")]
+    /// over x. Auxiliary quantities and expressions too
+    #[arg(long, value_name = "X,Y|A,B,..|X:Y", allow_hyphen_values = true)]
     plot: Vec<PlotRequest>,
 
     /// Limits of axes of the picture [default: the model's @ xlo, xhi, ylo, yhi for what its @ xp, yp name, or what there is to see]

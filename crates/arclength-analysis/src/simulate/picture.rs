@@ -54,7 +54,7 @@ impl DrawnPlot {
     ) -> Self {
         let curve = |pair: [&Plotted; 2]| DrawnCurve {
             names: pair.map(|plotted| plotted.name.clone()),
-            limits: pair.map(|plotted| windows.of(plotted.variable)),
+            limits: windows.of(pair.map(|plotted| plotted.variable)),
             points: times
                 .iter()
                 .zip(states)

@@ -3,6 +3,8 @@
 use crate::error::Error;
 use crate::interval::Interval;
 use crate::model::ChosenModel;
+use crate::monitor::reason;
+use arclength_ode::Quantity;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
@@ -53,6 +55,29 @@ pub(super) enum Variable {
     Time,
     State(usize),
     Auxiliary(usize),
+    /// One of the [`Expressions`].
+    Expression(usize),
+}
+
+/// Other expressions in the names of a model that are drawn.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Expressions(Vec<(String, Quantity)>);
+
+impl Expressions {
+    /// The value of one.
+    pub(super) fn value(&self, index: usize, time: f64, state: &[f64], parameters: &[f64]) -> f64 {
+        self.0[index].1.value_at(time, state, parameters, &[])
+    }
+
+    /// The index of an expression, which is read unless it is known.
+    fn index(&mut self, chosen: &ChosenModel, text: &str) -> Result<usize, String> {
+        if let Some(index) = self.0.iter().position(|(known, _)| known == text) {
+            return Ok(index);
+        }
+        let quantity = chosen.model.quantity(text, &[]).map_err(|error| reason(&error))?;
+        self.0.push((text.to_owned(), quantity));
+        Ok(self.0.len() - 1)
+    }
 }
 
 /// A named quantity.
@@ -88,12 +113,15 @@ impl PlotRequest {
     ///
     /// # Errors
     /// The field `plot` with a name that the model does not have.
-    pub(super) fn resolve(&self, chosen: &ChosenModel) -> Result<Plot, Error> {
+    pub(super) fn resolve(&self, chosen: &ChosenModel, expressions: &mut Expressions) -> Result<Plot, Error> {
         match self {
-            Self::Against(pair) => Ok(Plot::Against(against(chosen, pair)?)),
+            Self::Against([x, y]) => {
+                let mut plotted = |name: &String| plotted(chosen, expressions, &["plot"], name);
+                Ok(Plot::Against(different([plotted(x)?, plotted(y)?])?))
+            }
             Self::Listed(names) => {
-                let listed: Vec<Plotted> =
-                    names.iter().map(|name| plotted(chosen, &["plot"], name)).collect::<Result<_, _>>()?;
+                let mut plotted = |name: &String| plotted(chosen, expressions, &["plot"], name);
+                let listed: Vec<Plotted> = names.iter().map(&mut plotted).collect::<Result<_, _>>()?;
                 let is_state = |plotted: &Plotted| matches!(plotted.variable, Variable::State(_));
                 match <[Plotted; 2]>::try_from(listed) {
                     Ok(pair) if pair.iter().all(is_state) => Ok(Plot::Against(different(pair)?)),
@@ -103,10 +131,6 @@ impl PlotRequest {
             }
         }
     }
-}
-
-fn against(chosen: &ChosenModel, [x, y]: &[String; 2]) -> Result<[Plotted; 2], Error> {
-    different([plotted(chosen, &["plot"], x)?, plotted(chosen, &["plot"], y)?])
 }
 
 fn different(pair: [Plotted; 2]) -> Result<[Plotted; 2], Error> {
@@ -127,8 +151,13 @@ fn histories(listed: Vec<Plotted>) -> Result<Plot, Error> {
     Ok(Plot::Histories(others))
 }
 
-/// The quantity of that name.
-fn plotted(chosen: &ChosenModel, fields: &'static [&'static str], name: &str) -> Result<Plotted, Error> {
+/// The quantity of that name, or an expression.
+fn plotted(
+    chosen: &ChosenModel,
+    expressions: &mut Expressions,
+    fields: &'static [&'static str],
+    name: &str,
+) -> Result<Plotted, Error> {
     let is_named = |other: &String| other.eq_ignore_ascii_case(name);
     let auxiliaries = chosen.auxiliary_names();
     if let Some(index) = chosen.model.state_index(name) {
@@ -141,46 +170,63 @@ fn plotted(chosen: &ChosenModel, fields: &'static [&'static str], name: &str) ->
     if name.eq_ignore_ascii_case("t") {
         return Ok(Plotted { name: "t".to_owned(), variable: Variable::Time });
     }
-    let names: Vec<&str> = ["t"]
-        .into_iter()
-        .chain(chosen.model.states().iter().chain(&auxiliaries).map(String::as_str))
-        .collect();
-    Err(Error::invalid(fields, name, "the model has no such quantity", names.join(", ")))
+    match expressions.index(chosen, name) {
+        Ok(index) => Ok(Plotted { name: name.to_owned(), variable: Variable::Expression(index) }),
+        Err(problem) => {
+            let names = chosen.model.states().iter().chain(&auxiliaries).map(String::as_str);
+            let names: Vec<&str> = ["t"].into_iter().chain(names).collect();
+            let allowed = format!("{}, or an expression in the names of the model", names.join(", "));
+            Err(Error::invalid(fields, name, problem, allowed))
+        }
+    }
 }
 
 /// Limits of the axes of a picture.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Windows(Vec<(Variable, [f64; 2])>);
+#[derive(Clone, Debug, Default)]
+pub(super) struct Windows {
+    asked: Vec<(Variable, [f64; 2])>,
+    /// What is on the axes of the picture that the model itself describes, with their limits.
+    own: Vec<(Variable, Option<[f64; 2]>)>,
+}
 
 impl Windows {
     /// Those that are asked for, and those that the model has for the axes of its own picture.
     ///
     /// # Errors
     /// The field `window` with a name that the model does not have or an infinite interval.
-    pub(super) fn new(chosen: &ChosenModel, asked: &[Interval]) -> Result<Self, Error> {
-        let mut windows = Vec::new();
+    pub(super) fn new(
+        chosen: &ChosenModel,
+        asked: &[Interval],
+        expressions: &mut Expressions,
+    ) -> Result<Self, Error> {
+        let mut windows = Self::default();
         for interval in asked {
-            let plotted = plotted(chosen, &["window"], &interval.key)?;
+            let plotted = plotted(chosen, expressions, &["window"], &interval.key)?;
             if !(interval.start.is_finite() && interval.end.is_finite()) {
                 let problem = "the interval is infinite";
                 return Err(Error::invalid(&["window"], interval.to_string(), problem, "two finite ends"));
             }
-            windows.push((plotted.variable, [interval.start, interval.end]));
+            windows.asked.push((plotted.variable, [interval.start, interval.end]));
         }
         let options = chosen.model.options();
         let own = [(&options.xp, options.xlo, options.xhi), (&options.yp, options.ylo, options.yhi)];
         for (name, low, high) in own {
-            let (Some(name), Some(low), Some(high)) = (name, low, high) else { continue };
-            if let Some(plotted) = plotted(chosen, &["window"], name).ok().filter(|_| low < high) {
-                windows.push((plotted.variable, [low, high]));
-            }
+            let plotted = name.as_ref().and_then(|name| plotted(chosen, expressions, &["window"], name).ok());
+            let limits = low.zip(high).filter(|(low, high)| low < high).map(|(low, high)| [low, high]);
+            windows.own.extend(plotted.map(|plotted| (plotted.variable, limits)));
         }
-        Ok(Self(windows))
+        Ok(windows)
     }
 
-    /// The limits of a quantity.
-    pub(super) fn of(&self, variable: Variable) -> Option<[f64; 2]> {
-        self.0.iter().find(|(known, _)| *known == variable).map(|(_, limits)| *limits)
+    /// The limits of both axes of a curve. Those of the model are for the two quantities that it names itself, and not for the time.
+    pub(super) fn of(&self, pair: [Variable; 2]) -> [Option<[f64; 2]>; 2] {
+        let is_own = self.own.len() == 2 && self.own.iter().all(|(variable, _)| pair.contains(variable));
+        pair.map(|wanted| {
+            let asked =
+                self.asked.iter().find(|(variable, _)| *variable == wanted).map(|(_, limits)| *limits);
+            let own = self.own.iter().find(|(variable, _)| *variable == wanted && wanted != Variable::Time);
+            asked.or_else(|| own.filter(|_| is_own)?.1)
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::motion::{Accuracy, Course, Motion};
 use super::picture::DrawnPlot;
-use super::plot::{Plot, PlotRequest, Variable, Windows};
+use super::plot::{Expressions, Plot, PlotRequest, Variable, Windows};
 use super::result::{HistoryResult, SectionResult};
 use super::section::{Section, SectionRequest};
 use super::smooth::finer_times;
@@ -105,6 +105,7 @@ pub struct SimulateAnalysis {
     absolute: f64,
     accuracy: Accuracy,
     plots: Vec<Plot>,
+    expressions: Expressions,
     windows: Windows,
     section: Option<(SectionRequest, Section)>,
 }
@@ -169,8 +170,10 @@ impl SimulateRequest {
             return Err(Error::invalid(&["points"], points.to_string(), problem, "nothing with a section"));
         }
         let OpenedModel { chosen, mut warnings, .. } = self.model.open()?;
-        let plots = self.plots.iter().map(|plot| plot.resolve(&chosen)).collect::<Result<Vec<_>, _>>()?;
-        let windows = Windows::new(&chosen, &self.window)?;
+        let mut expressions = Expressions::default();
+        let plots = self.plots.iter().map(|plot| plot.resolve(&chosen, &mut expressions));
+        let plots = plots.collect::<Result<Vec<_>, _>>()?;
+        let windows = Windows::new(&chosen, &self.window, &mut expressions)?;
         let section = self
             .section
             .as_ref()
@@ -246,6 +249,7 @@ impl SimulateRequest {
             absolute,
             accuracy,
             plots,
+            expressions,
             windows,
             section,
         })
@@ -383,6 +387,9 @@ impl SimulateAnalysis {
         match variable {
             Variable::Time => time,
             Variable::State(index) => state[index],
+            Variable::Expression(index) => {
+                self.expressions.value(index, time, state, &self.chosen.parameters)
+            }
             Variable::Auxiliary(index) => self.chosen.auxiliary(time, state, &self.chosen.parameters)[index],
         }
     }
