@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
+use crate::start::LabelledSolution;
 use arclength::integration::{IntegrationError, Method};
 use arclength_ode::{NamedSet, Options};
 use kingpin_report::numbers::readable;
@@ -169,7 +170,12 @@ impl SimulateRequest {
             let problem = "samples are at the crossings of the section";
             return Err(Error::invalid(&["points"], points.to_string(), problem, "nothing with a section"));
         }
-        let OpenedModel { chosen, mut warnings, .. } = self.model.open()?;
+        let OpenedModel { chosen, mut warnings, point } = self.model.open()?;
+        let goes_on = matches!(point.map(|point| point.solution), Some(LabelledSolution::Motion { .. }));
+        if goes_on && self.t0.is_none() && !chosen.model.is_autonomous() {
+            let text = "the model depends on the time, which begins anew: to go on where the motion ended, set the time at which it starts (--t0)";
+            warnings.push(text.to_owned());
+        }
         let mut expressions = Expressions::default();
         let plots = self.plots.iter().map(|plot| plot.resolve(&chosen, &mut expressions));
         let plots = plots.collect::<Result<Vec<_>, _>>()?;

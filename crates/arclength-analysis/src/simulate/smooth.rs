@@ -1,7 +1,7 @@
 //! Times at which a motion has to be known for its curves to look smooth.
 
 /// Sine of the angle between neighbouring pieces of a curve that looks smooth.
-const SMOOTH: f64 = 0.1;
+const SMOOTH: f64 = 0.04;
 /// Pieces shorter than this part of the picture are not divided.
 const SHORT: f64 = 0.004;
 /// Pieces longer than this part of the picture are.
