@@ -70,7 +70,7 @@ mod tests {
         }
         assert!(finer_times(&times, &circle(&times)).is_none());
         assert!((100..2000).contains(&times.len()), "{}", times.len());
-        let line: Vec<f64> = (0..=10).map(f64::from).collect();
+        let line: Vec<f64> = (0..=20).map(f64::from).collect();
         assert!(finer_times(&line, &[line.iter().map(|t| [*t, 2.0 * t]).collect()]).is_none());
     }
 }
