@@ -76,7 +76,9 @@ pub(super) fn locate(
             if let Some(solution) = on_finer_mesh(curve, &located.solution, [before, after], defining)? {
                 return Ok(Location::At(solution));
             }
-            let known = is_passed(&located.solution, [before, after], defining)
+            let is_certain = is_passed(&located.solution, [before, after], defining)
+                && stays_when_rounded(curve, &located, defining);
+            let known = is_certain
                 .then(|| located.solution.point.floquet.with_critical(defining.critical()?))
                 .flatten();
             match known {
@@ -125,7 +127,6 @@ fn on_finer_mesh(
 ) -> Result<Option<Solution<CycleInspection>>, Error> {
     let (mut mesh, mut solution) = (curve.collocation.mesh().to_vec(), refuted.clone());
     let mut finer = None;
-    let place = |node: &Node| [2, 1].map(|from_end| node.unknown[node.unknown.len() - from_end]);
     for _ in 0..MOST_HALVINGS {
         if mesh.len() - 1 > curve.resolution.most_intervals {
             return Ok(None);
@@ -142,9 +143,11 @@ fn on_finer_mesh(
         let tangent = start.tangent.clone();
         let Some(mut located) = converge(&mut fine, &tangent, &start, kind)? else { return Ok(None) };
         let floquet = located.solution.point.floquet.clone();
+        let [here, before_it] = [&located.solution, &solution].map(|node| place(&node.unknown));
         let known = if is_critical(&floquet, kind) {
             Some(floquet)
-        } else if is_same_place(place(&solution), place(&located.solution), curve.parameter_scale)
+        } else if is_same_place(here, before_it, curve.parameter_scale)
+            && stays_when_rounded(&fine, &located, kind)
             && is_as_uncertain(&mut fine, &located, kind)?
         {
             kind.critical().and_then(|critical| floquet.with_critical(critical))
@@ -173,6 +176,19 @@ fn on_finer_mesh(
         finer = Some(fine);
     }
     Ok(None)
+}
+
+/// Period and parameter among the unknowns of a cycle.
+fn place(unknown: &[f64]) -> [f64; 2] {
+    [2, 1].map(|from_end| unknown[unknown.len() - from_end])
+}
+
+/// Whether a special cycle stays where it is when its unknowns are rounded: where the parameter does not change to its last digits any
+/// cycle looks like one.
+fn stays_when_rounded(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> bool {
+    let here = place(&located.solution.unknown);
+    let mut all = rounded(curve, located, kind).into_iter();
+    all.all(|cycle| is_same_place(place(&cycle), here, curve.parameter_scale))
 }
 
 /// Whether periods and parameters of two special cycles agree.
