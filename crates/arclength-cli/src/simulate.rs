@@ -54,7 +54,7 @@ pub(crate) struct Simulate {
     method: Method,
 
     /// What the picture shows; repeatable. Two states x,y: their phase plane (y over x), for a model of two states with nullclines,
-    /// directions, equilibria and the invariant curves of saddles. Other lists, as v,ica or t,x,y: each over the time. x:y: always y
+    /// directions, equilibria and the manifolds of saddles. Other lists, as v,ica or t,x,y: each over the time. x:y: always y
     /// over x. Auxiliary quantities and expressions too
     #[arg(long, value_name = "X,Y|A,B,..|X:Y", allow_hyphen_values = true)]
     plot: Vec<PlotRequest>,

@@ -39,7 +39,7 @@ impl PhasePlane {
         }
         for (stable, legend) in [(true, "stable manifold"), (false, "unstable manifold")] {
             let curves: Vec<Vec<[f64; 2]>> = self
-                .invariant_curves
+                .manifolds
                 .iter()
                 .filter(|curve| curve.stable == stable)
                 .map(|curve| curve.points.clone())

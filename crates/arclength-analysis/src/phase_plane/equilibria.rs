@@ -68,7 +68,10 @@ pub(super) fn within(field: &PlaneField<'_>, samples: &GridSamples) -> Option<Ve
             return None;
         }
     }
-    Some(places.into_iter().map(|place| equilibrium(field, place)).collect())
+    // Where the field has no derivatives nothing is known of the motions beside it.
+    let is_smooth =
+        |found: &PlaneEquilibrium| found.eigenvalues.iter().flatten().all(|part| part.is_finite());
+    Some(places.into_iter().map(|place| equilibrium(field, place)).filter(is_smooth).collect())
 }
 
 fn equilibrium(field: &PlaneField<'_>, place: [f64; 2]) -> PlaneEquilibrium {

@@ -1,17 +1,16 @@
-//! The phase plane of a model of two states: nullclines, directions, equilibria with their stability, and the curves through its
-//! saddles along which motions approach or leave them.
+//! The phase plane of a model of two states: nullclines, directions, equilibria with their stability, and the manifolds of its saddles.
 //!
 //! Everything is found within a window. What is smaller than a cell of the grid that is laid over it may be missed: a closed nullcline, or
 //! two equilibria in one cell.
 
 mod drawing;
 mod equilibria;
-mod invariant_curves;
+mod manifolds;
 mod nullclines;
 mod plane_field;
 
 pub use equilibria::{EquilibriumKind, PlaneEquilibrium};
-pub use invariant_curves::InvariantCurve;
+pub use manifolds::Manifold;
 
 use crate::model::ChosenModel;
 use plane_field::PlaneField;
@@ -32,8 +31,8 @@ pub struct PhasePlane {
     pub y_nullclines: Vec<Vec<[f64; 2]>>,
     /// The equilibria in the window; nothing where they form lines.
     pub equilibria: Option<Vec<PlaneEquilibrium>>,
-    /// The stable and the unstable curves of the saddles.
-    pub invariant_curves: Vec<InvariantCurve>,
+    /// The stable and the unstable manifolds of the saddles.
+    pub manifolds: Vec<Manifold>,
     /// Places on a grid with the velocity there.
     #[serde(skip)]
     directions: Vec<([f64; 2], [f64; 2])>,
@@ -45,9 +44,8 @@ impl PhasePlane {
         let field = PlaneField::new(chosen, axes, window);
         let samples = nullclines::GridSamples::of(&field);
         let equilibria = equilibria::within(&field, &samples);
-        let curves = equilibria.iter().flatten().filter(|found| found.kind == EquilibriumKind::Saddle);
-        let invariant_curves =
-            curves.flat_map(|saddle| invariant_curves::through(&field, saddle, equilibria.as_deref()));
+        let saddles = equilibria.iter().flatten().filter(|found| found.kind == EquilibriumKind::Saddle);
+        let manifolds = saddles.flat_map(|saddle| manifolds::of(&field, saddle, equilibria.as_deref()));
         let [x_nullclines, y_nullclines] = [0, 1].map(|axis| {
             let curves = nullclines::zero_curves(&samples, axis, |point| field.velocity(point)[axis]);
             let points = |curve: Vec<[f64; 2]>| curve.into_iter().map(|point| field.point(point)).collect();
@@ -60,7 +58,7 @@ impl PhasePlane {
             window,
             x_nullclines,
             y_nullclines,
-            invariant_curves: invariant_curves.collect(),
+            manifolds: manifolds.collect(),
             directions: drawing::grid().map(|place| (place, field.velocity(place))).collect(),
             equilibria,
         }

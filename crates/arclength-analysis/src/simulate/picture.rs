@@ -68,7 +68,10 @@ impl DrawnPlot {
                 Self::Histories(listed.iter().map(|plotted| curve([&time, plotted])).collect())
             }
             Plot::Against([x, y]) => {
-                let curve = curve([x, y]);
+                let mut curve = curve([x, y]);
+                if is_motion {
+                    curve.points = with_gaps(times, &curve.points);
+                }
                 let axes = match [x.variable, y.variable] {
                     [Variable::State(x), Variable::State(y)] => Some([x, y]),
                     _ => None,
@@ -177,6 +180,18 @@ fn crossing() -> Marker {
     Marker::default().color(palette::BLUE).size(CROSSING)
 }
 
+/// The points of a motion, with a gap wherever it jumps: where two are at one time.
+fn with_gaps(times: &[f64], points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut all = Vec::with_capacity(points.len());
+    for (index, point) in points.iter().enumerate() {
+        if index > 0 && times[index] == times[index - 1] {
+            all.push([f64::NAN; 2]);
+        }
+        all.push(*point);
+    }
+    all
+}
+
 /// The points of a time history, with a gap wherever it jumps: where two values are at one time.
 pub(super) fn history(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
@@ -229,5 +244,7 @@ mod tests {
         assert_eq!(points.len(), 5);
         assert!(points[2].0.is_nan() && points[3] == (1.0, 5.0));
         assert_eq!(history(&[0.0, 1.0], &[2.0, 3.0]), [(0.0, 2.0), (1.0, 3.0)]);
+        let plane = with_gaps(&[0.0, 1.0, 1.0], &[[0.0, 0.0], [1.0, 2.0], [5.0, 2.0]]);
+        assert!(plane.len() == 4 && plane[2][0].is_nan() && plane[3] == [5.0, 2.0]);
     }
 }

@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
+use crate::phase_plane::PhasePlane;
 use crate::start::LabelledSolution;
 use arclength::integration::{IntegrationError, Method};
 use arclength_ode::{NamedSet, Options};
@@ -361,8 +362,20 @@ impl SimulateAnalysis {
             let (times, states) = self.smooth(times.clone(), states.clone())?;
             self.drawn(&times, &states)
         };
+        let phase_planes: Vec<PhasePlane> = plots.iter().filter_map(DrawnPlot::phase_plane).collect();
+        if phase_planes.iter().any(|plane| plane.equilibria.is_none()) {
+            warnings.push("the equilibria in the window form lines: none is marked".to_owned());
+        }
+        let is_plane = |plot: &Plot| matches!(plot.pairs()[..], [[Variable::State(_), Variable::State(_)]]);
+        if chosen.model.states().len() == 2
+            && !chosen.model.is_autonomous()
+            && self.plots.iter().any(is_plane)
+        {
+            let text =
+                "the model depends on the time: its phase plane has no nullclines, directions and equilibria";
+            warnings.push(text.to_owned());
+        }
         let result = HistoryResult::new(chosen, times, &states, warnings);
-        let phase_planes = plots.iter().filter_map(DrawnPlot::phase_plane).collect();
         Ok(HistoryResult { plots, phase_planes, ..result })
     }
 

@@ -146,7 +146,7 @@ fn the_phase_plane_of_a_bistable_oscillator() {
     assert!(points(&plane["x_nullclines"]).iter().all(|[_, y]| y.abs() < 1e-12));
     assert!(points(&plane["y_nullclines"]).iter().all(|[x, y]| (x - x.powi(3) - 0.2 * y).abs() < 1e-11));
     // Both unstable curves of the saddle end in the stable equilibria.
-    let curves = plane["invariant_curves"].as_array().unwrap();
+    let curves = plane["manifolds"].as_array().unwrap();
     let ends: Vec<f64> = curves
         .iter()
         .filter(|curve| curve["stable"] == false)
@@ -161,7 +161,7 @@ fn the_separatrices_of_a_pendulum_are_level_curves() {
     let pendulum = "th'=om\nom'=-sin(th)\ninit th=-3,om=1.5\n";
     let plane = phase_plane(pendulum, "--duration 20 --plot th,om --window th=-7:7,om=-3:3");
     let mut count = 0;
-    for curve in plane["invariant_curves"].as_array().unwrap() {
+    for curve in plane["manifolds"].as_array().unwrap() {
         for point in serde_json::from_value::<Vec<[f64; 2]>>(curve["points"].clone()).unwrap() {
             // The energy of the upright position.
             assert!((point[1].powi(2) / 2.0 - point[0].cos() - 1.0).abs() < 1e-6, "{point:?}");
@@ -201,6 +201,12 @@ fn pictures_are_drawn_of_every_kind() {
         let picture = std::fs::read_to_string(folder.0.path().join("picture.svg")).unwrap();
         assert!(picture.starts_with("<svg") && picture.len() > 3000, "{options}");
     }
+    let run =
+        Folder::with_text("model.ode", "x'=y\ny'=-x+cos(t)\n").run("simulate model.ode --plot x,y -o p.svg");
+    assert!(run.messages.contains("depends on the time"), "{}", run.messages);
+    let run = Folder::with_text("model.ode", "x'=x*(1-x-y)\ny'=-y*(1-x-y)\ninit x=.1,y=.2\n")
+        .run("simulate model.ode --plot x,y -o p.svg");
+    assert!(run.messages.contains("form lines"), "{}", run.messages);
     // Nothing of a model of three states, or of one that depends on the time, is a phase plane.
     for model in ["x'=y\ny'=-x\nz'=-z\ninit x=1\n", "x'=y\ny'=-x+cos(t)\ninit x=1\n"] {
         assert_eq!(section(model, "--duration 5 --plot x,y").1.get("phase_planes"), None);

@@ -1,4 +1,4 @@
-//! The curves through a saddle on which motions approach or leave it, followed as motions that start next to it.
+//! The manifolds of a saddle, on which motions approach or leave it: curves, followed as motions that start next to it.
 
 use super::equilibria::{PlaneEquilibrium, eigenvalues};
 use super::plane_field::PlaneField;
@@ -22,21 +22,21 @@ const MOST_STEPS: usize = 5000;
 /// Times of the slowest rate for which a curve is followed.
 const LONGEST_TIME: f64 = 1e4;
 
-/// One of the curves through a saddle.
+/// One side of a manifold of a saddle.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct InvariantCurve {
+pub struct Manifold {
     /// Whether motions on it approach the saddle.
     pub stable: bool,
     /// Its points, from the saddle on.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The four curves through a saddle.
-pub(super) fn through(
+/// Both sides of both manifolds of a saddle.
+pub(super) fn of(
     field: &PlaneField<'_>,
     saddle: &PlaneEquilibrium,
     equilibria: Option<&[PlaneEquilibrium]>,
-) -> Vec<InvariantCurve> {
+) -> Vec<Manifold> {
     let matrix = field.jacobian(saddle.place);
     let rates = eigenvalues(matrix).map(|value| value.re);
     let others: Vec<[f64; 2]> = equilibria
@@ -53,7 +53,7 @@ pub(super) fn through(
             let mut places = vec![saddle.place];
             follow(field, rate, start, &others, &mut places);
             let points = places.into_iter().map(|place| field.point(place)).collect();
-            curves.push(InvariantCurve { stable: rate < 0.0, points });
+            curves.push(Manifold { stable: rate < 0.0, points });
         }
     }
     curves
