@@ -27,6 +27,13 @@ impl Accuracy {
             .method(self.method)
     }
 
+    /// Differences of states that count as none.
+    pub(super) fn scales(&self, state: &[f64]) -> Vec<f64> {
+        let scale =
+            |(absolute, value): (&f64, &f64)| (absolute + self.relative * value.abs()).max(f64::MIN_POSITIVE);
+        self.absolute.iter().zip(state).map(scale).collect()
+    }
+
     /// The root mean square of the differences of two states in units of their tolerances.
     pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let squares = a.iter().zip(b).zip(&self.absolute).map(|((a, b), absolute)| {

@@ -3,7 +3,7 @@
 //! Where the fields on both sides of a switch push towards it the motion slides along it, by the mean of both fields that keeps the
 //! switch function at its border (Filippov, *Differential Equations with Discontinuous Righthand Sides*, 1988).
 
-use super::condition::Condition;
+use super::condition::{Condition, ROUNDING};
 use arclength::integration::{JacobianColumns, System, exact_jacobian};
 use arclength_ode::{Event, Model, Outcome};
 
@@ -65,6 +65,18 @@ impl<'a> Flow<'a> {
         values.split_off(state.len())
     }
 
+    /// A switch function by the field of the region, with its gradient.
+    pub(super) fn switch_slope(&self, time: f64, state: &[f64], switch: usize) -> Slope {
+        let parameters = constants(&self.parameters);
+        let last = state.len();
+        let mut values = vec![JacobianColumns::constant(0.0); last + switch + 1];
+        let function = |point: &[JacobianColumns]| {
+            self.model.evaluate_at(point[last], &point[..last], &parameters, &mut values);
+            values[last + switch]
+        };
+        Slope::of(function, self.clamped(time), state)
+    }
+
     /// The condition of an event.
     pub(super) fn condition_value(&self, event: &Event, time: f64, state: &[f64]) -> f64 {
         event.condition(self.clamped(time), state, &self.parameters)
@@ -76,23 +88,14 @@ impl<'a> Flow<'a> {
         let parameters = constants(&self.parameters);
         let last = state.len();
         let clamped = self.clamped(time);
-        let mut gradients = vec![0.0; (last + 1) * (last + 1)];
-        exact_jacobian(
-            |state, value| value[0] = event.condition(state[last], &state[..last], &parameters),
-            &[state, &[clamped]].concat(),
-            &mut gradients,
-        );
+        let slope =
+            Slope::of(|point| event.condition(point[last], &point[..last], &parameters), clamped, state);
         let mut velocity = self.velocity(time, state);
         velocity.push(if clamped == time { 1.0 } else { 0.0 });
         let sizes = sizes.iter().copied().chain(std::iter::repeat(0.0));
         let sizes = state.iter().zip(sizes).map(|(value, size)| value.abs().max(size)).chain([time.abs()]);
-        let mut condition = Condition {
-            value: self.condition_value(event, time, state),
-            rate: 0.0,
-            value_noise: 0.0,
-            rate_noise: 0.0,
-        };
-        for ((gradient, velocity), size) in gradients.iter().step_by(last + 1).zip(&velocity).zip(sizes) {
+        let mut condition = Condition { value: slope.value, rate: 0.0, value_noise: 0.0, rate_noise: 0.0 };
+        for ((gradient, velocity), size) in slope.gradient.iter().zip(&velocity).zip(sizes) {
             condition.rate += gradient * velocity;
             condition.rate_noise += (gradient * velocity).abs();
             condition.value_noise += (gradient * size).abs();
@@ -160,6 +163,37 @@ impl<'a> Flow<'a> {
             }
         }
         derivative
+    }
+}
+
+/// A function of state and time at a point, with its gradient.
+#[derive(Clone, Debug)]
+pub(super) struct Slope {
+    pub value: f64,
+    /// By the states and then by the time.
+    pub gradient: Vec<f64>,
+}
+
+impl Slope {
+    fn of(mut function: impl FnMut(&[JacobianColumns]) -> JacobianColumns, time: f64, state: &[f64]) -> Self {
+        let point = [state, &[time]].concat();
+        let mut value = 0.0;
+        let mut columns = vec![0.0; point.len() * point.len()];
+        exact_jacobian(
+            |point, result| {
+                result[0] = function(point);
+                value = result[0].value;
+            },
+            &point,
+            &mut columns,
+        );
+        Self { value, gradient: columns.into_iter().step_by(point.len()).collect() }
+    }
+
+    /// What of the value may be rounding.
+    pub(super) fn noise(&self, time: f64, state: &[f64]) -> f64 {
+        let point = state.iter().chain([&time]);
+        ROUNDING * self.gradient.iter().zip(point).map(|(slope, value)| (slope * value).abs()).sum::<f64>()
     }
 }
 

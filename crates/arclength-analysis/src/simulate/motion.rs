@@ -7,7 +7,7 @@
 
 use super::accuracy::Accuracy;
 use super::events::{Events, Happening};
-use super::phase::{Phase, Stage};
+use super::phase::{Exit, Phase, Stage};
 use super::samples::{Again, Samples};
 use super::section::{Section, SectionWatch};
 use arclength::integration::{EventLocator, IntegrationError, Stepper};
@@ -16,6 +16,8 @@ use arclength_ode::{GivenUp, Model, Switch};
 
 /// Phases that may follow each other without time passing, for every switch, and some more.
 const PHASES_AT_ONCE: usize = 4;
+/// Distance from a switch, in tolerances, at which a motion that slides along it is drawn back.
+const LARGEST_DRIFT: f64 = 1.0;
 /// Part of the time that is none.
 const NO_TIME: f64 = 64.0 * f64::EPSILON;
 
@@ -173,7 +175,12 @@ impl Pursuit<'_, '_> {
         while self.time < end {
             let before = self.time;
             match self.phase(stage, &phase, end)? {
-                PhaseEnd::Passed(next) => phase = next,
+                PhaseEnd::Passed(exit) => {
+                    let scales = self.accuracy.scales(&self.state);
+                    stage.draw_to_slide(&phase, self.time, &mut self.state, &scales);
+                    phase = stage.behind(&phase, exit, self.time, &self.state);
+                    stage.draw_to_slide(&phase, self.time, &mut self.state, &scales);
+                }
                 PhaseEnd::Happens(event) => {
                     let before = self.state.clone();
                     let time = self.time;
@@ -245,6 +252,14 @@ impl Pursuit<'_, '_> {
             }
             if crossing.is_none() {
                 self.events.note(&locator.signs()[exits.len()..]);
+                if phase.slide().is_some() {
+                    let scales = self.accuracy.scales(stepper.state());
+                    if stage.drift(phase, reached, stepper.state(), &scales) > LARGEST_DRIFT {
+                        let mut state = stepper.state().to_vec();
+                        stage.draw_to_slide(phase, reached, &mut state, &scales);
+                        stepper.restart(reached, &state, end)?;
+                    }
+                }
             }
             if crossing.is_some() || stepper.is_finished() {
                 let done = stepper.statistics();
@@ -256,7 +271,7 @@ impl Pursuit<'_, '_> {
                 };
                 self.state.copy_from_slice(&crossing.state);
                 return Ok(match exits.get(crossing.event) {
-                    Some(exit) => PhaseEnd::Passed(stage.behind(phase, *exit, reached, &self.state)),
+                    Some(exit) => PhaseEnd::Passed(*exit),
                     None => PhaseEnd::Happens(crossing.event - exits.len()),
                 });
             }
@@ -270,7 +285,7 @@ enum PhaseEnd {
     /// At the end of the piece.
     Reached,
     /// By a switch, behind which there is another phase.
-    Passed(Phase),
+    Passed(Exit),
     /// By the event of the model with this index.
     Happens(usize),
     /// By a state beyond the bound.

@@ -8,13 +8,42 @@ use arclength_ode::Model;
 /// A value this close to a border, relative to its size or to one, is on it.
 const ON_BORDER: f64 = 1e-9;
 
+/// Corrections that draw a state to a switch; they double the digits.
+const CORRECTIONS: usize = 4;
+
 /// Where the field of a model is smooth: everywhere, in a region, or along a switch.
 #[derive(Clone, Debug)]
 pub(super) enum Phase {
-    /// In the region with these cells; without any, everywhere.
-    Within(Vec<f64>),
+    /// In the region with these cells; without any, everywhere. A motion that has come into it over a border may be on that
+    /// border still, beyond which it is only where that is no rounding.
+    Within { cells: Vec<f64>, entry: Option<Entry> },
     /// Along a switch, between the regions with these cells below and above it.
     Sliding { switch: usize, below: Vec<f64>, above: Vec<f64> },
+}
+
+/// The border over which a motion has come into a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    switch: usize,
+    /// Whether it is the upper one of the cell.
+    is_upper: bool,
+    /// What of the switch function may be rounding there.
+    margin: f64,
+}
+
+impl Phase {
+    /// The switch along which it slides, if it does.
+    pub(super) fn slide(&self) -> Option<usize> {
+        match self {
+            Self::Within { .. } => None,
+            Self::Sliding { switch, .. } => Some(*switch),
+        }
+    }
+
+    fn cells(&self) -> &[f64] {
+        let (Self::Within { cells, .. } | Self::Sliding { below: cells, .. }) = self;
+        cells
+    }
 }
 
 /// A way out of a phase.
@@ -39,7 +68,7 @@ impl<'a> Stage<'a> {
     /// The flow in a phase.
     pub(super) fn flow(&self, phase: &Phase) -> Flow<'a> {
         match phase {
-            Phase::Within(cells) => self.within(cells),
+            Phase::Within { cells, .. } => self.within(cells),
             Phase::Sliding { switch, below, above } => self.within(below).along(*switch, above),
         }
     }
@@ -51,7 +80,8 @@ impl<'a> Stage<'a> {
     /// The phase at a state: the region in which it lies, at a border the upper one.
     pub(super) fn phase_at(&self, time: f64, state: &[f64]) -> Phase {
         let cells = vec![1.0; self.thresholds.len()];
-        Phase::Within(self.settled(cells, time, state, |_, threshold, _, value| threshold.cell(value)))
+        let cells = self.settled(cells, time, state, |_, threshold, _, value| threshold.cell(value));
+        Phase::Within { cells, entry: None }
     }
 
     /// Sets the cells one after the other, as those behind may depend on those before.
@@ -78,10 +108,7 @@ impl<'a> Stage<'a> {
 
     /// The ways out of a phase.
     pub(super) fn exits(&self, phase: &Phase) -> Vec<Exit> {
-        let (cells, slide) = match phase {
-            Phase::Within(cells) => (cells, None),
-            Phase::Sliding { switch, below, .. } => (below, Some(*switch)),
-        };
+        let (cells, slide) = (phase.cells(), phase.slide());
         let borders =
             self.thresholds.iter().zip(cells).enumerate().flat_map(|(switch, (threshold, cell))| {
                 let [lower, upper] = threshold.borders(*cell);
@@ -134,8 +161,16 @@ impl<'a> Stage<'a> {
     }
 
     fn border(&self, phase: &Phase, switch: usize, upwards: bool) -> f64 {
-        let (Phase::Within(cells) | Phase::Sliding { below: cells, .. }) = phase;
-        self.thresholds[switch].borders(cells[switch])[usize::from(upwards)]
+        let border = self.thresholds[switch].borders(phase.cells()[switch])[usize::from(upwards)];
+        let margin = match phase {
+            Phase::Within { entry: Some(entry), .. }
+                if entry.switch == switch && entry.is_upper == upwards =>
+            {
+                entry.margin
+            }
+            _ => 0.0,
+        };
+        if upwards { border + margin } else { border - margin }
     }
 
     /// The phase behind an exit that is passed at a state.
@@ -143,13 +178,15 @@ impl<'a> Stage<'a> {
         let (switch, upwards) = match (exit, phase) {
             (Exit::Border { switch, upwards }, _) => (switch, upwards),
             (Exit::PulledAway { upwards: true }, Phase::Sliding { above, .. }) => {
-                return Phase::Within(above.clone());
+                return self.entered(above.clone(), phase.slide(), false, time, state);
             }
-            (Exit::PulledAway { .. }, Phase::Sliding { below, .. }) => return Phase::Within(below.clone()),
-            (Exit::PulledAway { .. }, Phase::Within(cells)) => return Phase::Within(cells.clone()),
+            (Exit::PulledAway { .. }, Phase::Sliding { below, .. }) => {
+                return self.entered(below.clone(), phase.slide(), true, time, state);
+            }
+            (Exit::PulledAway { .. }, Phase::Within { .. }) => return phase.clone(),
         };
         match phase {
-            Phase::Within(cells) => {
+            Phase::Within { cells, .. } => {
                 let next = self.beyond(phase, cells, switch, upwards, time, state);
                 let [below, above] = if upwards { [cells.clone(), next] } else { [next, cells.clone()] };
                 self.at_border(switch, below, above, upwards, time, state)
@@ -176,12 +213,58 @@ impl<'a> Stage<'a> {
             let velocities = [&below, &above].map(|cells| self.within(cells).velocity(time, state));
             self.within(&below).rates(time, state, switch, [&velocities[0], &velocities[1]])
         };
-        match (rate_below > 0.0, rate_above < 0.0) {
-            (true, true) => Phase::Sliding { switch, below, above },
-            (true, false) => Phase::Within(above),
-            (false, true) => Phase::Within(below),
-            (false, false) => Phase::Within(if upwards { above } else { below }),
+        let goes_up = match (rate_below > 0.0, rate_above < 0.0) {
+            (true, true) => return Phase::Sliding { switch, below, above },
+            (true, false) => true,
+            (false, true) => false,
+            (false, false) => upwards,
+        };
+        self.entered(if goes_up { above } else { below }, Some(switch), !goes_up, time, state)
+    }
+
+    /// In a region, into which a motion has come over the border of a switch at a state.
+    fn entered(
+        &self,
+        cells: Vec<f64>,
+        switch: Option<usize>,
+        is_upper: bool,
+        time: f64,
+        state: &[f64],
+    ) -> Phase {
+        let entry = switch.map(|switch| {
+            let margin = self.within(&cells).switch_slope(time, state, switch).noise(time, state);
+            Entry { switch, is_upper, margin }
+        });
+        Phase::Within { cells, entry }
+    }
+
+    /// How far a state is from the switch along which a phase slides, in units of the differences that count as none, `scales`.
+    pub(super) fn drift(&self, phase: &Phase, time: f64, state: &[f64], scales: &[f64]) -> f64 {
+        self.way_to_slide(phase, time, state, scales).map_or(0.0, |way| {
+            way.iter().zip(scales).map(|(way, scale)| (way / scale).powi(2)).sum::<f64>().sqrt()
+        })
+    }
+
+    /// Draws a state to the switch along which a phase slides, from which it has been driven by errors; `scales` are those that count
+    /// as equal for the states.
+    pub(super) fn draw_to_slide(&self, phase: &Phase, time: f64, state: &mut [f64], scales: &[f64]) {
+        for _ in 0..CORRECTIONS {
+            let Some(way) = self.way_to_slide(phase, time, state, scales) else { return };
+            state.iter_mut().zip(way).for_each(|(value, way)| *value += way);
         }
+    }
+
+    /// The shortest way to the switch along which a phase slides, to first order; nothing where a state is on it but for rounding.
+    fn way_to_slide(&self, phase: &Phase, time: f64, state: &[f64], scales: &[f64]) -> Option<Vec<f64>> {
+        let switch = phase.slide()?;
+        let slope = self.flow(phase).switch_slope(time, state, switch);
+        let excess = slope.value - self.border(phase, switch, true);
+        let weights = slope.gradient.iter().zip(scales).map(|(gradient, scale)| gradient * scale * scale);
+        let way: Vec<f64> = weights.map(|weight| -excess * weight).collect();
+        let squares = slope.gradient.iter().zip(scales).map(|(gradient, scale)| (gradient * scale).powi(2));
+        let square: f64 = squares.sum();
+        let is_known = square > 0.0 && excess.is_finite() && excess.abs() > slope.noise(time, state);
+        is_known.then(|| way.into_iter().map(|way| way / square).collect())
     }
 
     /// The cells of the region beyond a border at a state on that border.
@@ -196,10 +279,7 @@ impl<'a> Stage<'a> {
     ) -> Vec<f64> {
         let velocity = self.flow(phase).velocity(time, state);
         let values = self.within(cells).switches(time, state, cells.len());
-        let kept = match phase {
-            Phase::Sliding { switch, .. } => Some(*switch),
-            Phase::Within(_) => None,
-        };
+        let kept = phase.slide();
         let mut next = cells.to_vec();
         let mut passed = vec![false; cells.len()];
         for (index, threshold) in self.thresholds.iter().enumerate() {
