@@ -27,6 +27,25 @@ pub struct Interval {
     pub end: f64,
 }
 
+/// A parameter along which something is followed, `KEY=A:B`, or `KEY` alone where the model says from where to where.
+///
+/// ```
+/// use arclength_analysis::{Along, Interval};
+/// assert_eq!("v=9:0.5".parse(), Ok(Along::Interval(Interval::new("v", 0.5, 9.0))));
+/// assert_eq!("v".parse(), Ok(Along::Parameter { key: "v".to_owned() }));
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Along {
+    /// In this interval.
+    Interval(Interval),
+    /// In the interval that the model has in its lines `@`.
+    Parameter {
+        /// Key of the parameter.
+        key: String,
+    },
+}
+
 /// Equidistant values of a parameter, `KEY=A:B:N`, both ends included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampledInterval {
@@ -156,6 +175,33 @@ impl FromStr for Interval {
             [first, second] => Self::parsed(key, first, second),
             _ => Err(INTERVAL),
         }
+    }
+}
+
+impl Along {
+    /// Key of the parameter.
+    pub fn key(&self) -> &str {
+        match self {
+            Self::Interval(Interval { key, .. }) | Self::Parameter { key } => key,
+        }
+    }
+}
+
+impl From<Interval> for Along {
+    fn from(interval: Interval) -> Self {
+        Self::Interval(interval)
+    }
+}
+
+impl FromStr for Along {
+    type Err = IntervalError;
+
+    fn from_str(text: &str) -> Result<Self, IntervalError> {
+        let key = text.trim();
+        if key.is_empty() || key.contains(['=', ':', ',']) {
+            return text.parse().map(Self::Interval);
+        }
+        Ok(Self::Parameter { key: key.to_owned() })
     }
 }
 

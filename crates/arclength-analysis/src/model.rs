@@ -1,7 +1,7 @@
 //! A model with values of its parameters and a state.
 
 use crate::error::Error;
-use crate::interval::Interval;
+use crate::interval::{Along, Interval};
 use crate::stored_model::StoredModel;
 use arclength::equilibrium::WithTotals;
 use arclength_ode::Model;
@@ -101,6 +101,26 @@ impl ChosenModel {
             let names: Vec<String> = self.model.sets().iter().map(|set| set.name.clone()).collect();
             unknown(&["named_set"], name, "named set", &names)
         })
+    }
+
+    /// The interval along which something is followed: what is asked for, or the model's `parmin` and `parmax`, or without these its
+    /// `autoxmin` and `autoxmax`.
+    ///
+    /// # Errors
+    /// The field `along` where neither says.
+    pub fn interval(&self, along: &Along) -> Result<Interval, Error> {
+        let key = match along {
+            Along::Interval(interval) => return Ok(interval.clone()),
+            Along::Parameter { key } => key,
+        };
+        let options = self.model.options();
+        let pairs = [(options.parmin, options.parmax), (options.autoxmin, options.autoxmax)];
+        let ends = pairs.into_iter().find_map(|(low, high)| low.zip(high)).filter(|(low, high)| low != high);
+        let (low, high) = ends.ok_or_else(|| {
+            let problem = "the model does not say from where to where: it has no @ parmin and parmax";
+            Error::invalid(&["along"], key.as_str(), problem, format!("{key}=A:B"))
+        })?;
+        Ok(Interval::new(key, low, high))
     }
 
     /// Index of the parameter along which something is followed; `fields` is where it was given.

@@ -184,7 +184,7 @@ pub(crate) fn monitored<'a>(points: impl Iterator<Item = &'a NamedNumbers>) -> V
 }
 
 /// What is wrong with an expression, without the place in the line that declares it, which nobody wrote.
-fn reason(error: &OdeError) -> String {
+pub(crate) fn reason(error: &OdeError) -> String {
     let text = error.to_string();
     match (error.place(), text.split_once(": ")) {
         (Some(_), Some((_, message))) => message.to_owned(),

@@ -3,7 +3,7 @@
 use crate::model_options::ParameterOptions;
 use crate::monitor_options::MonitorOptions;
 use arclength_analysis::cycles::CyclesRequest;
-use arclength_analysis::{CycleSource, Interval, ModelSource, Values};
+use arclength_analysis::{Along, CycleSource, ModelSource, Values};
 use clap::Args;
 use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 use std::path::PathBuf;
@@ -29,9 +29,9 @@ pub(crate) struct Cycles {
     #[arg(long, value_name = "FILE.json:LABEL|FILE.csv")]
     from: CycleSource,
 
-    /// Parameter and its interval
-    #[arg(long, value_name = "KEY=A:B")]
-    along: Interval,
+    /// Parameter and its interval [default: the model's @ parmin and parmax]
+    #[arg(long, value_name = "KEY[=A:B]")]
+    along: Along,
 
     /// Values of the parameter at which cycles are wanted exactly
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
@@ -70,7 +70,7 @@ impl Cycles {
             model: self.model.clone().map(ModelSource::File),
             set: self.parameters.values()?,
             along: self.along.clone(),
-            at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            at: requested_values(&self.at, self.along.key(), str::eq_ignore_ascii_case)?,
             monitors: self.monitors.asked(),
             stay: self.stay,
             steps: self.steps.into(),

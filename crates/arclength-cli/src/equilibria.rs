@@ -3,7 +3,7 @@
 use crate::model_options::ModelOptions;
 use crate::monitor_options::MonitorOptions;
 use arclength_analysis::equilibria::EquilibriaRequest;
-use arclength_analysis::{Assignment, Interval, ModelRequest, Values};
+use arclength_analysis::{Along, Assignment, ModelRequest, Values};
 use clap::Args;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions, requested_values};
 
@@ -18,9 +18,9 @@ pub(crate) struct Equilibria {
     #[command(flatten)]
     model: ModelOptions,
 
-    /// Parameter and its interval
-    #[arg(long, value_name = "KEY=A:B")]
-    along: Interval,
+    /// Parameter and its interval [default: the model's @ parmin and parmax]
+    #[arg(long, value_name = "KEY[=A:B]")]
+    along: Along,
 
     /// Values of the parameter at which equilibria are wanted exactly
     #[arg(long, value_name = "[KEY=]A,B,..", allow_hyphen_values = true)]
@@ -68,7 +68,7 @@ impl Equilibria {
         let request = EquilibriaRequest {
             model: ModelRequest { freeze: self.freeze()?, ..self.model.request()? },
             along: self.along.clone(),
-            at: requested_values(&self.at, &self.along.key, str::eq_ignore_ascii_case)?,
+            at: requested_values(&self.at, self.along.key(), str::eq_ignore_ascii_case)?,
             monitors: self.monitors.asked(),
             steps: self.steps.into(),
         };

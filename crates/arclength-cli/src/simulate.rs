@@ -1,20 +1,25 @@
 //! `arclength simulate`: a time history of a model.
 
 use crate::model_options::ModelOptions;
-use arclength_analysis::simulate::{IntegrationMethod, SimulateRequest};
+use arclength_analysis::Interval;
+use arclength_analysis::simulate::{IntegrationMethod, PlotRequest, SectionRequest, SimulateRequest};
 use clap::{Args, ValueEnum};
-use kingpin_terminal::{Failure, OutputOptions};
+use kingpin_terminal::{Failure, Format, OutputOptions};
 
 /// Time history from the initial state of the model
 ///
 /// What is not said here is as the model says in its lines @.
 #[derive(Args, Debug)]
-#[command(after_help = "Example: arclength simulate model.ode --duration 100 --start x=1 -o history.svg")]
+#[command(
+    after_help = "Example: arclength simulate model.ode --duration 100 --start x=1 -o history.svg\n         \
+                        arclength simulate model.ode --plot x,y --plot t,x,power -o motion.svg\n         \
+                        arclength simulate model.ode --duration 5000 --section x=0:+ -o section.csv -o returns.svg"
+)]
 pub(crate) struct Simulate {
     #[command(flatten)]
     model: ModelOptions,
 
-    /// How long the motion lasts [default: the model's @ total]
+    /// How long the motion lasts [default: the model's @ total, or 20 as in XPPAUT]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: Option<f64>,
 
@@ -48,6 +53,26 @@ pub(crate) struct Simulate {
     #[arg(long, value_enum, default_value = "auto")]
     method: Method,
 
+    /// What the picture shows; repeatable. Two states x,y: their phase plane (y over x), for a model of two states with nullclines,
+    /// directions, equilibria and the manifolds of saddles. Other lists, as v,ica or t,x,y: each over the time. x:y: always y
+    /// over x. Auxiliary quantities and expressions too
+    #[arg(long, value_name = "X,Y|A,B,..|X:Y", allow_hyphen_values = true)]
+    plot: Vec<PlotRequest>,
+
+    /// Limits of axes of the picture [default: the model's @ xlo, xhi, ylo, yhi for what its @ xp, yp name, or what there is to see]
+    #[arg(long, value_name = "KEY=A:B,..", value_delimiter = ',', requires = "plot")]
+    window: Vec<Interval>,
+
+    /// Samples at the crossings of a Poincaré section, as x=0 or "y-0.3", with :+ or :- in one direction only; the picture shows the
+    /// return maps, or the crossings as --plot says
+    #[arg(
+        long,
+        value_name = "EXPRESSION[=VALUE][:+|:-]",
+        allow_hyphen_values = true,
+        conflicts_with = "points"
+    )]
+    section: Option<SectionRequest>,
+
     #[command(flatten)]
     output: OutputOptions,
 }
@@ -77,6 +102,16 @@ impl Simulate {
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
+        if !self.plot.is_empty() && self.output.out.is_empty() && self.output.format != Format::Json {
+            return Err(Failure::Option {
+                option: "--plot",
+                given: "without a file".to_owned(),
+                problem: "nothing is drawn".to_owned(),
+                allowed:
+                    "with it --out FILE.svg, .png or .pdf, or JSON, which has the curves of phase planes"
+                        .to_owned(),
+            });
+        }
         let request = SimulateRequest {
             model: self.model.request()?,
             duration: self.duration,
@@ -87,6 +122,9 @@ impl Simulate {
             tolerance: self.tolerance,
             max_step: self.max_step,
             method: self.method.into(),
+            plots: self.plot.clone(),
+            window: self.window.clone(),
+            section: self.section.clone(),
         };
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());

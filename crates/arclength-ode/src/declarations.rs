@@ -103,6 +103,7 @@ impl Declarations {
                 self.auxiliaries.push(QuantityDefinition { name, expression });
             }
             Statement::InitialFormula(name, right) => {
+                self.warn_of_leading_number(line, right);
                 let expression = self.expression(line, right)?;
                 self.initial_formulas.push(QuantityDefinition { name, expression });
             }
@@ -186,8 +187,19 @@ impl Declarations {
         }
         let (start, end) = (assignment.value_start, assignment.value_end);
         let expression = parse_expression(line, start, end, &mut self.warnings)?;
-        let value = Lowering::new(&self.symbols).lower_constant(&expression, "the value")?;
         let leading = leading_number(&text);
+        let value = Lowering::new(&self.symbols).lower_constant(&expression, "the value");
+        let value = value.map_err(|error| match error {
+            OdeError::NotConstant { .. } => {
+                let name = &assignment.name.text;
+                let message = format!(
+                    "`{text}` is no constant, and XPPAUT reads only the number at its beginning, {leading}; write that number, or \
+                     `!{name}={text}` for what follows other parameters"
+                );
+                OdeError::syntax(line.span(start, end), message)
+            }
+            other => other,
+        })?;
         let message = if leading == value {
             format!("`{text}` is a formula; it is taken as {value}, as XPPAUT reads it")
         } else {
@@ -198,6 +210,25 @@ impl Declarations {
         };
         self.warnings.push(Warning::new(line.span(start, end), message));
         Ok(value)
+    }
+
+    /// Warns where XPPAUT takes only the number at the beginning of the formula of an initial value, as it does where that begins with a
+    /// digit, not with a bracket or a name.
+    fn warn_of_leading_number(&mut self, line: &Text, start: usize) {
+        let start = line.skip_blanks(start);
+        let text = line.string(start, line.len());
+        let text = text.trim_end();
+        let digits = text.strip_prefix('-').unwrap_or(text);
+        if parse_number(text).is_none()
+            && digits.starts_with(|first: char| first.is_ascii_digit() || first == '.')
+        {
+            let leading = leading_number(text);
+            let message = format!(
+                "the formula `{text}` is taken as it stands, but XPPAUT reads only the number at its beginning, {leading}; write \
+                 (..) around the formula"
+            );
+            self.warnings.push(Warning::new(line.span(start, line.len()), message));
+        }
     }
 
     fn declare(&mut self, name: &Name, symbol: Symbol) -> Result<(), OdeError> {

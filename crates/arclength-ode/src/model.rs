@@ -9,7 +9,7 @@ use crate::options::{OptionEntry, Options};
 use crate::source::{decode, physical_lines};
 use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
-use arclength::{Direction, Scalar, Threshold, VectorField};
+use arclength::{Direction, ErasedField, Scalar, Threshold, VectorField};
 
 /// A model read from a `.ode` text.
 ///
@@ -255,6 +255,12 @@ impl VectorField for Model {
 
     fn dimension(&self) -> usize {
         self.states.len()
+    }
+
+    // The interpreter is long, and there is one for each scalar.
+    #[inline(never)]
+    fn erased(&self) -> ErasedField<'_> {
+        ErasedField::new(self)
     }
 }
 

@@ -54,9 +54,14 @@ impl Model {
 impl Quantity {
     /// Its value at a state, with the parameters of the model and the other values; not a number if it depends on the time.
     pub fn value(&self, state: &[f64], parameters: &[f64], others: &[f64]) -> f64 {
+        self.value_at(f64::NAN, state, parameters, others)
+    }
+
+    /// The same at a time.
+    pub fn value_at(&self, time: f64, state: &[f64], parameters: &[f64], others: &[f64]) -> f64 {
         let all = [others, parameters].concat();
         let mut values = vec![f64::NAN; self.model.auxiliary_names().len()];
-        self.model.evaluate_auxiliary(f64::NAN, state, &all, &mut values);
+        self.model.evaluate_auxiliary(time, state, &all, &mut values);
         values[0]
     }
 }

@@ -130,6 +130,20 @@ fn a_formula_as_a_value_is_computed_with_a_warning() {
 }
 
 #[test]
+fn an_initial_formula_that_begins_with_a_number_warns() {
+    // Seen in XPPAUT 6.11: it starts at 2, 0.5 and -2.
+    for (formula, value) in [("2*3", 6.0), (".5+a", 1.5), (" -2*3", -6.0)] {
+        let model = read(&format!("x'=a\npar a=1\nx(0)={formula}\n"));
+        assert_eq!(model.initial_state(&[1.0]), [value]);
+        let warning = model.warnings()[0].to_string();
+        assert!(warning.contains("line 3") && warning.contains("only the number"), "{warning}");
+    }
+    for formula in ["(2)*3", "a*2", "-a", "-5", " .5 ", "1e-3"] {
+        assert!(read(&format!("x'=a\npar a=1\nx(0)={formula}\n")).warnings().is_empty(), "{formula}");
+    }
+}
+
+#[test]
 fn names_do_not_tell_upper_from_lower_case() {
     let model = read("V' = -GK*n + Phi(v)\nN'=0\npar gK=2\nphi(U)=u^2\ninit V=3,N=1\n");
     assert_eq!(field(&model)[0], -2.0 + 9.0);

@@ -103,6 +103,12 @@ fn slips_of_the_pen() {
 }
 
 #[test]
+fn a_parameter_that_follows_another_is_refused_with_both_readings() {
+    refused("x'=b\npar a=3\npar b=2*a\n", 3, 7, "`2*a` is no constant, and XPPAUT reads only");
+    refused("x'=b\npar a=3\npar b=2*a\n", 3, 7, "beginning, 2; write that number, or `!b=2*a`");
+}
+
+#[test]
 fn places_survive_continuation_arrays_and_tabs() {
     refused("x'=1+\\\n  2*(3+oops)\n", 2, 8, "unknown name `oops`");
     refused("x[1..3]'=[j]*oops\n", 1, 14, "unknown name `oops`");

@@ -1,30 +1,29 @@
 //! A vector field behind a pointer, so that everything else is compiled once and not for every field.
 //!
-//! [`VectorField::evaluate`] is generic over the scalar. Equilibria, cycles and the curves in two parameters use a short list
+//! [`crate::VectorField::evaluate`] is generic over the scalar. Equilibria, cycles and the curves in two parameters use a short list
 //! of scalars, the [`FieldScalar`]s, so a field can be erased to a table with one entry for each of them. That divides the
 //! time to compile a program with many fields by more than ten; the cost is one indirect call for an evaluation. A scalar that
 //! is not on the list does not compile.
 
 use crate::differentiation::{Dual, Scalar};
 use crate::direction::Direction;
-use crate::field::VectorField;
 use crate::threshold::Threshold;
 
 /// Chunks of directions of a Jacobian, and the same with one and two more infinitesimals.
-type Narrow = Dual<f64, 4>;
-type Wide = Dual<f64, 8>;
-type NarrowAlong = Dual<Narrow, 1>;
-type WideAlong = Dual<Wide, 1>;
-type NarrowAlongPair = Dual<Narrow, 2>;
-type WideAlongPair = Dual<Wide, 2>;
-type NarrowAlongTwice = Dual<NarrowAlong, 1>;
-type Pair = Dual<f64, 2>;
+pub(crate) type Narrow = Dual<f64, 4>;
+pub(crate) type Wide = Dual<f64, 8>;
+pub(crate) type NarrowAlong = Dual<Narrow, 1>;
+pub(crate) type WideAlong = Dual<Wide, 1>;
+pub(crate) type NarrowAlongPair = Dual<Narrow, 2>;
+pub(crate) type WideAlongPair = Dual<Wide, 2>;
+pub(crate) type NarrowAlongTwice = Dual<NarrowAlong, 1>;
+pub(crate) type Pair = Dual<f64, 2>;
 /// One infinitesimal for each direction of a multilinear form.
-type First = Dual<f64, 1>;
-type Second = Dual<First, 1>;
-type Third = Dual<Second, 1>;
-type Fourth = Dual<Third, 1>;
-type Fifth = Dual<Fourth, 1>;
+pub(crate) type First = Dual<f64, 1>;
+pub(crate) type Second = Dual<First, 1>;
+pub(crate) type Third = Dual<Second, 1>;
+pub(crate) type Fourth = Dual<Third, 1>;
+pub(crate) type Fifth = Dual<Fourth, 1>;
 
 /// A scalar for which every field has an entry in its table: `f64` and a short list of dual numbers. The list is closed.
 pub trait FieldScalar: Scalar {
@@ -77,24 +76,47 @@ impl<T: Scalar, const N: usize> Lift<N> for T {
     type Lifted = Dual<T, N>;
 }
 
-macro_rules! scalars {
+/// Hands the method of a [`Table`] for each scalar on the list, with the scalar, to a macro.
+macro_rules! with_field_scalars {
+    ($macro:ident) => {
+        $macro! {
+            evaluate_value, event_value: f64;
+            evaluate_narrow, event_narrow: Narrow;
+            evaluate_wide, event_wide: Wide;
+            evaluate_narrow_along, event_narrow_along: NarrowAlong;
+            evaluate_wide_along, event_wide_along: WideAlong;
+            evaluate_narrow_along_pair, event_narrow_along_pair: NarrowAlongPair;
+            evaluate_wide_along_pair, event_wide_along_pair: WideAlongPair;
+            evaluate_narrow_along_twice, event_narrow_along_twice: NarrowAlongTwice;
+            evaluate_pair, event_pair: Pair;
+            evaluate_first, event_first: First;
+            evaluate_second, event_second: Second;
+            evaluate_third, event_third: Third;
+            evaluate_fourth, event_fourth: Fourth;
+            evaluate_fifth, event_fifth: Fifth;
+        }
+    };
+}
+pub(crate) use with_field_scalars;
+
+macro_rules! table {
     ($($method:ident, $event:ident: $scalar:ty;)*) => {
         /// A field, for the scalars in use.
         pub trait Table: Sync {
-            /// As [`VectorField::state_names`].
+            /// As `VectorField::state_names`.
             fn state_names(&self) -> Vec<String>;
-            /// As [`VectorField::parameter_names`].
+            /// As `VectorField::parameter_names`.
             fn parameter_names(&self) -> Vec<String>;
-            /// As [`VectorField::dimension`].
+            /// As `VectorField::dimension`.
             fn dimension(&self) -> usize;
-            /// As [`VectorField::thresholds`].
+            /// As `VectorField::thresholds`.
             fn thresholds(&self) -> Vec<Threshold>;
-            /// As [`VectorField::events`].
+            /// As `VectorField::events`.
             fn events(&self) -> Vec<Direction>;
             $(
-                /// As [`VectorField::evaluate`].
+                /// As `VectorField::evaluate`.
                 fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]);
-                /// As [`VectorField::evaluate_event`].
+                /// As `VectorField::evaluate_event`.
                 fn $event(
                     &self,
                     event: usize,
@@ -102,38 +124,6 @@ macro_rules! scalars {
                     parameters: &[$scalar],
                     values: &mut [$scalar],
                 );
-            )*
-        }
-
-        impl<F: VectorField> Table for F {
-            fn state_names(&self) -> Vec<String> {
-                VectorField::state_names(self)
-            }
-            fn parameter_names(&self) -> Vec<String> {
-                VectorField::parameter_names(self)
-            }
-            fn dimension(&self) -> usize {
-                VectorField::dimension(self)
-            }
-            fn thresholds(&self) -> Vec<Threshold> {
-                VectorField::thresholds(self)
-            }
-            fn events(&self) -> Vec<Direction> {
-                VectorField::events(self)
-            }
-            $(
-                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
-                    self.evaluate(state, parameters, derivative);
-                }
-                fn $event(
-                    &self,
-                    event: usize,
-                    state: &[$scalar],
-                    parameters: &[$scalar],
-                    values: &mut [$scalar],
-                ) {
-                    self.evaluate_event(event, state, parameters, values);
-                }
             )*
         }
 
@@ -157,61 +147,44 @@ macro_rules! scalars {
     };
 }
 
-scalars! {
-    evaluate_value, event_value: f64;
-    evaluate_narrow, event_narrow: Narrow;
-    evaluate_wide, event_wide: Wide;
-    evaluate_narrow_along, event_narrow_along: NarrowAlong;
-    evaluate_wide_along, event_wide_along: WideAlong;
-    evaluate_narrow_along_pair, event_narrow_along_pair: NarrowAlongPair;
-    evaluate_wide_along_pair, event_wide_along_pair: WideAlongPair;
-    evaluate_narrow_along_twice, event_narrow_along_twice: NarrowAlongTwice;
-    evaluate_pair, event_pair: Pair;
-    evaluate_first, event_first: First;
-    evaluate_second, event_second: Second;
-    evaluate_third, event_third: Third;
-    evaluate_fourth, event_fourth: Fourth;
-    evaluate_fifth, event_fifth: Fifth;
-}
+with_field_scalars!(table);
 
 /// A field of unknown type.
 #[derive(Clone, Copy)]
-pub(crate) struct ErasedField<'a>(&'a dyn Table);
+pub struct ErasedField<'a>(&'a dyn Table);
 
 impl<'a> ErasedField<'a> {
-    /// The field without its type.
-    pub(crate) fn of<F: VectorField>(field: &'a F) -> Self {
+    /// The field without its type, compiled where this is written; see [`crate::VectorField::erased`].
+    pub fn new(field: &'a dyn Table) -> Self {
         Self(field)
     }
 
-    /// As [`VectorField::state_names`].
+    /// As [`crate::VectorField::state_names`].
     pub(crate) fn state_names(&self) -> Vec<String> {
         self.0.state_names()
     }
 
-    /// As [`VectorField::parameter_names`].
+    /// As [`crate::VectorField::parameter_names`].
     pub(crate) fn parameter_names(&self) -> Vec<String> {
         self.0.parameter_names()
     }
 
-    /// As [`VectorField::dimension`].
+    /// As [`crate::VectorField::dimension`].
     pub(crate) fn dimension(&self) -> usize {
         self.0.dimension()
     }
 
-    /// As [`VectorField::thresholds`].
+    /// As [`crate::VectorField::thresholds`].
     pub(crate) fn thresholds(&self) -> Vec<Threshold> {
         self.0.thresholds()
     }
 
-    /// As [`VectorField::events`].
-    #[expect(dead_code, reason = "cycles do not jump yet")]
+    /// As [`crate::VectorField::events`].
     pub(crate) fn events(&self) -> Vec<Direction> {
         self.0.events()
     }
 
-    /// As [`VectorField::evaluate_event`], for the scalars of the list.
-    #[expect(dead_code, reason = "cycles do not jump yet")]
+    /// As [`crate::VectorField::evaluate_event`], for the scalars of the list.
     pub(crate) fn evaluate_event<T: FieldScalar>(
         &self,
         event: usize,
@@ -222,7 +195,7 @@ impl<'a> ErasedField<'a> {
         T::evaluate_event(self.0, event, state, parameters, values);
     }
 
-    /// As [`VectorField::evaluate`], for the scalars of the list.
+    /// As [`crate::VectorField::evaluate`], for the scalars of the list.
     #[inline(always)]
     pub(crate) fn evaluate<T: FieldScalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
         T::evaluate(self.0, state, parameters, derivative);
@@ -238,6 +211,7 @@ impl std::fmt::Debug for ErasedField<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::VectorField;
 
     struct Square;
 
@@ -258,13 +232,13 @@ mod tests {
         fn check<T: FieldScalar + PartialEq>(x: T, p: T) {
             let (mut direct, mut erased) = ([T::zero()], [T::zero()]);
             VectorField::evaluate(&Square, &[x], &[p], &mut direct);
-            ErasedField::of(&Square).evaluate(&[x], &[p], &mut erased);
+            Square.erased().evaluate(&[x], &[p], &mut erased);
             assert!(direct == erased && direct[0].value() == 18.0);
         }
         check(3.0, 2.0);
         check(Wide::variable(3.0, 1), Wide::variable(2.0, 5));
         check(NarrowAlongTwice::variable(Dual::from(3.0), 0), NarrowAlongTwice::from(2.0));
         check(Fifth::variable(Dual::from(3.0), 0), Fifth::from(2.0));
-        assert_eq!(ErasedField::of(&Square).dimension(), 1);
+        assert_eq!(Square.erased().dimension(), 1);
     }
 }

@@ -5,6 +5,7 @@
 
 use crate::differentiation::Scalar;
 use crate::direction::Direction;
+use crate::erased::*;
 use crate::threshold::Threshold;
 
 /// The right-hand side of `x' = f(x, p)`, smooth in the state `x` and in the parameters `p`, at least
@@ -60,6 +61,17 @@ pub trait VectorField: Sync {
         Vec::new()
     }
 
+    /// The field without its type, as equilibria, cycles and curves in two parameters take it.
+    ///
+    /// A field that is large, and used in other crates, says this again where it is defined, with `#[inline(never)]` and
+    /// [`ErasedField::new`]: then it is compiled there, once, and not in every crate that follows one of its branches.
+    fn erased(&self) -> ErasedField<'_>
+    where
+        Self: Sized,
+    {
+        ErasedField::new(self)
+    }
+
     /// The events of the field, at which the state jumps: for each, in which direction its condition passes zero where it happens;
     /// empty for a field whose motions are continuous.
     ///
@@ -102,6 +114,44 @@ pub trait VectorField: Sync {
     }
 }
 
+macro_rules! vector_field_table {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
+        impl<F: VectorField> Table for F {
+            fn state_names(&self) -> Vec<String> {
+                VectorField::state_names(self)
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                VectorField::parameter_names(self)
+            }
+            fn dimension(&self) -> usize {
+                VectorField::dimension(self)
+            }
+            fn thresholds(&self) -> Vec<Threshold> {
+                VectorField::thresholds(self)
+            }
+            fn events(&self) -> Vec<Direction> {
+                VectorField::events(self)
+            }
+            $(
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                    self.evaluate(state, parameters, derivative);
+                }
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                ) {
+                    self.evaluate_event(event, state, parameters, values);
+                }
+            )*
+        }
+    };
+}
+
+with_field_scalars!(vector_field_table);
+
 impl<F: VectorField> VectorField for &F {
     fn state_names(&self) -> Vec<String> {
         (**self).state_names()
@@ -118,6 +168,9 @@ impl<F: VectorField> VectorField for &F {
     }
     fn thresholds(&self) -> Vec<Threshold> {
         (**self).thresholds()
+    }
+    fn erased(&self) -> ErasedField<'_> {
+        (**self).erased()
     }
     fn events(&self) -> Vec<Direction> {
         (**self).events()

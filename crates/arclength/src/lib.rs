@@ -27,6 +27,7 @@ mod threshold;
 pub use arclength_numbers as numbers;
 pub use differentiation::{Dual, Scalar};
 pub use direction::Direction;
+pub use erased::ErasedField;
 pub use error::Error;
 pub use field::VectorField;
 pub use threshold::Threshold;

@@ -63,7 +63,7 @@ pub struct Pieces<'a> {
 impl<'a> Pieces<'a> {
     /// The pieces of a field; `None` for one that is smooth everywhere.
     pub fn of<F: VectorField>(field: &'a F) -> Option<Self> {
-        Self::of_erased(ErasedField::of(field))
+        Self::of_erased(field.erased())
     }
 
     pub(crate) fn of_erased(field: ErasedField<'a>) -> Option<Self> {

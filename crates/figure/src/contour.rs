@@ -12,9 +12,10 @@ struct Edge {
     upwards: bool,
 }
 
-/// The polylines on which the values, interpolated linearly along the edges of the grid, equal `level`. A closed one ends
-/// where it starts. Cells with a corner that is not finite are left out.
-pub(crate) fn contour_lines(x: &[f64], y: &[f64], values: &[f64], level: f64) -> Vec<Vec<Point>> {
+/// The polylines on which the values, interpolated linearly along the edges of the grid, equal `level`. The values are those at
+/// the nodes, row after row: the abscissae `x` at the first ordinate of `y`, and so on. A closed polyline ends where it starts. Cells
+/// with a corner that is not finite are left out.
+pub fn contour_lines(x: &[f64], y: &[f64], values: &[f64], level: f64) -> Vec<Vec<Point>> {
     let columns = x.len();
     let value = |column: usize, row: usize| values[row * columns + column] - level;
     let crossing = |edge: Edge| {

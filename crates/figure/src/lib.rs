@@ -64,6 +64,7 @@ mod ticks;
 
 pub use axis::Axis;
 pub use color::{Color, ColorMap, palette};
+pub use contour::contour_lines;
 pub use error::FigureError;
 pub use figure::{Content, Figure};
 pub use geometry::Point;

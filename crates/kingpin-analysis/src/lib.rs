@@ -11,6 +11,7 @@ pub mod basin;
 pub mod chart;
 mod classification;
 pub mod cycles;
+pub mod damper;
 mod description;
 mod disturbance;
 mod error;

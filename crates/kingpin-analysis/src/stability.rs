@@ -29,7 +29,6 @@ impl StabilityRequest {
         let motion = wheel.uniform_motion()?;
         let critical = wheel.critical_speed();
         Ok(StabilityResult {
-            wheel,
             eigenvalues: motion
                 .eigenvalues()
                 .iter()
@@ -39,6 +38,9 @@ impl StabilityRequest {
             stable: motion.is_stable(),
             critical_speed: critical.map(|critical| critical.speed),
             critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
+            swing_factor: wheel.swing_factor(),
+            critical_speed_with_friction: wheel.critical_speed_with_friction(),
+            wheel,
         })
     }
 }
@@ -59,6 +61,11 @@ pub struct StabilityResult {
     pub critical_speed: Option<f64>,
     /// Yaw rate in rad/s there.
     pub critical_yaw_rate: Option<f64>,
+    /// Towed straight, the factor by which each swing multiplies the caster angle with dry friction about the king pin.
+    pub swing_factor: Option<f64>,
+    /// Towed straight, the speed in m/s beyond which small motions grow in spite of dry friction; it does not depend on how much
+    /// there is.
+    pub critical_speed_with_friction: Option<f64>,
 }
 
 impl Report for StabilityResult {
@@ -95,7 +102,22 @@ impl Report for StabilityResult {
                 readable(yaw_rate)
             ),
             _ if self.stable.is_none() => writeln!(out, "no critical speed was found"),
-            _ => writeln!(out, "no critical speed: the stability changes at no speed"),
+            _ => {
+                let always = if self.stable == Some(true) { "stable" } else { "unstable" };
+                let where_it_is = if straight { "" } else { " at which the motion exists" };
+                writeln!(out, "no critical speed: {always} at every speed{where_it_is}")
+            }
+        }?;
+        let Some(factor) = self.swing_factor else { return Ok(()) };
+        writeln!(
+            out,
+            "\nwith dry friction about the king pin, however little, each swing multiplies small caster angles by {}",
+            readable(factor)
+        )?;
+        match self.critical_speed_with_friction {
+            Some(0.0) => writeln!(out, "small motions grow at every speed all the same"),
+            Some(speed) => writeln!(out, "small motions die out up to {} m/s", readable(speed)),
+            None => writeln!(out, "small motions die out at every speed"),
         }
     }
 

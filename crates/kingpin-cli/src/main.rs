@@ -4,6 +4,7 @@ mod basin;
 mod chart;
 mod classification_options;
 mod cycles;
+mod damper;
 mod disturbance_options;
 mod hopf;
 mod locus;
@@ -45,6 +46,7 @@ enum Command {
     Basin(basin::Basin),
     SafeKick(safe_kick::SafeKick),
     Margin(margin::Margin),
+    Damper(damper::Damper),
 }
 
 impl Command {
@@ -62,6 +64,7 @@ impl Command {
             Self::Basin(command) => command.run(),
             Self::SafeKick(command) => command.run(),
             Self::Margin(command) => command.run(),
+            Self::Damper(command) => command.run(),
         }
     }
 }

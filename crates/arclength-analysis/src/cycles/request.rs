@@ -4,7 +4,7 @@ use super::result::CyclesResult;
 use crate::branch::Origin;
 use crate::cycle_source::CycleSource;
 use crate::error::Error;
-use crate::interval::Interval;
+use crate::interval::{Along, Interval};
 use crate::labels::kind;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, ModelSource};
@@ -40,7 +40,7 @@ pub struct CyclesRequest {
     #[serde(default)]
     pub set: NamedNumbers,
     /// Parameter and its interval.
-    pub along: Interval,
+    pub along: Along,
     /// Values of the parameter at which cycles are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
@@ -83,12 +83,12 @@ pub struct CyclesAnalysis {
 
 impl CyclesRequest {
     /// A request with the default of everything else.
-    pub fn new(from: impl Into<CycleSource>, along: Interval) -> Self {
+    pub fn new(from: impl Into<CycleSource>, along: impl Into<Along>) -> Self {
         Self {
             from: from.into(),
             model: None,
             set: NamedNumbers::default(),
-            along,
+            along: along.into(),
             at: Vec::new(),
             monitors: Vec::new(),
             stay: false,
@@ -125,14 +125,15 @@ impl CyclesRequest {
             }
         };
         let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_cycles(&chosen)?)));
+        let along = chosen.interval(&self.along)?;
         Ok(CyclesAnalysis {
             monitors: monitors.collect::<Result<_, Error>>()?,
             start,
             origin,
             warnings,
-            active: chosen.along(&["along"], &self.along)?,
+            active: chosen.along(&["along"], &along)?,
             chosen,
-            along: self.along.clone(),
+            along,
             at: self.at.clone(),
             steps: self.steps,
             mesh: self.mesh,
@@ -142,10 +143,11 @@ impl CyclesRequest {
     /// The model with the parameters that are set, which must suit the interval.
     fn change(&self, mut chosen: ChosenModel, start: &str) -> Result<ChosenModel, Error> {
         chosen.set(&self.set)?;
-        chosen.along(&["along"], &self.along)?;
+        let along = chosen.interval(&self.along)?;
+        chosen.along(&["along"], &along)?;
         chosen.has_continuous_cycles()?;
-        chosen.starts_within(&["along"], &self.along, start)?;
-        self.along.check_values(&self.at)?;
+        chosen.starts_within(&["along"], &along, start)?;
+        along.check_values(&self.at)?;
         Ok(chosen)
     }
 
@@ -191,14 +193,14 @@ impl CyclesRequest {
         match &point.solution {
             LabelledSolution::Cycle { orbit, branching } => Ok(match branching {
                 // The doubled cycles leave along every parameter, the other branch at a branch point along its own.
-                Some((branching, key)) if !self.stay && (branching.doubled || *key == self.along.key) => {
+                Some((branching, key)) if !self.stay && (branching.doubled || *key == self.along.key()) => {
                     let how =
                         if branching.doubled { "the doubled cycles" } else { "the other branch through it" };
                     (CycleStart::Branching(branching.clone()), how)
                 }
                 // At a branch point Newton's method alone could find either branch.
                 Some((branching, key))
-                    if *key == self.along.key
+                    if *key == self.along.key()
                         && let Some(known) = branching.known_branch() =>
                 {
                     (CycleStart::Branching(known), "the branch on which it was found")

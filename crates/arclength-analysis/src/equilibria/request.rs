@@ -3,7 +3,7 @@
 use super::result::{ConservedResult, EquilibriaResult};
 use crate::branch::Origin;
 use crate::error::Error;
-use crate::interval::Interval;
+use crate::interval::{Along, Interval};
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
 use crate::monitor::Monitored;
@@ -25,7 +25,7 @@ pub struct EquilibriaRequest {
     /// The model, or the labelled point.
     pub model: ModelRequest,
     /// Parameter and its interval.
-    pub along: Interval,
+    pub along: Along,
     /// Values of the parameter at which equilibria are wanted exactly.
     #[serde(default)]
     pub at: Vec<f64>,
@@ -56,8 +56,8 @@ pub struct EquilibriaAnalysis {
 
 impl EquilibriaRequest {
     /// A request with the default of everything else.
-    pub fn new(model: ModelRequest, along: Interval) -> Self {
-        Self { model, along, at: Vec::new(), monitors: Vec::new(), steps: Steps::default() }
+    pub fn new(model: ModelRequest, along: impl Into<Along>) -> Self {
+        Self { model, along: along.into(), at: Vec::new(), monitors: Vec::new(), steps: Steps::default() }
     }
 
     /// Reads the model and checks every field.
@@ -68,10 +68,11 @@ impl EquilibriaRequest {
         self.steps.check()?;
         let OpenedModel { chosen, point, mut warnings } = self.model.open()?;
         warnings.extend(slowness(chosen.model.states().len()));
-        let active = chosen.along(&["along"], &self.along)?;
-        self.along.check_values(&self.at)?;
+        let along = chosen.interval(&self.along)?;
+        let active = chosen.along(&["along"], &along)?;
+        along.check_values(&self.at)?;
         if let Some(point) = &point {
-            chosen.starts_within(&["along"], &self.along, &point.label)?;
+            chosen.starts_within(&["along"], &along, &point.label)?;
         }
         let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_equilibria(&chosen)?)));
         Ok(EquilibriaAnalysis {
@@ -82,7 +83,7 @@ impl EquilibriaRequest {
             point,
             warnings,
             unchanged: !self.model.changes_anything(),
-            along: self.along.clone(),
+            along,
             at: self.at.clone(),
             steps: self.steps,
         })

@@ -6,9 +6,15 @@ mod events;
 mod flow;
 mod motion;
 mod phase;
+mod picture;
+mod plot;
 mod request;
 mod result;
 mod samples;
+mod section;
+mod smooth;
 
+pub use plot::{PlotError, PlotRequest};
 pub use request::{IntegrationMethod, SimulateAnalysis, SimulateRequest};
 pub use result::{Histories, HistoryResult};
+pub use section::{SectionDirection, SectionError, SectionRequest};

@@ -9,6 +9,7 @@ use super::accuracy::Accuracy;
 use super::events::{Events, Happening};
 use super::phase::{Exit, Phase, Stage};
 use super::samples::{Again, Samples};
+use super::section::{Section, SectionWatch};
 use arclength::integration::{Crossing, EventLocator, IntegrationError, Stepper};
 use arclength::{Threshold, VectorField};
 use arclength_ode::{GivenUp, Model, Switch};
@@ -33,10 +34,12 @@ pub(super) struct Course<'a> {
     pub end_time: f64,
     /// Magnitude of a state at which it ends.
     pub bound: f64,
+    /// A section whose crossings are wanted.
+    pub section: Option<&'a Section>,
 }
 
 /// A motion as far as it was followed.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Motion<'a> {
     /// The states at the sampling times that were reached, and at events.
     pub samples: Samples<'a>,
@@ -48,6 +51,8 @@ pub(super) struct Motion<'a> {
     pub steps: usize,
     /// The time from which on switches in time are not known.
     pub unknown_switches: Option<f64>,
+    /// The section with its crossings.
+    pub section: Option<SectionWatch>,
 }
 
 /// Why a motion was not followed further.
@@ -77,6 +82,7 @@ impl Course<'_> {
             ending: None,
             steps: 0,
             unknown_switches: None,
+            section: self.section.map(|section| section.watch(self.start_time, self.start)),
         };
         let thresholds = self.model.thresholds();
         let interval = [f64::NEG_INFINITY, f64::INFINITY];
@@ -251,6 +257,9 @@ impl Pursuit<'_, '_> {
             }
             let reached = crossing.as_ref().map_or(stepper.time(), |crossing| crossing.time);
             self.motion.samples.record(&mut stepper, reached, &again)?;
+            if let Some(section) = &mut self.motion.section {
+                section.record(&mut stepper, reached, |origin, time| again.step(origin.0, origin.1, time))?;
+            }
             let bound = self.course.bound;
             let outside = {
                 let end = crossing.as_ref().map_or(stepper.state(), |crossing| &crossing.state);

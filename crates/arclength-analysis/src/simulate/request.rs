@@ -2,10 +2,18 @@
 
 use super::accuracy::Accuracy;
 use super::motion::{Course, Ending, Motion};
+use super::picture::DrawnPlot;
+use super::plot::{Expressions, Plot, PlotRequest, Variable, Windows};
 use super::result::HistoryResult;
+use super::result::SectionResult;
+use super::section::{Section, SectionRequest};
+use super::smooth::finer_times;
 use crate::error::Error;
+use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
+use crate::phase_plane::PhasePlane;
+use crate::start::LabelledSolution;
 use arclength::integration::{IntegrationError, Method};
 use arclength_ode::{NamedSet, Options};
 use kingpin_report::numbers::readable;
@@ -18,17 +26,19 @@ const TOLERANCE: f64 = 1e-10;
 const ABSOLUTE: f64 = 0.01;
 /// Size of a state below which its absolute tolerance is measured by its size.
 const SMALL: f64 = 0.01;
-/// Most steps.
-const MOST_STEPS: usize = 1_000_000;
+/// Most steps: some minutes.
+const MOST_STEPS: usize = 20_000_000;
 /// How often a motion is followed again with the tolerances that the sizes of its states ask for.
 const REPETITIONS: usize = 3;
+/// How often samples are added where a curve that is drawn bends.
+const SMOOTHINGS: usize = 6;
 
 /// A time history from the initial state of the model. What is not given is as the model has it in its lines `@`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateRequest {
     /// The model, or the labelled point.
     pub model: ModelRequest,
-    /// How long it lasts, or the model's `total`.
+    /// How long it lasts, or the model's `total`, or [`default_duration`](Self::default_duration).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
     /// Number of samples, at equal distances to the end; or as many as the model's `dt` and `nout` ask for, or
@@ -53,6 +63,15 @@ pub struct SimulateRequest {
     /// Method of integration.
     #[serde(default)]
     pub method: IntegrationMethod,
+    /// What its picture shows; without, every state and auxiliary quantity over the time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plots: Vec<PlotRequest>,
+    /// Limits of the axes of its picture.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub window: Vec<Interval>,
+    /// The section at whose crossings there are samples, in place of equal distances.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<SectionRequest>,
 }
 
 /// A method of integration by its name.
@@ -89,6 +108,10 @@ pub struct SimulateAnalysis {
     /// The largest absolute tolerance that is allowed.
     absolute: f64,
     accuracy: Accuracy,
+    plots: Vec<Plot>,
+    expressions: Expressions,
+    windows: Windows,
+    section: Option<(SectionRequest, Section)>,
 }
 
 impl SimulateRequest {
@@ -100,6 +123,11 @@ impl SimulateRequest {
     /// Number of samples where neither the request nor the model gives one.
     pub const fn default_points() -> u64 {
         1001
+    }
+
+    /// How long the motion lasts where neither the request nor the model says: as long as in XPPAUT.
+    pub const fn default_duration() -> f64 {
+        20.0
     }
 
     /// A request with the default of everything else.
@@ -119,6 +147,9 @@ impl SimulateRequest {
             tolerance: None,
             max_step: None,
             method: IntegrationMethod::Auto,
+            plots: Vec::new(),
+            window: Vec::new(),
+            section: None,
         }
     }
 
@@ -138,16 +169,41 @@ impl SimulateRequest {
             let allowed = format!("{} to {}", Self::POINTS.start(), Self::POINTS.end());
             return Err(Error::invalid(&["points"], points.to_string(), "too few or too many", allowed));
         }
-        let OpenedModel { chosen, mut warnings, .. } = self.model.open()?;
+        if let Some(points) = self.points.filter(|_| self.section.is_some()) {
+            let problem = "samples are at the crossings of the section";
+            return Err(Error::invalid(&["points"], points.to_string(), problem, "nothing with a section"));
+        }
+        let OpenedModel { chosen, mut warnings, point } = self.model.open()?;
+        let goes_on = matches!(point.map(|point| point.solution), Some(LabelledSolution::Motion { .. }));
+        if goes_on && self.t0.is_none() && !chosen.model.is_autonomous() {
+            let text = "the model depends on the time, which begins anew: to go on where the motion ended, set the time at which it starts (--t0)";
+            warnings.push(text.to_owned());
+        }
+        let mut expressions = Expressions::default();
+        let plots = self.plots.iter().map(|plot| plot.resolve(&chosen, &mut expressions));
+        let plots = plots.collect::<Result<Vec<_>, _>>()?;
+        let windows = Windows::new(&chosen, &self.window, &mut expressions)?;
+        let section = self
+            .section
+            .as_ref()
+            .map(|asked| Ok::<_, Error>((asked.clone(), asked.of(&chosen)?)))
+            .transpose()?;
         let set = self.model.named_set.as_ref().map(|name| chosen.named_set(name)).transpose()?;
         let file = FileSettings { options: chosen.model.options(), set };
 
-        let duration = self.duration.or_else(|| file.number("total"));
-        let Some(duration) = duration.filter(|duration| *duration > 0.0 && duration.is_finite()) else {
-            let given = duration.map_or("nothing".to_owned(), |duration| format!("(@ total={duration})"));
+        let duration = self.duration.or_else(|| file.number("total")).unwrap_or(Self::default_duration());
+        if !(duration > 0.0 && duration.is_finite()) {
             let problem = "the model does not say how long the motion lasts";
-            return Err(Error::invalid(&["duration"], given, problem, "a positive time"));
-        };
+            return Err(Error::invalid(
+                &["duration"],
+                format!("(@ total={duration})"),
+                problem,
+                "a positive time",
+            ));
+        }
+        if file.number("dt").is_some_and(|step| step < 0.0) {
+            warnings.push("a negative @ dt, which in XPPAUT goes backwards in time, has no effect: the motion goes forwards".to_owned());
+        }
         let start = self.t0.or_else(|| file.number("t0").filter(|time| time.is_finite())).unwrap_or(0.0);
         let end = start + duration;
         if end <= start {
@@ -193,7 +249,19 @@ impl SimulateRequest {
             most_steps: MOST_STEPS,
             method: self.method.into(),
         };
-        Ok(SimulateAnalysis { chosen, warnings, start, times, bound, absolute, accuracy })
+        Ok(SimulateAnalysis {
+            chosen,
+            warnings,
+            start,
+            times,
+            bound,
+            absolute,
+            accuracy,
+            plots,
+            expressions,
+            windows,
+            section,
+        })
     }
 }
 
@@ -257,7 +325,8 @@ impl SimulateAnalysis {
     pub fn run(&self) -> Result<HistoryResult, Error> {
         let chosen = &self.chosen;
         let mut warnings = Vec::new();
-        let motion = self.follow(&mut warnings)?;
+        let section = self.section.as_ref().map(|(_, section)| section);
+        let motion = self.follow(&self.times, section, &mut warnings)?;
         if let Some((time, ending)) = motion.ending {
             self.tell(time, ending, motion.samples.times.is_empty(), &mut warnings)?;
         }
@@ -267,10 +336,89 @@ impl SimulateAnalysis {
                 readable(time)
             ));
         }
-        let states = (0..chosen.model.states().len())
-            .map(|index| motion.samples.states.iter().map(|sample| sample[index]).collect())
-            .collect();
-        Ok(HistoryResult::new(chosen, motion.samples.times, states, warnings))
+        if let (Some((asked, _)), Some(watch)) = (&self.section, motion.section) {
+            let first = self.times[0];
+            let (times, states): (Vec<f64>, Vec<Vec<f64>>) =
+                watch.crossings.into_iter().filter(|(time, _)| *time >= first).unzip();
+            if times.is_empty() {
+                warnings.push(format!("the motion does not cross the section {} = 0", asked.expression));
+            }
+            let mut plots = self.drawn(&times, &states);
+            let result = HistoryResult::new(chosen, times, &states, warnings);
+            if plots.is_empty() {
+                let sizes = motion.sizes.iter().copied().chain(std::iter::repeat(0.0));
+                let quantities = result.quantities().zip(sizes);
+                plots = DrawnPlot::return_maps(
+                    quantities.map(|((name, values), size)| (name.as_str(), values.clone(), size)),
+                );
+            }
+            let section = SectionResult { expression: asked.expression.clone(), direction: asked.direction };
+            return Ok(HistoryResult { section: Some(section), plots, ..result });
+        }
+        let (times, states) = (motion.samples.times, motion.samples.states);
+        let plots = if self.plots.is_empty() {
+            Vec::new()
+        } else {
+            let (times, states) = self.smooth(times.clone(), states.clone())?;
+            self.drawn(&times, &states)
+        };
+        let phase_planes: Vec<PhasePlane> = plots.iter().filter_map(DrawnPlot::phase_plane).collect();
+        if phase_planes.iter().any(|plane| plane.equilibria.is_none()) {
+            warnings.push("the equilibria in the window form lines: none is marked".to_owned());
+        }
+        let is_plane = |plot: &Plot| matches!(plot.pairs()[..], [[Variable::State(_), Variable::State(_)]]);
+        if chosen.model.states().len() == 2
+            && !chosen.model.is_autonomous()
+            && self.plots.iter().any(is_plane)
+        {
+            let text =
+                "the model depends on the time: its phase plane has no nullclines, directions and equilibria";
+            warnings.push(text.to_owned());
+        }
+        let result = HistoryResult::new(chosen, times, &states, warnings);
+        Ok(HistoryResult { plots, phase_planes, ..result })
+    }
+
+    /// What is drawn of a motion.
+    fn drawn(&self, times: &[f64], states: &[Vec<f64>]) -> Vec<DrawnPlot> {
+        let value = |variable: Variable, time: f64, state: &[f64]| self.value(variable, time, state);
+        let is_motion = self.section.is_none();
+        let plots = self.plots.iter();
+        plots
+            .map(|plot| DrawnPlot::of(plot, &self.chosen, &self.windows, is_motion, (times, states), &value))
+            .collect()
+    }
+
+    fn value(&self, variable: Variable, time: f64, state: &[f64]) -> f64 {
+        match variable {
+            Variable::Time => time,
+            Variable::State(index) => state[index],
+            Variable::Expression(index) => {
+                self.expressions.value(index, time, state, &self.chosen.parameters)
+            }
+            Variable::Auxiliary(index) => self.chosen.auxiliary(time, state, &self.chosen.parameters)[index],
+        }
+    }
+
+    /// Times and states, as close together as smooth curves need.
+    fn smooth(
+        &self,
+        mut times: Vec<f64>,
+        mut states: Vec<Vec<f64>>,
+    ) -> Result<(Vec<f64>, Vec<Vec<f64>>), IntegrationError> {
+        let pairs: Vec<[Variable; 2]> = self.plots.iter().flat_map(Plot::pairs).collect();
+        for _ in 0..SMOOTHINGS {
+            let curve = |pair: &[Variable; 2]| {
+                let points = times.iter().zip(&states);
+                points.map(|(time, state)| pair.map(|variable| self.value(variable, *time, state))).collect()
+            };
+            let Some(finer) = finer_times(&times, &pairs.iter().map(curve).collect::<Vec<_>>()) else {
+                break;
+            };
+            let samples = self.follow(&finer, None, &mut Vec::new())?.samples;
+            (times, states) = (samples.times, samples.states);
+        }
+        Ok((times, states))
     }
 
     /// Says why the motion was not followed to the end.
@@ -324,18 +472,24 @@ impl SimulateAnalysis {
     }
 
     /// Follows the motion, again where a state is so small that its absolute tolerance leaves it too few digits.
-    fn follow(&self, warnings: &mut Vec<String>) -> Result<Motion<'_>, IntegrationError> {
+    fn follow<'t>(
+        &self,
+        times: &'t [f64],
+        section: Option<&Section>,
+        warnings: &mut Vec<String>,
+    ) -> Result<Motion<'t>, IntegrationError> {
         let chosen = &self.chosen;
         let course = Course {
             model: &chosen.model,
             parameters: &chosen.parameters,
             start_time: self.start,
             start: &chosen.start,
-            end_time: self.times.last().copied().unwrap_or(self.start),
+            end_time: times.last().copied().unwrap_or(self.start),
             bound: self.bound,
+            section,
         };
         let mut accuracy = self.accuracy.clone();
-        let mut motion = course.follow(&accuracy, &self.times)?;
+        let mut motion = course.follow(&accuracy, times)?;
         for _ in 0..REPETITIONS {
             let needed: Vec<f64> = motion.sizes.iter().map(|size| self.absolute_tolerance(*size)).collect();
             if needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has) {
@@ -343,7 +497,7 @@ impl SimulateAnalysis {
             }
             accuracy.absolute = needed;
             accuracy.most_steps = 10_000 + 20 * motion.steps;
-            match course.follow(&accuracy, &self.times) {
+            match course.follow(&accuracy, times) {
                 Ok(finer) => motion = finer,
                 Err(error) => {
                     warnings.push(format!(

@@ -1,10 +1,13 @@
 //! A time history of a model as a result.
 
+use super::picture::{self, DrawnPlot};
+use super::section::SectionDirection;
 use crate::branch::parameters;
 use crate::model::ChosenModel;
+use crate::phase_plane::PhasePlane;
 use crate::stored_model::StoredModel;
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
-use kingpin_report::history::{drawn, extremes};
+use kingpin_report::history::extremes;
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
 use serde::de::{MapAccess, Visitor};
@@ -80,9 +83,27 @@ pub struct HistoryResult {
     /// For every auxiliary quantity its values at these times.
     #[serde(default, skip_serializing_if = "Histories::is_empty")]
     pub aux: Histories,
+    /// The section at whose crossings the samples are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<SectionResult>,
+    /// Phase planes that were asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub phase_planes: Vec<PhasePlane>,
     /// What is worth knowing about it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// What its picture shows.
+    #[serde(skip)]
+    pub(super) plots: Vec<DrawnPlot>,
+}
+
+/// A section at whose crossings there are samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SectionResult {
+    /// The expression that is zero there.
+    pub expression: String,
+    /// Which crossings count.
+    pub direction: SectionDirection,
 }
 
 impl HistoryResult {
@@ -91,20 +112,22 @@ impl HistoryResult {
     /// Label of the end, from which computations can start.
     pub const END: &'static str = "END";
 
-    /// The result of a motion: times, for every state its values at these times, and what is worth knowing about it.
+    /// The result of a motion: times, the states at these times, and what is worth knowing about it.
     pub fn new(
         chosen: &ChosenModel,
         times: Vec<f64>,
-        values: Vec<Vec<f64>>,
+        states: &[Vec<f64>],
         mut warnings: Vec<String>,
     ) -> Self {
         let names = chosen.auxiliary_names();
         let mut auxiliary = vec![Vec::with_capacity(times.len()); names.len()];
-        for (index, time) in times.iter().enumerate() {
-            let state: Vec<f64> = values.iter().map(|values| values[index]).collect();
-            let quantities = chosen.auxiliary(*time, &state, &chosen.parameters);
+        for (time, state) in times.iter().zip(states) {
+            let quantities = chosen.auxiliary(*time, state, &chosen.parameters);
             auxiliary.iter_mut().zip(quantities).for_each(|(values, quantity)| values.push(quantity));
         }
+        let values = (0..chosen.model.states().len())
+            .map(|index| states.iter().map(|state| state[index]).collect())
+            .collect();
         for (name, values) in names.iter().zip(&auxiliary) {
             let first = values.iter().zip(&times).find(|(value, _)| !value.is_finite());
             if let Some((_, time)) = first {
@@ -117,7 +140,10 @@ impl HistoryResult {
             t: times,
             states: Histories { names: chosen.model.states().to_vec(), values },
             aux: Histories { names, values: auxiliary },
+            section: None,
+            phase_planes: Vec::new(),
             warnings,
+            plots: Vec::new(),
         }
     }
 
@@ -133,7 +159,7 @@ impl HistoryResult {
     }
 
     /// States and auxiliary quantities.
-    fn quantities(&self) -> impl Iterator<Item = (&String, &Vec<f64>)> {
+    pub(super) fn quantities(&self) -> impl Iterator<Item = (&String, &Vec<f64>)> {
         self.states.iter().chain(self.aux.iter())
     }
 }
@@ -149,7 +175,20 @@ impl Report for HistoryResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "motion of {} at {}", self.model.name, parameters(&self.parameters().0))?;
-        writeln!(out, "{} samples over {}\n", self.t.len(), readable(self.duration()))?;
+        match &self.section {
+            Some(SectionResult { expression, direction }) => {
+                let direction = match direction {
+                    SectionDirection::Both => "",
+                    SectionDirection::Rising => ", rising",
+                    SectionDirection::Falling => ", falling",
+                };
+                writeln!(out, "{} crossings of {expression} = 0{direction}\n", self.t.len())?;
+            }
+            None => writeln!(out, "{} samples over {}\n", self.t.len(), readable(self.duration()))?,
+        }
+        if self.t.is_empty() {
+            return Ok(());
+        }
         let mut table = Table::new(["", "start", "end", "smallest", "largest"]);
         for (name, values) in self.quantities() {
             let [smallest, largest] = extremes(values);
@@ -165,13 +204,16 @@ impl Report for HistoryResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let name = &self.model.name;
+        if !self.plots.is_empty() {
+            return Ok(Some(picture::figure(&format!("Motion of {name}"), &self.plots)));
+        }
         let panels = self.quantities().count().min(MOST_PANELS);
         let figure = if panels > 1 { Figure::double_column().columns(2) } else { Figure::single_column() };
-        let mut figure = figure.description(format!("Time histories of {}", self.model.name));
+        let mut figure = figure.description(format!("Time histories of {name}"));
         let [start, end] = [self.t.first(), self.t.last()].map(|time| time.copied().unwrap_or(0.0));
         for (name, values) in self.quantities().take(panels) {
-            let points = drawn(&self.t, values).into_iter().filter(|(_, value)| value.is_finite());
-            let line = Line::new(points.collect::<Vec<_>>()).color(palette::BLUE);
+            let line = Line::new(picture::history(&self.t, values)).color(palette::BLUE);
             let time = Axis::new("$t$").limits(start, end);
             figure = figure.panel(Panel::new(time, Axis::new(name)).curve(line));
         }

@@ -129,7 +129,7 @@ impl<S: System, F: Fn() -> S> Again<'_, F> {
     }
 
     /// The state at a time, by steps of its own.
-    fn step(&self, time: f64, state: &[f64], end: f64) -> Result<Vec<f64>, IntegrationError> {
+    pub(super) fn step(&self, time: f64, state: &[f64], end: f64) -> Result<Vec<f64>, IntegrationError> {
         if end <= time {
             return Ok(state.to_vec());
         }

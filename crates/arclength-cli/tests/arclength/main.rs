@@ -8,6 +8,7 @@ mod kinks;
 mod monitors;
 mod orbits;
 mod restarts;
+mod sections;
 mod simulations;
 mod starts;
 mod switching;

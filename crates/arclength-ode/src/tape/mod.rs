@@ -27,8 +27,14 @@ pub(crate) struct Tape {
     registers: usize,
 }
 
-/// Registers of a workspace that is small enough, with dual numbers too, for the stack not to be probed page by page.
+/// Registers of a workspace that is small enough for the stack not to be probed page by page.
 const FEW_REGISTERS: usize = 32;
+
+/// Whether a scalar is longer than a number. Its arithmetic takes longer than the instructions around it: what saves some of these
+/// is not compiled once more for every such scalar.
+const fn is_long<T>() -> bool {
+    size_of::<T>() > size_of::<f64>()
+}
 
 /// Invariant: every register that an instruction or a result reads is below the number of registers
 /// and holds a state, a parameter or a constant, or was written by an earlier instruction.
@@ -63,14 +69,20 @@ impl<R: Copy + Into<usize>> Code<R> {
 
     #[inline(always)]
     fn run<T: Scalar>(&self, registers: &mut impl Registers<T, R>, time: T, results: &mut [T]) {
-        // Two at a time: less counting, and two indirect jumps are easier to predict than one.
-        let (pairs, last) = self.instructions.as_chunks::<2>();
-        for [first, second] in pairs {
-            execute(first, time, registers);
-            execute(second, time, registers);
-        }
-        if let [last] = last {
-            execute(last, time, registers);
+        if const { is_long::<T>() } {
+            for instruction in &self.instructions {
+                execute(instruction, time, registers);
+            }
+        } else {
+            // Two at a time: less counting, and two indirect jumps are easier to predict than one.
+            let (pairs, last) = self.instructions.as_chunks::<2>();
+            for [first, second] in pairs {
+                execute(first, time, registers);
+                execute(second, time, registers);
+            }
+            if let [last] = last {
+                execute(last, time, registers);
+            }
         }
         let count = results.len().min(self.results.len());
         let (results, sources) = (&mut results[..count], &self.results[..count]);
@@ -108,7 +120,7 @@ impl Tape {
     pub(crate) fn evaluate<T: Scalar>(&self, time: T, state: &[T], parameters: &[T], results: &mut [T]) {
         // The same operations, so the same results, but on longer vectors: worth it for dual numbers.
         #[cfg(target_arch = "x86_64")]
-        if size_of::<T>() > size_of::<f64>() && is_x86_feature_detected!("avx2") {
+        if const { is_long::<T>() } && is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has these instructions.
             return unsafe { self.evaluate_vectorized(time, state, parameters, results) };
         }
@@ -144,7 +156,7 @@ impl Tape {
         let parameters = &parameters[..self.parameters];
         match &self.program {
             Program::OnStack(code) => {
-                if self.registers <= FEW_REGISTERS {
+                if const { !is_long::<T>() } && self.registers <= FEW_REGISTERS {
                     self.run_on_stack::<T, FEW_REGISTERS>(code, time, state, parameters, results);
                 } else {
                     self.run_on_stack::<T, STACK_REGISTERS>(code, time, state, parameters, results);

@@ -232,10 +232,9 @@ mod tests {
 
     #[test]
     fn rounding_next_to_an_invariant_subspace_does_not_count() {
-        let exact = natural_scales(&ErasedField::of(&Invariant), &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
+        let exact = natural_scales(&Invariant.erased(), &[1.0 / 3.0, 0.0], &[0.1], &[1.0, 0.0]);
         for predator in [1e-36, -1e-25, 1e-17, -1e-15] {
-            let scales =
-                natural_scales(&ErasedField::of(&Invariant), &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
+            let scales = natural_scales(&Invariant.erased(), &[1.0 / 3.0, predator], &[0.1], &[1.0, 0.0]);
             for (scale, reference) in scales.iter().zip(&exact) {
                 assert!((scale / reference - 1.0).abs() < 1e-6, "{scales:?} {exact:?}");
             }
@@ -245,13 +244,11 @@ mod tests {
     #[test]
     fn scales_follow_the_units() {
         for state in [[0.0; 3], [0.3, 0.0, 4.0 * 0.3f64.sin()]] {
-            let reference =
-                natural_scales(&ErasedField::of(&Scaled([1.0; 3])), &state, &[0.5], &[0.0, 0.0, 1.0]);
+            let reference = natural_scales(&Scaled([1.0; 3]).erased(), &state, &[0.5], &[0.0, 0.0, 1.0]);
             assert!(reference.iter().all(|scale| (1e-3..10.0).contains(scale)), "{reference:?}");
             let units = [1e-6, 1e3, 1e9];
             let scaled_state: Vec<f64> = state.iter().zip(units).map(|(x, unit)| x * unit).collect();
-            let scaled =
-                natural_scales(&ErasedField::of(&Scaled(units)), &scaled_state, &[0.5], &[0.0, 0.0, 1e9]);
+            let scaled = natural_scales(&Scaled(units).erased(), &scaled_state, &[0.5], &[0.0, 0.0, 1e9]);
             for index in 0..3 {
                 let ratio = scaled[index] / (reference[index] * units[index]);
                 assert!((ratio - 1.0).abs() < 1e-4, "{state:?} {index} {ratio}");

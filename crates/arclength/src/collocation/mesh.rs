@@ -162,6 +162,12 @@ pub(crate) fn dividing_equally(knots: &[f64], masses: &[f64], intervals: usize) 
     (1..intervals).map(point).collect()
 }
 
+/// The mesh with every interval halved.
+pub(crate) fn halved(mesh: &[f64]) -> Vec<f64> {
+    let starts = mesh.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
+    starts.chain(mesh.last().copied()).collect()
+}
+
 /// Moves the mesh points of jumps to where the jumps take place, and those between them in proportion; carries `unknown` and
 /// `vectors` along. `None` where a jump does not take place nearby. Returns the largest distance by which one was moved.
 pub(crate) fn fit_jumps<P: BoundaryValueEquations>(

@@ -35,11 +35,22 @@ const ROUNDINGS: usize = 3;
 
 /// The largest update that is made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice.
 fn rounding_update<C: Curve>(curve: &mut C, unknown: &[f64]) -> f64 {
+    let mut image = vec![0.0; unknown.len()];
+    let mut largest = 0.0_f64;
+    rounding_updates(curve, unknown, |curve, update| largest = largest.max(norm(curve, update, &mut image)));
+    largest
+}
+
+/// Hands over the updates that are made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice;
+/// the Jacobian is the one that was factorised last.
+pub(crate) fn rounding_updates<C: Curve>(
+    curve: &mut C,
+    unknown: &[f64],
+    mut use_update: impl FnMut(&C, &[f64]),
+) {
     let mut here = vec![0.0; unknown.len()];
     curve.residual(unknown, &mut here);
     let mut random = Random::new(1);
-    let mut image = vec![0.0; unknown.len()];
-    let mut largest = 0.0_f64;
     for _ in 0..ROUNDINGS {
         let rounded: Vec<f64> = unknown
             .iter()
@@ -53,9 +64,8 @@ fn rounding_update<C: Curve>(curve: &mut C, unknown: &[f64]) -> f64 {
         let last = update.len() - 1;
         update[last] = 0.0;
         curve.solve(&mut update);
-        largest = largest.max(norm(curve, &update, &mut image));
+        use_update(curve, &update);
     }
-    largest
 }
 
 /// Solves `F(z) = 0`, `border . (z - start) = 0` from `unknown`, in place.
@@ -91,10 +101,11 @@ pub fn correct<C: Curve>(
         }
         let contraction = length / previous;
         let stands = iteration > 1 && contraction > CHORD_REJECTION;
+        // An old Jacobian may contract slowly and still lead on.
         let stagnates = stands
+            && fresh_jacobian
             && (length < STAGNATION_LIMIT
-                || (fresh_jacobian
-                    && curve.may_stagnate()
+                || (curve.may_stagnate()
                     && length < ROUNDING_LIMIT
                     && length < ROUNDING_SHARE * rounding_update(curve, unknown)));
         if !fresh_jacobian && contraction > CHORD_REJECTION && !stagnates {

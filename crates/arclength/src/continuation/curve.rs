@@ -164,6 +164,11 @@ pub trait Curve: Equations {
         Ok(Vec::new())
     }
 
+    /// Whether two special points of one kind are one, though the solutions that they were located at are apart.
+    fn are_same(&self, _one: &Self::Point, _other: &Self::Point) -> bool {
+        false
+    }
+
     /// Whether two special points of one kind at one place are two, such as Hopf points of different frequencies.
     fn are_distinct(&self, _one: &Self::Point, _other: &Self::Point) -> bool {
         false

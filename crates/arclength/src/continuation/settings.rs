@@ -31,6 +31,17 @@ pub struct Settings {
     pub shortest_bracket: f64,
 }
 
+/// Tolerance of the corrector for solutions between which special points are bracketed. Next to a homoclinic orbit the parameter
+/// changes so little that a test function which is its rate changes its sign elsewhere where solutions are known less well.
+const LOCATING_TOLERANCE: f64 = 1e-13;
+
+impl Settings {
+    /// The same for solutions between which special points are located.
+    pub(crate) fn for_locating(self) -> Self {
+        Self { corrector_tolerance: self.corrector_tolerance.min(LOCATING_TOLERANCE), ..self }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {

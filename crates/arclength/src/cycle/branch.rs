@@ -78,6 +78,7 @@ impl CyclePoint {
     ) -> Self {
         let inspection = &solution.point;
         let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
+        let [period, value] = inspection.place.unwrap_or([scalars[0], scalars[1]]);
         let (mesh, states) = inspection
             .fitted
             .as_ref()
@@ -87,8 +88,8 @@ impl CyclePoint {
         let turn = solution.tangent.last().map_or(0.0, |rate| rate / range);
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
         Self {
-            value: scalars[1],
-            period: scalars[0],
+            value,
+            period,
             max: inspection.ranges.iter().map(|range| range.largest).collect(),
             min: inspection.ranges.iter().map(|range| range.smallest).collect(),
             multipliers: inspection.floquet.multipliers(),
@@ -114,7 +115,7 @@ impl CyclePoint {
                 mesh: mesh.to_vec(),
                 degree,
                 states: states.to_vec(),
-                period: scalars[0],
+                period,
                 dimension: inspection.ranges.len(),
             },
         }

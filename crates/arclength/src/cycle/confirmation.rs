@@ -12,6 +12,7 @@ use super::orbit::Orbit;
 use super::start::Asked;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
+use crate::collocation::mesh::halved;
 use crate::continuation::{Adaptation, Curve, Equations, Settings, Stop, correct};
 use crate::linear::multiplier::Multiplier;
 
@@ -136,11 +137,7 @@ impl Asked<'_> {
         degree: usize,
         neutral: bool,
     ) -> Option<Level> {
-        let halves: Vec<f64> = mesh
-            .windows(2)
-            .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
-            .chain(mesh.last().copied())
-            .collect();
+        let halves = halved(mesh);
         let coarse = Collocation::new(self.problem(), mesh.to_vec(), degree);
         let mut unknown = coarse.carry(unknown, &halves);
         let fine = Collocation::new(self.problem(), halves.clone(), degree);

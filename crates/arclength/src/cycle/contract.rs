@@ -134,6 +134,7 @@ impl Curve for CycleCurve<'_> {
             mesh: self.collocation.mesh().to_vec(),
             segments: self.collocation.problem.segments.clone(),
             fitted: None,
+            place: None,
             normal_form: Vec::new(),
             branching: None,
         })
@@ -241,6 +242,11 @@ impl Curve for CycleCurve<'_> {
         _half: f64,
     ) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
         special::crossing(self, between, change)
+    }
+
+    fn are_same(&self, one: &CycleInspection, other: &CycleInspection) -> bool {
+        let places = one.place.zip(other.place);
+        places.is_some_and(|(one, other)| special::is_same_place(one, other, self.parameter_scale))
     }
 
     fn are_distinct(&self, one: &CycleInspection, other: &CycleInspection) -> bool {

@@ -56,6 +56,8 @@ pub(crate) struct CycleInspection {
     pub segments: Option<Segments>,
     /// The cycle on a mesh whose points are the borders that it passes, where those of its own mesh miss them.
     pub(super) fitted: Option<Fitted>,
+    /// Period and parameter, where a finer mesh gave them.
+    pub(super) place: Option<[f64; 2]>,
     /// Coefficients of its normal form by name.
     pub normal_form: Vec<(&'static str, f64)>,
     /// The branch that leaves here.
@@ -149,6 +151,15 @@ impl<'a> CycleCurve<'a> {
         };
         curve.rescale(start);
         curve.collocation.set_reference(start);
+        curve
+    }
+
+    /// The same curve on another mesh, on which the unknowns are those of a solution.
+    pub(super) fn on_mesh(&self, mesh: Vec<f64>, unknown: &[f64]) -> Self {
+        let degree = self.collocation.gauss().degree();
+        let collocation = Collocation::new(self.collocation.problem.clone(), mesh, degree);
+        let mut curve = Self::new(collocation, self.resolution, self.parameter_scale, unknown);
+        (curve.settings, curve.doubled) = (self.settings, self.doubled);
         curve
     }
 

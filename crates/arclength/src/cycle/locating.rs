@@ -12,10 +12,12 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::linear_problem::Nodes;
-use crate::collocation::mesh::{SAME_TIME, fit_jumps};
+use crate::collocation::mesh::{SAME_TIME, fit_jumps, halved};
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
-use crate::continuation::{Adaptation, Curve, Discretised, Equations, Settings, Solution, correct, finish};
+use crate::continuation::{
+    Adaptation, Curve, Discretised, Equations, Settings, Solution, correct, finish, rounding_updates,
+};
 use crate::error::Error;
 
 /// A curve made of a defining system, as far as Newton's method needs it.
@@ -206,6 +208,26 @@ fn fit_borders(
     false
 }
 
+/// What a special cycle becomes where its unknowns, and those of its defining system, are rounded up and down.
+pub(crate) fn rounded(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> Vec<Vec<f64>> {
+    let (collocation, n) = (&curve.collocation, curve.collocation.problem.dimension());
+    let nodes = (collocation.mesh().to_vec(), collocation.gauss().degree());
+    let unknown = join(&located.solution.unknown, n, &located.eigenfunctions);
+    let parameters = (None, [curve.parameter_scale, 1.0]);
+    let mut defining = DefiningCurve::new(&collocation.problem, kind, nodes, parameters, &unknown);
+    let (mut border, mut residual) = (vec![0.0; unknown.len()], vec![0.0; unknown.len()]);
+    border[unknown.len() - 1] = 1.0;
+    defining.factorize(&unknown, &border, &mut residual);
+    let mut cycles = Vec::new();
+    rounding_updates(&mut defining, &unknown, |_, update| {
+        let moved: Vec<f64> = unknown.iter().zip(update).map(|(value, update)| value - update).collect();
+        let (mut cycle, _) = split(&moved, n, kind);
+        cycle.pop();
+        cycles.push(cycle);
+    });
+    cycles
+}
+
 /// A special cycle on a finer mesh.
 pub(crate) struct Finer<'a> {
     /// The cycle alone, factorised there.
@@ -225,11 +247,7 @@ impl Finer<'_> {
 pub(crate) fn on_halves<'a>(curve: &CycleCurve<'a>, located: &Located, kind: Kind) -> Option<Finer<'a>> {
     let (collocation, n) = (&curve.collocation, curve.collocation.problem.dimension());
     let (mesh, degree) = (collocation.mesh(), collocation.gauss().degree());
-    let halves: Vec<f64> = mesh
-        .windows(2)
-        .flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])])
-        .chain(mesh.last().copied())
-        .collect();
+    let halves = halved(mesh);
     let problem = &collocation.problem;
     let parameters = (None, [curve.parameter_scale, 1.0]);
     let unknown = join(&located.solution.unknown, n, &located.eigenfunctions);

@@ -1,18 +1,20 @@
 //! Special cycles between two points of a branch: folds, period doublings, torus bifurcations and branch points, bracketed by
 //! their test functions and located by Newton's method on their defining systems, with their normal forms.
 
-use super::curve::{CycleCurve, CycleInspection};
+use super::curve::{CycleCurve, CycleInspection, Fitted};
 use super::defining::Kind;
 use super::floquet::Floquet;
-use super::locating::{Located, converge, on_halves};
+use super::locating::{Located, converge, on_halves, rounded};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::switching::{doubled, other_branch};
 use crate::branch::SpecialKind;
+use crate::collocation::mesh::halved;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Event, Location};
-use crate::continuation::{Bracket, Solution, along};
+use crate::continuation::{Bracket, Curve, Equations, Solution, along};
 use crate::error::Error;
+use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Parts of the step to which a test function's zero is bracketed before Newton's method takes over, and tries again.
@@ -26,7 +28,14 @@ const LEAST_ERROR: f64 = 1e-13;
 /// A special cycle may lie this part of the step, and this far in the metric, outside it: cycles are known to the tolerance of
 /// Newton's method only, and close to homoclinic orbits brackets are shorter than what comes of it.
 const MARGIN: f64 = 0.01;
-const LEAST_MARGIN: f64 = 1e-6;
+const LEAST_MARGIN: f64 = 1e-5;
+/// Times that the intervals are halved, at most, where multipliers refute a special cycle.
+const MOST_HALVINGS: usize = 3;
+/// Relative difference of period and parameter up to which a special cycle is the same on two meshes.
+const SAME_PLACE: f64 = 1e-6;
+/// What rounding of the unknowns does to multipliers counts this many times: each of some hundred blocks, whose product has them, is
+/// rounded too.
+const UNCERTAIN: f64 = 100.0;
 
 type Node = Solution<CycleInspection>;
 
@@ -64,7 +73,12 @@ pub(super) fn locate(
     match newton(curve, defining, [before, after], rank)? {
         // The defining system may have a solution where the mesh does not resolve the multipliers: they have to agree.
         Some(mut located) if !is_critical(&located.solution.point.floquet, defining) => {
-            let known = is_passed(&located.solution, [before, after], defining)
+            if let Some(solution) = on_finer_mesh(curve, &located.solution, [before, after], defining)? {
+                return Ok(Location::At(solution));
+            }
+            let is_certain = is_passed(&located.solution, [before, after], defining)
+                && stays_when_rounded(curve, &located, defining);
+            let known = is_certain
                 .then(|| located.solution.point.floquet.with_critical(defining.critical()?))
                 .flatten();
             match known {
@@ -98,6 +112,108 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
         // Next to a resonance two real ones may be a pair by rounding.
         (multiplier.is_real() == real || away < CRITICAL) && multiplier.log_modulus.abs().max(away) < CRITICAL
     })
+}
+
+/// The special cycle next to one that its own multipliers refute, on the first finer mesh where they do not, described there.
+/// `None` where there is none.
+///
+/// Next to homoclinic orbits multipliers may change by orders of magnitude within the last digits of the cycle. One that is at the
+/// same place on two meshes is there, if rounding moves its multipliers by as much as they are far from critical ones.
+fn on_finer_mesh(
+    curve: &CycleCurve<'_>,
+    refuted: &Node,
+    [before, after]: [&Node; 2],
+    kind: Kind,
+) -> Result<Option<Solution<CycleInspection>>, Error> {
+    let (mut mesh, mut solution) = (curve.collocation.mesh().to_vec(), refuted.clone());
+    let mut finer = None;
+    for _ in 0..MOST_HALVINGS {
+        if mesh.len() - 1 > curve.resolution.most_intervals {
+            return Ok(None);
+        }
+        let coarse = finer.as_ref().unwrap_or(curve);
+        mesh = halved(&mesh);
+        let mut start = solution.clone();
+        start.tangent = coarse.collocation.carry(&solution.tangent, &mesh);
+        start.unknown = coarse.collocation.carry(&solution.unknown, &mesh);
+        let mut fine = coarse.on_mesh(mesh.clone(), &start.unknown);
+        let mut residual = vec![0.0; start.unknown.len()];
+        fine.factorize(&start.unknown, &start.tangent, &mut residual);
+        start.point = fine.inspect(&start.unknown, &start.tangent, 0.0)?;
+        let tangent = start.tangent.clone();
+        let Some(mut located) = converge(&mut fine, &tangent, &start, kind)? else { return Ok(None) };
+        let floquet = located.solution.point.floquet.clone();
+        let [here, before_it] = [&located.solution, &solution].map(|node| place(&node.unknown));
+        let known = if is_critical(&floquet, kind) {
+            Some(floquet)
+        } else if is_same_place(here, before_it, curve.parameter_scale)
+            && stays_when_rounded(&fine, &located, kind)
+            && is_as_uncertain(&mut fine, &located, kind)?
+        {
+            kind.critical().and_then(|critical| floquet.with_critical(critical))
+        } else {
+            None
+        };
+        if let Some(floquet) = known {
+            located.solution.point.floquet = floquet;
+            let mut solution = describe(&mut fine, located, kind)?;
+            let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
+            solution.point.place = Some([scalars[0], scalars[1]]);
+            solution.point.fitted.get_or_insert(Fitted { mesh, states: states.to_vec() });
+            // Its place among its neighbours is that of the same point on their mesh.
+            let position = along(curve, before, &refuted.unknown);
+            let there = if position < 0.0 {
+                before
+            } else if position > along(curve, before, &after.unknown) {
+                after
+            } else {
+                refuted
+            };
+            (solution.unknown, solution.tangent) = (there.unknown.clone(), there.tangent.clone());
+            return Ok(Some(solution));
+        }
+        solution = located.solution;
+        finer = Some(fine);
+    }
+    Ok(None)
+}
+
+/// Period and parameter among the unknowns of a cycle.
+fn place(unknown: &[f64]) -> [f64; 2] {
+    [2, 1].map(|from_end| unknown[unknown.len() - from_end])
+}
+
+/// Whether a special cycle stays where it is when its unknowns are rounded: where the parameter does not change to its last digits any
+/// cycle looks like one.
+fn stays_when_rounded(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> bool {
+    let here = place(&located.solution.unknown);
+    let mut all = rounded(curve, located, kind).into_iter();
+    all.all(|cycle| is_same_place(place(&cycle), here, curve.parameter_scale))
+}
+
+/// Whether periods and parameters of two special cycles agree.
+pub(super) fn is_same_place(one: [f64; 2], other: [f64; 2], parameter_scale: f64) -> bool {
+    (one[0] / other[0] - 1.0).abs().max((one[1] - other[1]).abs() / parameter_scale) < SAME_PLACE
+}
+
+/// Whether rounding alone changes the multipliers of a special cycle by as much as they differ from critical ones.
+fn is_as_uncertain(curve: &mut CycleCurve<'_>, located: &Located, kind: Kind) -> Result<bool, Error> {
+    let Some(critical) = kind.critical() else { return Ok(false) };
+    let critical = critical.to_complex();
+    let product = |floquet: &Floquet| {
+        let distances = floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex() - critical);
+        distances.product::<Complex64>().re
+    };
+    let here = product(&located.solution.point.floquet);
+    let tangent = &located.solution.tangent;
+    let mut residual = vec![0.0; tangent.len()];
+    let mut largest = 0.0_f64;
+    for unknown in rounded(curve, located, kind) {
+        curve.factorize(&unknown, tangent, &mut residual);
+        let point = curve.inspect(&unknown, tangent, 0.0)?;
+        largest = largest.max((product(&point.floquet) - here).abs());
+    }
+    Ok(here.abs() <= UNCERTAIN * largest)
 }
 
 /// Whether something else than the multipliers at the point itself shows that it is passed between two others: next to homoclinic

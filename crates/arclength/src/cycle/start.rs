@@ -137,7 +137,7 @@ pub type Cycles<'a> = Continuation<'a, CycleProblem>;
 impl<'a> Cycles<'a> {
     /// Cycles of the field, from a start.
     pub fn of<F: VectorField>(field: &'a F, start: CycleStart) -> Self {
-        Self::of_erased(ErasedField::of(field), CycleProblem { start, resolution: Resolution::default() })
+        Self::of_erased(field.erased(), CycleProblem { start, resolution: Resolution::default() })
     }
 
     /// Resolution of the cycles.
@@ -261,7 +261,7 @@ impl<'a> Asked<'a> {
     fn curve(&self, start: &Departure) -> CycleCurve<'a> {
         let collocation = Collocation::new(self.problem(), start.mesh.clone(), start.degree);
         let mut curve = CycleCurve::new(collocation, self.resolution, self.bound.width(), &start.unknown);
-        curve.settings = self.settings;
+        curve.settings = self.settings.for_locating();
         curve
     }
 

@@ -11,7 +11,7 @@ use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::differentiation::Scalar;
 use crate::direction::Direction;
-use crate::erased::ErasedField;
+use crate::erased::*;
 use crate::field::VectorField;
 use crate::numbers::readable;
 use crate::random::Random;
@@ -86,7 +86,7 @@ pub fn conserved_totals<F: VectorField>(
     parameters: &[f64],
     varying: &[usize],
 ) -> Vec<ConservedTotal> {
-    let field = ErasedField::of(field);
+    let field = field.erased();
     let n = state.len();
     let sizes = natural_scales(&field, state, parameters, &vec![0.0; n]);
     let mut random = Random::new(1);
@@ -196,6 +196,13 @@ fn reduced_echelon(mut rows: Vec<Vec<f64>>, columns: usize) -> (Vec<usize>, Vec<
 #[derive(Clone, Debug)]
 pub struct WithTotals<'a, F> {
     field: &'a F,
+    drawn: DrawnToTotals<'a>,
+}
+
+/// The same for the scalars on the list: the field itself is not compiled again for it.
+#[derive(Clone, Debug)]
+struct DrawnToTotals<'a> {
+    field: ErasedField<'a>,
     totals: Vec<ConservedTotal>,
     reference: Vec<f64>,
     rates: Vec<f64>,
@@ -214,20 +221,21 @@ impl<'a, F: VectorField> WithTotals<'a, F> {
         let rates = if totals.is_empty() {
             Vec::new()
         } else {
-            let fastest = fastest_rate(&ErasedField::of(field), state, parameters);
+            let fastest = fastest_rate(&field.erased(), state, parameters);
             (0..totals.len()).map(|index| RATE * fastest * (1.0 + 0.1 * index as f64)).collect()
         };
-        Self { field, totals, reference: state.to_vec(), rates }
+        let drawn = DrawnToTotals { field: field.erased(), totals, reference: state.to_vec(), rates };
+        Self { field, drawn }
     }
 
     /// The conserved totals.
     pub fn totals(&self) -> &[ConservedTotal] {
-        &self.totals
+        &self.drawn.totals
     }
 
     /// Puts zero in place of the eigenvalues with which the totals are drawn to their values: those of the field itself.
     pub fn restore_eigenvalues(&self, eigenvalues: &mut [Complex64]) {
-        for rate in &self.rates {
+        for rate in &self.drawn.rates {
             let distance = |value: &Complex64| (value + rate).norm();
             let nearest = eigenvalues.iter_mut().min_by(|a, b| distance(a).total_cmp(&distance(b)));
             if let Some(value) = nearest.filter(|value| distance(value) < SAME_RATE * rate) {
@@ -275,6 +283,16 @@ impl<F: VectorField> VectorField for WithTotals<'_, F> {
 
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
         self.field.evaluate(state, parameters, derivative);
+        self.drawn.draw(state, derivative);
+    }
+
+    fn erased(&self) -> ErasedField<'_> {
+        ErasedField::new(&self.drawn)
+    }
+}
+
+impl DrawnToTotals<'_> {
+    fn draw<T: Scalar>(&self, state: &[T], derivative: &mut [T]) {
         for (total, rate) in self.totals.iter().zip(&self.rates) {
             let mut excess = T::zero();
             for ((coefficient, value), reference) in total.coefficients.iter().zip(state).zip(&self.reference)
@@ -288,3 +306,42 @@ impl<F: VectorField> VectorField for WithTotals<'_, F> {
         }
     }
 }
+
+macro_rules! drawn_table {
+    ($($method:ident, $event:ident: $scalar:ty;)*) => {
+        impl Table for DrawnToTotals<'_> {
+            fn state_names(&self) -> Vec<String> {
+                self.field.state_names()
+            }
+            fn parameter_names(&self) -> Vec<String> {
+                self.field.parameter_names()
+            }
+            fn dimension(&self) -> usize {
+                self.field.dimension()
+            }
+            fn thresholds(&self) -> Vec<Threshold> {
+                self.field.thresholds()
+            }
+            fn events(&self) -> Vec<Direction> {
+                self.field.events()
+            }
+            $(
+                fn $method(&self, state: &[$scalar], parameters: &[$scalar], derivative: &mut [$scalar]) {
+                    self.field.evaluate(state, parameters, derivative);
+                    self.draw(state, derivative);
+                }
+                fn $event(
+                    &self,
+                    event: usize,
+                    state: &[$scalar],
+                    parameters: &[$scalar],
+                    values: &mut [$scalar],
+                ) {
+                    self.field.evaluate_event(event, state, parameters, values);
+                }
+            )*
+        }
+    };
+}
+
+with_field_scalars!(drawn_table);

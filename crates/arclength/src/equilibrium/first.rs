@@ -72,7 +72,7 @@ pub fn seek_equilibrium<F: VectorField>(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<FoundEquilibrium, Error> {
-    seek_erased(ErasedField::of(field), start, parameters)
+    seek_erased(field.erased(), start, parameters)
 }
 
 /// As [`seek_equilibrium`].

@@ -124,8 +124,7 @@ mod tests {
 
     #[test]
     fn forms_of_a_monomial() {
-        let forms =
-            MultilinearForms { field: ErasedField::of(&Monomial), state: &[2.0, 3.0], parameters: &[5.0] };
+        let forms = MultilinearForms { field: Monomial.erased(), state: &[2.0, 3.0], parameters: &[5.0] };
         let (x, y, p): (&[f64], &[f64], &[f64]) = (&[1.0], &[0.0, 1.0], &[0.0, 0.0, 1.0]);
         assert_eq!(forms.real(&[x]), [5.0 * 12.0 * 9.0, 2f64.exp()]);
         assert_eq!(forms.real(&[x, y])[0], 5.0 * 12.0 * 6.0);

@@ -49,7 +49,7 @@ pub fn find_equilibrium<F: VectorField>(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<Vec<f64>, Error> {
-    find_erased(ErasedField::of(field), start, parameters)
+    find_erased(field.erased(), start, parameters)
 }
 
 /// As [`find_equilibrium`].

@@ -15,7 +15,6 @@ use crate::continuation::{
     BothWays, BothWaysOf, Bound, Followed, FollowedCurve, Origin, Request, Settings, Solution, Stop,
     both_ways, follow,
 };
-use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
 
@@ -96,7 +95,7 @@ impl<'a> Equilibria<'a> {
     /// Equilibria of `field`, by default from the start zero. The value of the parameter to vary says where to start; outside its
     /// range the nearer end does.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        Self::of_erased(ErasedField::of(field), EquilibriumStart::default())
+        Self::of_erased(field.erased(), EquilibriumStart::default())
     }
 
     /// State from which the first equilibrium is sought; it need not be one.

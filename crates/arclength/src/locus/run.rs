@@ -77,7 +77,7 @@ type FollowedLocus = BothWays<Inspection, SpecialKind, Infallible>;
 impl<'a> EquilibriumLocus<'a> {
     /// A curve of special equilibria of `field`.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        Self::of_erased(ErasedField::of(field), None)
+        Self::of_erased(field.erased(), None)
     }
 
     /// Starts at a fold.

@@ -121,6 +121,8 @@ fn ranges_that_make_no_sense() {
 fn no_uniform_motion() {
     fails("steady -s l=2", 1, &["no uniform motion", "|l - a0| < r fails", "raise r or lower l"]);
     fails("stability -s l=2 -o a.json", 1, &["no uniform motion"]);
+    fails("damper --up-to l=3", 2, &["--up-to", "v=VALUE"]);
+    fails("damper --up-to v=0", 2, &["a speed above 0"]);
     fails("steady -s v=0", 1, &["v = 0", "set v above 0"]);
     fails("steady -s v=200", 1, &["m omega^2 < k l fails", "lower v"]);
     fails("simulate --duration 1 -s v=0", 1, &["v = 0"]);

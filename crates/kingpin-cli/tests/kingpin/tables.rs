@@ -15,6 +15,22 @@ fn stability() {
 }
 
 #[test]
+fn real_wheels() {
+    for wheel in ["dolly", "nosegear", "office", "trolley", "wheelchair"] {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+        let straight = Folder::new().succeed(&format!("stability --wheel {file}/{wheel}.toml"));
+        insta::assert_snapshot!(format!("stability_{wheel}"), straight.output);
+        let damper = Folder::new().succeed(&format!("damper --up-to v=3 -q --wheel {file}/{wheel}.toml"));
+        insta::assert_snapshot!(format!("damper_{wheel}"), damper.output);
+    }
+}
+
+#[test]
+fn damper() {
+    insta::assert_snapshot!(Folder::new().succeed("damper --up-to v=30 -q").output);
+}
+
+#[test]
 fn chart() {
     insta::assert_snapshot!(
         Folder::new().succeed("chart --x v=0.1:12:120 --y l=0.02:0.3:57 -s F_Az=-20").output

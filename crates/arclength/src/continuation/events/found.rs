@@ -27,7 +27,8 @@ pub(super) fn search<C: Curve>(
     bounds: &[Bound],
     settings: &Settings,
 ) -> Result<Events<C>, Error> {
-    let mut scan = Scan::new(curve, memory, bounds, settings);
+    let settings = settings.for_locating();
+    let mut scan = Scan::new(curve, memory, bounds, &settings);
     let found = scan.verified(ends)?;
     let unlocated = scan.unlocated;
     Ok(Events { found, unlocated })

@@ -77,7 +77,16 @@ impl<C: Curve> Scan<'_, C> {
             .collect();
         placed.sort_by(|one, other| one.0.total_cmp(&other.0));
         placed.dedup_by(|next, previous| self.is_repeated(next, previous));
-        placed
+        let mut each: Vec<(f64, EventOf<C>)> = Vec::with_capacity(placed.len());
+        for (place, event) in placed {
+            let is_same = |(_, other): &(f64, EventOf<C>)| {
+                other.kind == event.kind && self.curve.are_same(&other.solution.point, &event.solution.point)
+            };
+            if !each.iter().any(is_same) {
+                each.push((place, event));
+            }
+        }
+        each
     }
 
     /// Drops what was taken for a fold and is the turn of the parameter at a branch point.

@@ -92,7 +92,7 @@ pub type CycleLocus<'a> = Continuation<'a, CycleLocusProblem>;
 impl<'a> CycleLocus<'a> {
     /// A curve of special cycles of `field`.
     pub fn of<F: VectorField>(field: &'a F) -> Self {
-        Self::of_erased(ErasedField::of(field), CycleLocusProblem::default())
+        Self::of_erased(field.erased(), CycleLocusProblem::default())
     }
 
     /// Starts at a special cycle: a fold (`FoldOfCycles`), a period doubling or a torus bifurcation, with all parameters there.

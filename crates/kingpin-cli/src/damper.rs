@@ -1,0 +1,41 @@
+//! `kingpin damper`: the smallest dampers with which no shimmy is born up to a speed.
+
+use crate::wheel_options::{WheelOptions, parameter_help};
+use arclength_analysis::Assignment;
+use clap::Args;
+use kingpin_analysis::damper::DamperRequest;
+use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
+
+const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf";
+
+/// Smallest dampers with which no shimmy is born up to a speed
+///
+/// The least c_q and the least c_psi with which the uniform motion is stable at every speed from a thousandth of the one given
+/// to that one, each alone and both together, and the speed that decides. The wheel's own c_q and c_psi do not count. Large
+/// cycles that do not come from a Hopf point may take more damping; they are not sought here.
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub(crate) struct Damper {
+    /// Speed up to which the motion is to be stable
+    #[arg(long, value_name = "v=VALUE")]
+    up_to: Assignment,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+    #[command(flatten)]
+    output: OutputOptions,
+}
+
+impl Damper {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        let output = self.output.prepare_without_picture()?;
+        let request = DamperRequest { wheel: self.wheel.request(), up_to: self.up_to.clone() };
+        let progress = ProgressDisplay::bar("dampers", output.is_quiet());
+        let (result, _) = output.watch(progress, |control| request.run(control));
+        output.deliver(&result?)
+    }
+}
