@@ -1,23 +1,15 @@
 //! The phase plane as a panel of a figure.
 
+use super::plane_field::ARROWS;
 use super::{EquilibriumKind, PhasePlane};
 use kingpin_figure::{Axis, Color, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
 
-/// Arrows of the direction field across and up.
-const ARROWS: [usize; 2] = [21, 15];
 /// Length of an arrow in parts of the distance to the next.
 const ARROW: f64 = 0.55;
 /// Length and half the width of its head in parts of its length.
 const HEAD: [f64; 2] = [0.36, 0.18];
 /// Grey of the arrows.
 const FAINT: Color = Color::rgb(185, 185, 185);
-
-/// The places of the arrows, in the unit square.
-pub(super) fn grid() -> impl Iterator<Item = [f64; 2]> {
-    let at = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
-    let [across, up] = ARROWS;
-    (0..up).flat_map(move |row| (0..across).map(move |column| [at(column, across), at(row, up)]))
-}
 
 impl PhasePlane {
     /// The panel, with a motion.

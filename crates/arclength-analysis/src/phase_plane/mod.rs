@@ -59,7 +59,7 @@ impl PhasePlane {
             x_nullclines,
             y_nullclines,
             manifolds: manifolds.collect(),
-            directions: drawing::grid().map(|place| (place, field.velocity(place))).collect(),
+            directions: plane_field::places_of_arrows().map(|place| (place, field.velocity(place))).collect(),
             equilibria,
         }
     }

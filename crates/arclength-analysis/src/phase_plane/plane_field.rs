@@ -92,3 +92,13 @@ impl AlgebraicProblem for Standstill<'_> {
         self.0.model.evaluate(unknown, &parameters, residual);
     }
 }
+
+/// Arrows of the direction field across and up.
+pub(super) const ARROWS: [usize; 2] = [21, 15];
+
+/// The places of the arrows of a direction field, in the unit square.
+pub(super) fn places_of_arrows() -> impl Iterator<Item = [f64; 2]> {
+    let at = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
+    let [across, up] = ARROWS;
+    (0..up).flat_map(move |row| (0..across).map(move |column| [at(column, across), at(row, up)]))
+}
