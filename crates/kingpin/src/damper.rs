@@ -56,7 +56,7 @@ impl Wheel {
     /// wheel.set("l", "0.04")?;
     /// let damper = wheel.smallest_damper(Key::CPsi, 3.0, &Control::none())?.unwrap();
     /// // In closed form: v (J/l - m).
-    /// assert!((damper.damping / (3.0 * 1.208825e-4) - 1.0).abs() < 1e-6 && damper.speed == Some(3.0));
+    /// assert!((damper.damping / (3.0 * 1.2088e-4) - 1.0).abs() < 1e-6 && damper.speed == Some(3.0));
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     pub fn smallest_damper(
