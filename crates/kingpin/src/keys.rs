@@ -7,7 +7,8 @@ use std::str::FromStr;
 
 impl Key {
     /// The key whose name is nearest to what was given: fewest edits when case and underscores are disregarded,
-    /// then fewest edits with them.
+    /// then fewest edits with them. Where that is another name altogether, the key whose meaning begins with the words given, or has
+    /// them.
     pub fn nearest(given: &str) -> Key {
         /// Characters that are looked at: no key has as many.
         const LOOKED_AT: usize = 40;
@@ -15,7 +16,21 @@ impl Key {
         let plain = |text: &str| text.to_lowercase().replace('_', "");
         let distance =
             |key: &Key| (edit_distance(&plain(given), &plain(key.name())), edit_distance(given, key.name()));
-        Self::ALL.into_iter().min_by_key(distance).unwrap_or(Key::V)
+        let nearest = Self::ALL.into_iter().min_by_key(distance).unwrap_or(Key::V);
+        let is_another_name = 2 * distance(&nearest).0 > plain(given).chars().count();
+        let by_meaning = || Self::ALL.into_iter().filter_map(|key| Some((key.place_in_meaning(given)?, key)));
+        let meant = by_meaning().min_by_key(|(place, _)| *place).map(|(_, key)| key);
+        if is_another_name { meant.unwrap_or(nearest) } else { nearest }
+    }
+
+    /// Where in the meaning of the key the first of some words stands, if all of them do.
+    fn place_in_meaning(self, given: &str) -> Option<usize> {
+        /// Words as short as these stand everywhere.
+        const SHORT: usize = 3;
+        let given = given.to_lowercase();
+        let words = given.split(|letter: char| !letter.is_alphanumeric()).filter(|word| word.len() > SHORT);
+        let places: Option<Vec<usize>> = words.map(|word| self.meaning().find(word)).collect();
+        places?.into_iter().min()
     }
 
     /// That no two of the keys set the same parameter.
@@ -74,6 +89,17 @@ mod tests {
             ("faz", Key::FAz),
         ] {
             assert_eq!(Key::nearest(given), nearest, "{given}");
+        }
+        for (given, meant) in [
+            ("stiffness", Key::K),
+            ("lateral_stiffness", Key::KQ),
+            ("caster_length", Key::L),
+            ("towing_speed", Key::V),
+            ("wheel radius", Key::WheelRadius),
+            ("mass_of_the_caster", Key::MC),
+            ("gravity", Key::G),
+        ] {
+            assert_eq!(Key::nearest(given), meant, "{given}");
         }
         assert_eq!(edit_distance("kitten", "sitting"), 3);
     }
