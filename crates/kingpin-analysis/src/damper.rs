@@ -45,83 +45,71 @@ impl DamperRequest {
         let alone = |key, part| wheel.smallest_damper(key, up_to, &control.part(part));
         let lateral = alone(Key::CQ, 0.0..0.1)?;
         let rotational = alone(Key::CPsi, 0.1..0.2)?;
-        let mut front = Vec::new();
+        let mut front = Front::default();
         if let Some(SmallestDamper { damping, .. }) = lateral {
-            for index in 0..FRONT {
+            let count = if damping > 0.0 { FRONT } else { 1 };
+            for index in 0..count {
                 let part = index as f64 / (FRONT - 1) as f64;
-                let c_q = part * damping;
+                let damped = wheel.with(Key::CQ, part * damping)?;
                 let control = control.part(0.2 + 0.8 * part..(0.2 + 0.8 * (part + 0.1)).min(1.0));
-                let c_psi = if index + 1 == FRONT {
+                let beside = if index + 1 == FRONT {
                     Some(0.0)
                 } else {
-                    let damped = wheel.with(Key::CQ, c_q)?;
                     damped.smallest_damper(Key::CPsi, up_to, &control)?.map(|damper| damper.damping)
                 };
-                front.extend(c_psi.map(|c_psi| [c_q, c_psi]));
-                if damping == 0.0 {
-                    break;
+                if let Some(beside) = beside {
+                    front.c_q.push(part * damping);
+                    front.c_psi.push(beside);
                 }
             }
         }
-        Ok(DamperResult { wheel, up_to, lateral, rotational, front })
+        let [c_q, c_psi] = [lateral, rotational].map(|damper| damper.map(|damper| damper.damping));
+        let speed = |damper: Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
+        let corner = Corner { c_q: speed(lateral), c_psi: speed(rotational) };
+        Ok(DamperResult { wheel, requirement: REQUIREMENT, up_to, c_q, c_psi, corner, front })
     }
 }
 
 /// The smallest dampers.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct DamperResult {
     /// The wheel without its dampers.
+    #[serde(skip)]
     pub wheel: Wheel,
+    /// What the dampers are for.
+    pub requirement: &'static str,
     /// The speed in m/s up to which the uniform motion is to be stable.
     pub up_to: f64,
-    /// The smallest lateral damper alone; nothing where none was found that is enough.
-    pub lateral: Option<SmallestDamper>,
-    /// The smallest damper about the king pin alone.
-    pub rotational: Option<SmallestDamper>,
-    /// Both together: `c_q` in N s/m and the least `c_psi` in N m s/rad beside it.
-    pub front: Vec<[f64; 2]>,
+    /// The smallest lateral damper alone, in N s/m; nothing where none was found that is enough.
+    pub c_q: Option<f64>,
+    /// The smallest damper about the king pin alone, in N m s/rad.
+    pub c_psi: Option<f64>,
+    /// The speeds that decide.
+    pub corner: Corner,
+    /// Both dampers together.
+    pub front: Front,
+}
+
+/// Speeds in m/s at which the motion is unstable with a weaker damper; nothing where none is needed.
+#[derive(Debug, Serialize)]
+pub struct Corner {
+    /// Of the lateral damper.
+    pub c_q: Option<f64>,
+    /// Of the one about the king pin.
+    pub c_psi: Option<f64>,
+}
+
+/// Pairs of dampers of which neither may be weaker.
+#[derive(Debug, Default, Serialize)]
+pub struct Front {
+    /// Lateral ones, in N s/m.
+    pub c_q: Vec<f64>,
+    /// The least beside each about the king pin, in N m s/rad.
+    pub c_psi: Vec<f64>,
 }
 
 /// What the dampers are for.
 const REQUIREMENT: &str = "no shimmy is born: the uniform motion is stable at every speed";
-
-impl Serialize for DamperResult {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Corner {
-            c_q: Option<f64>,
-            c_psi: Option<f64>,
-        }
-        #[derive(Serialize)]
-        struct Front {
-            c_q: Vec<f64>,
-            c_psi: Vec<f64>,
-        }
-        #[derive(Serialize)]
-        struct Fields {
-            requirement: &'static str,
-            up_to: f64,
-            c_q: Option<f64>,
-            c_psi: Option<f64>,
-            corner: Corner,
-            front: Front,
-        }
-        let damping = |damper: &Option<SmallestDamper>| damper.map(|damper| damper.damping);
-        let speed = |damper: &Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
-        Fields {
-            requirement: REQUIREMENT,
-            up_to: self.up_to,
-            c_q: damping(&self.lateral),
-            c_psi: damping(&self.rotational),
-            corner: Corner { c_q: speed(&self.lateral), c_psi: speed(&self.rotational) },
-            front: Front {
-                c_q: self.front.iter().map(|[c_q, _]| *c_q).collect(),
-                c_psi: self.front.iter().map(|[_, c_psi]| *c_psi).collect(),
-            },
-        }
-        .serialize(serializer)
-    }
-}
 
 impl Report for DamperResult {
     fn schema(&self) -> Schema {
@@ -135,14 +123,14 @@ impl Report for DamperResult {
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let wheel = description::of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi]);
         writeln!(out, "dampers for stability up to v = {} m/s at {wheel}\n", readable(self.up_to))?;
-        for (key, damper, name) in [
-            (Key::CQ, self.lateral, "lateral damper"),
-            (Key::CPsi, self.rotational, "damper about the king pin"),
+        for (key, name, damping, speed) in [
+            (Key::CQ, "lateral damper", self.c_q, self.corner.c_q),
+            (Key::CPsi, "damper about the king pin", self.c_psi, self.corner.c_psi),
         ] {
-            match damper {
-                None => writeln!(out, "{name} alone: none was found that is enough")?,
-                Some(SmallestDamper { speed: None, .. }) => writeln!(out, "{name} alone: none is needed")?,
-                Some(SmallestDamper { damping, speed: Some(speed) }) => writeln!(
+            match (damping, speed) {
+                (None, _) => writeln!(out, "{name} alone: none was found that is enough")?,
+                (Some(_), None) => writeln!(out, "{name} alone: none is needed")?,
+                (Some(damping), Some(speed)) => writeln!(
                     out,
                     "{name} alone: {} at least; v = {} m/s decides",
                     description::quantity(key, damping),
@@ -150,10 +138,10 @@ impl Report for DamperResult {
                 )?,
             }
         }
-        if self.front.len() > 1 {
+        if self.front.c_q.len() > 1 {
             writeln!(out, "\nboth together:\n")?;
             let mut table = Table::new(["c_q (N s/m)", "c_psi (N m s/rad)"]);
-            for [c_q, c_psi] in &self.front {
+            for (c_q, c_psi) in self.front.c_q.iter().zip(&self.front.c_psi) {
                 table.row([(*c_q).into(), (*c_psi).into()]);
             }
             table.write(out)?;
@@ -166,9 +154,9 @@ impl Report for DamperResult {
 
     fn columns(&self) -> Columns {
         Columns::new()
-            .numbers("c_q", self.front.iter().map(|[c_q, _]| *c_q))
+            .numbers("c_q", self.front.c_q.iter().copied())
             .unit("N s/m")
-            .numbers("c_psi", self.front.iter().map(|[_, c_psi]| *c_psi))
+            .numbers("c_psi", self.front.c_psi.iter().copied())
             .unit("N m s/rad")
     }
 }

@@ -22,6 +22,8 @@ const FARTHER: f64 = 100.0;
 const CONTINUOUS: f64 = 0.1;
 /// Steps of the golden section by which an extremum of the growth rate between three speeds is narrowed down.
 const GOLDEN_STEPS: usize = 60;
+/// The golden section.
+pub(crate) const SECTION: f64 = 0.618_033_988_749_894_9;
 
 /// The speed at which the uniform motion loses (or gains) its stability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +151,6 @@ fn beyond_zero(
     if !(closest > 0.0 && one > closest && other > closest) {
         return None;
     }
-    const SECTION: f64 = 0.618_033_988_749_894_9;
     let (mut low, mut high) = (first.0, last.0);
     for _ in 0..GOLDEN_STEPS {
         let left = high - SECTION * (high - low);
@@ -165,7 +166,12 @@ fn beyond_zero(
 }
 
 /// The zero of a function between two points where its signs differ.
-fn bisect(mut low: f64, low_value: f64, mut high: f64, function: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+pub(crate) fn bisect(
+    mut low: f64,
+    low_value: f64,
+    mut high: f64,
+    function: impl Fn(f64) -> Option<f64>,
+) -> Option<f64> {
     while high - low > TOLERANCE * high {
         let middle = 0.5 * (low + high);
         if (function(middle)? < 0.0) == (low_value < 0.0) { low = middle } else { high = middle }

@@ -8,6 +8,7 @@
 //! 2008), and removing them takes more.
 
 use crate::boundary::Curve;
+use crate::critical_speed::{SECTION, bisect};
 use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::plane::{Axis, Plane};
@@ -26,11 +27,8 @@ const DOUBLINGS: usize = 24;
 const BEYOND: f64 = 1.1;
 /// Relative distance from a boundary at which the stability on both sides is compared.
 const ASIDE: f64 = 1e-6;
-/// Steps by which a peak is narrowed down, and halvings by which the boundary at a speed is.
+/// Steps by which a peak is narrowed down.
 const GOLDEN_STEPS: usize = 40;
-const HALVINGS: usize = 60;
-/// Golden section.
-const SECTION: f64 = 0.618_033_988_749_894_9;
 
 /// The smallest damper that is enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,12 +63,12 @@ impl Wheel {
         up_to: f64,
         control: &Control<'_>,
     ) -> Result<Option<SmallestDamper>, KingpinError> {
+        let speeds = Axis::new(Key::V, SLOWEST * up_to..=up_to)?;
         let search = Search { wheel: self, key, up_to };
-        if search.is_enough(0.0)? {
+        if search.is_enough(0.0) {
             return Ok(Some(SmallestDamper { damping: 0.0, speed: None }));
         }
         let Some(enough) = search.some_that_is_enough(control)? else { return Ok(None) };
-        let speeds = Axis::new(Key::V, SLOWEST * up_to..=up_to)?;
         let plane = Plane::new(speeds, Axis::new(key, 0.0..=BEYOND * enough)?)?;
         let mut peaks = Vec::new();
         for curve in self.stability_boundary(&plane, control)? {
@@ -80,7 +78,7 @@ impl Wheel {
         for [speed, damping] in peaks {
             control.check()?;
             let is_needed = search.is_stable(speed, damping * (1.0 - ASIDE)) == Some(false);
-            if is_needed && search.is_enough(damping * (1.0 + ASIDE))? {
+            if is_needed && search.is_enough(damping * (1.0 + ASIDE)) {
                 return Ok(Some(SmallestDamper { damping, speed: Some(speed) }));
             }
         }
@@ -101,13 +99,11 @@ impl Search<'_> {
     }
 
     /// Whether the motion is nowhere surely unstable, and stable at the largest speed.
-    fn is_enough(&self, damping: f64) -> Result<bool, KingpinError> {
-        Axis::new(Key::V, 0.0..=self.up_to)?;
+    fn is_enough(&self, damping: f64) -> bool {
         let speed = |index: usize| self.up_to * SLOWEST.powf(1.0 - index as f64 / SPEEDS as f64);
         let even = |index: usize| self.up_to * (index + 1) as f64 / (SPEEDS + 1) as f64;
-        let all = (0..SPEEDS).flat_map(|index| [speed(index), even(index)]);
-        Ok(all.into_iter().all(|speed| self.is_stable(speed, damping) != Some(false))
-            && self.is_stable(self.up_to, damping) != Some(false))
+        let mut all = (0..SPEEDS).flat_map(|index| [speed(index), even(index)]).chain([self.up_to]);
+        all.all(|speed| self.is_stable(speed, damping) != Some(false))
     }
 
     fn some_that_is_enough(&self, control: &Control<'_>) -> Result<Option<f64>, KingpinError> {
@@ -122,7 +118,7 @@ impl Search<'_> {
             if BEYOND * damping > self.key.allowed().highest {
                 return Ok(None);
             }
-            if self.is_enough(damping)? {
+            if self.is_enough(damping) {
                 return Ok(Some(damping));
             }
         }
@@ -179,21 +175,17 @@ impl Search<'_> {
 
     /// The damping near a guess at which the growth rate changes its sign at a speed.
     fn boundary_at(&self, speed: f64, guess: f64, reach: f64) -> Option<f64> {
-        let grows = |damping: f64| {
+        let rate = |damping: f64| {
             let wheel =
                 self.wheel.with(self.key, damping).and_then(|wheel| wheel.with(Key::V, speed)).ok()?;
-            Some(wheel.uniform_motion().ok()?.growth_rate() > 0.0)
+            Some(wheel.uniform_motion().ok()?.growth_rate())
         };
-        let (mut low, mut high) = ((guess - reach).max(0.0), guess + reach);
-        let below = grows(low)?;
-        if grows(high)? == below {
+        let (low, high) = ((guess - reach).max(0.0), guess + reach);
+        let below = rate(low)?;
+        if (rate(high)? < 0.0) == (below < 0.0) {
             return None;
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if grows(middle)? == below { low = middle } else { high = middle }
-        }
-        Some(0.5 * (low + high))
+        bisect(low, below, high, rate)
     }
 }
 

@@ -23,15 +23,15 @@
 //! caster creeps back to rest in one swing.
 
 use crate::characteristic::roots;
+use crate::critical_speed::bisect;
 use crate::linear_stability::lateral_cubic;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
+use std::f64::consts::PI;
 
 /// Speeds in m/s between which the critical one is sought, and how many of them, in geometric progression, are looked at.
 const SLOWEST: f64 = 1e-3;
 const SPEEDS: usize = 2000;
-/// Halvings after which an interval of two numbers is as short as these allow.
-const HALVINGS: usize = 100;
 
 impl Wheel {
     /// The factor by which each swing of the caster multiplies its angle where dry friction, however small, acts about the king pin;
@@ -61,15 +61,11 @@ impl Wheel {
         self.get(Key::TurningRadius).is_infinite().then_some(())?;
         let ratio = (Key::V.allowed().highest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
         let speed = |index: usize| SLOWEST * ratio.powi(index as i32);
-        let grows = |speed: f64| self.swing_factor_at(speed).abs() > 1.0;
-        let first = (0..SPEEDS).find(|&index| grows(speed(index)))?;
+        let excess = |speed: f64| self.swing_factor_at(speed).abs() - 1.0;
+        let first = (0..SPEEDS).find(|&index| excess(speed(index)) > 0.0)?;
         let Some(before) = first.checked_sub(1) else { return Some(0.0) };
-        let (mut low, mut high) = (speed(before), speed(first));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if grows(middle) { high = middle } else { low = middle }
-        }
-        Some(high)
+        let slower = speed(before);
+        bisect(slower, excess(slower), speed(first), |speed| Some(excess(speed)))
     }
 
     fn swing_factor_at(&self, speed: f64) -> f64 {
@@ -88,14 +84,13 @@ fn swing_factor([c1, c2, c3]: [f64; 3]) -> f64 {
         return 0.0;
     }
     // In units of 1/beta; the logarithm does not overflow where many swings would fit into the decay.
-    let (mut low, mut high) = (std::f64::consts::PI, 2.0 * std::f64::consts::PI);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        let wave = middle.cos() - gamma / beta * middle.sin();
-        if wave > 0.0 && gamma / beta * middle + wave.ln() > 0.0 { high = middle } else { low = middle }
-    }
-    let (sine, cosine) = high.sin_cos();
-    let [real, oscillating] = [lambda, alpha].map(|rate| (rate * high / beta).exp());
+    let excess = |time: f64| {
+        let wave = time.cos() - gamma / beta * time.sin();
+        Some(if wave > 0.0 { gamma / beta * time + wave.ln() } else { f64::NEG_INFINITY })
+    };
+    let Some(end) = bisect(PI, f64::NEG_INFINITY, 2.0 * PI, excess) else { return 0.0 };
+    let (sine, cosine) = end.sin_cos();
+    let [real, oscillating] = [lambda, alpha].map(|rate| (rate * end / beta).exp());
     let amplitude = -c3 / (gamma * gamma + beta * beta);
     let slope = (alpha * gamma + beta * beta) / beta;
     let second = amplitude * (lambda * real - oscillating * (lambda * cosine - slope * sine));

@@ -17,10 +17,11 @@ impl Key {
         let distance =
             |key: &Key| (edit_distance(&plain(given), &plain(key.name())), edit_distance(given, key.name()));
         let nearest = Self::ALL.into_iter().min_by_key(distance).unwrap_or(Key::V);
-        let is_another_name = 2 * distance(&nearest).0 > plain(given).chars().count();
-        let by_meaning = || Self::ALL.into_iter().filter_map(|key| Some((key.place_in_meaning(given)?, key)));
-        let meant = by_meaning().min_by_key(|(place, _)| *place).map(|(_, key)| key);
-        if is_another_name { meant.unwrap_or(nearest) } else { nearest }
+        if 2 * distance(&nearest).0 <= plain(given).chars().count() {
+            return nearest;
+        }
+        let by_meaning = Self::ALL.into_iter().filter_map(|key| Some((key.place_in_meaning(given)?, key)));
+        by_meaning.min_by_key(|(place, _)| *place).map_or(nearest, |(_, key)| key)
     }
 
     /// Where in the meaning of the key the first of some words stands, if all of them do.

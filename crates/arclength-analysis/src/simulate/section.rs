@@ -6,6 +6,7 @@
 use crate::error::Error;
 use crate::model::ChosenModel;
 use crate::monitor::reason;
+use arclength::Direction;
 use arclength::integration::{Event, EventLocator, IntegrationError, Stepper, System};
 use arclength_ode::Quantity;
 use serde::{Deserialize, Serialize};
@@ -90,7 +91,17 @@ impl FromStr for SectionRequest {
 pub(super) struct Section {
     quantity: Quantity,
     parameters: Vec<f64>,
-    direction: SectionDirection,
+    direction: Direction,
+}
+
+impl From<SectionDirection> for Direction {
+    fn from(direction: SectionDirection) -> Self {
+        match direction {
+            SectionDirection::Both => Self::Either,
+            SectionDirection::Rising => Self::Rising,
+            SectionDirection::Falling => Self::Falling,
+        }
+    }
 }
 
 impl SectionRequest {
@@ -103,7 +114,7 @@ impl SectionRequest {
             let allowed = "an expression in the names of the model and t, such as x=0:+ or \"y-0.3\"";
             Error::invalid(&["section"], self.expression.clone(), reason(&error), allowed)
         })?;
-        Ok(Section { quantity, parameters: chosen.parameters.clone(), direction: self.direction })
+        Ok(Section { quantity, parameters: chosen.parameters.clone(), direction: self.direction.into() })
     }
 }
 
@@ -181,11 +192,7 @@ impl SectionWatch {
             let far = side
                 .map_or_else(|| self.section.value(crossing.time, &crossing.state).signum(), |side| -side);
             side = Some(far);
-            let counts = match self.section.direction {
-                SectionDirection::Both => true,
-                SectionDirection::Rising => far > 0.0,
-                SectionDirection::Falling => far < 0.0,
-            };
+            let counts = self.section.direction.counts(-far, far);
             if let Some(exact) =
                 self.corrected(stepper, (start, &origin), crossing.time, &step)?.filter(|_| counts)
             {

@@ -33,25 +33,20 @@ const ROUNDING_SHARE: f64 = 4.0;
 /// Roundings of the unknowns that are tried.
 const ROUNDINGS: usize = 3;
 
-/// The largest update that is made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice.
+/// The largest update that is made by rounding the unknowns.
 fn rounding_update<C: Curve>(curve: &mut C, unknown: &[f64]) -> f64 {
     let mut image = vec![0.0; unknown.len()];
-    let mut largest = 0.0_f64;
-    rounding_updates(curve, unknown, |curve, update| largest = largest.max(norm(curve, update, &mut image)));
-    largest
+    let updates = rounding_updates(curve, unknown);
+    updates.iter().map(|update| norm(curve, update, &mut image)).fold(0.0, f64::max)
 }
 
-/// Hands over the updates that are made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice;
-/// the Jacobian is the one that was factorised last.
-pub(crate) fn rounding_updates<C: Curve>(
-    curve: &mut C,
-    unknown: &[f64],
-    mut use_update: impl FnMut(&C, &[f64]),
-) {
+/// The updates that are made by rounding each unknown up or down by one unit in the last place, by pseudo-random choice; the Jacobian
+/// is the one that was factorised last.
+pub(crate) fn rounding_updates<C: Curve>(curve: &mut C, unknown: &[f64]) -> [Vec<f64>; ROUNDINGS] {
     let mut here = vec![0.0; unknown.len()];
     curve.residual(unknown, &mut here);
     let mut random = Random::new(1);
-    for _ in 0..ROUNDINGS {
+    std::array::from_fn(|_| {
         let rounded: Vec<f64> = unknown
             .iter()
             .map(|&value| if random.next_unit() < 0.5 { value.next_up() } else { value.next_down() })
@@ -64,8 +59,8 @@ pub(crate) fn rounding_updates<C: Curve>(
         let last = update.len() - 1;
         update[last] = 0.0;
         curve.solve(&mut update);
-        use_update(curve, &update);
-    }
+        update
+    })
 }
 
 /// Solves `F(z) = 0`, `border . (z - start) = 0` from `unknown`, in place.
@@ -108,7 +103,7 @@ pub fn correct<C: Curve>(
                 || (curve.may_stagnate()
                     && length < ROUNDING_LIMIT
                     && length < ROUNDING_SHARE * rounding_update(curve, unknown)));
-        if !fresh_jacobian && contraction > CHORD_REJECTION && !stagnates {
+        if !fresh_jacobian && contraction > CHORD_REJECTION {
             fresh_jacobian = true;
             continue;
         }

@@ -218,14 +218,13 @@ pub(crate) fn rounded(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> 
     let (mut border, mut residual) = (vec![0.0; unknown.len()], vec![0.0; unknown.len()]);
     border[unknown.len() - 1] = 1.0;
     defining.factorize(&unknown, &border, &mut residual);
-    let mut cycles = Vec::new();
-    rounding_updates(&mut defining, &unknown, |_, update| {
-        let moved: Vec<f64> = unknown.iter().zip(update).map(|(value, update)| value - update).collect();
-        let (mut cycle, _) = split(&moved, n, kind);
+    let moved = rounding_updates(&mut defining, &unknown).map(|mut update| {
+        update.iter_mut().zip(&unknown).for_each(|(update, value)| *update = value - *update);
+        let (mut cycle, _) = split(&update, n, kind);
         cycle.pop();
-        cycles.push(cycle);
+        cycle
     });
-    cycles
+    moved.into()
 }
 
 /// A special cycle on a finer mesh.

@@ -14,6 +14,7 @@ use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Event, Location};
 use crate::continuation::{Bracket, Curve, Equations, Solution, along};
 use crate::error::Error;
+use crate::linear::multiplier::Multiplier;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -77,7 +78,7 @@ pub(super) fn locate(
                 return Ok(Location::At(solution));
             }
             let is_certain = is_passed(&located.solution, [before, after], defining)
-                && stays_when_rounded(curve, &located, defining);
+                && stays(curve, &located, &rounded(curve, &located, defining));
             let known = is_certain
                 .then(|| located.solution.point.floquet.with_critical(defining.critical()?))
                 .flatten();
@@ -143,14 +144,13 @@ fn on_finer_mesh(
         let tangent = start.tangent.clone();
         let Some(mut located) = converge(&mut fine, &tangent, &start, kind)? else { return Ok(None) };
         let floquet = located.solution.point.floquet.clone();
-        let [here, before_it] = [&located.solution, &solution].map(|node| place(&node.unknown));
         let known = if is_critical(&floquet, kind) {
             Some(floquet)
-        } else if is_same_place(here, before_it, curve.parameter_scale)
-            && stays_when_rounded(&fine, &located, kind)
-            && is_as_uncertain(&mut fine, &located, kind)?
+        } else if let Some(critical) = kind.critical()
+            && stays(curve, &located, std::slice::from_ref(&solution.unknown))
+            && is_as_uncertain(&mut fine, &located, kind, critical)?
         {
-            kind.critical().and_then(|critical| floquet.with_critical(critical))
+            floquet.with_critical(critical)
         } else {
             None
         };
@@ -183,12 +183,11 @@ fn place(unknown: &[f64]) -> [f64; 2] {
     [2, 1].map(|from_end| unknown[unknown.len() - from_end])
 }
 
-/// Whether a special cycle stays where it is when its unknowns are rounded: where the parameter does not change to its last digits any
-/// cycle looks like one.
-fn stays_when_rounded(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> bool {
+/// Whether other solutions for a special cycle are at its place. Those with rounded unknowns are not where the parameter does not change
+/// to its last digits, so that any cycle looks like a special one.
+fn stays(curve: &CycleCurve<'_>, located: &Located, others: &[Vec<f64>]) -> bool {
     let here = place(&located.solution.unknown);
-    let mut all = rounded(curve, located, kind).into_iter();
-    all.all(|cycle| is_same_place(place(&cycle), here, curve.parameter_scale))
+    others.iter().all(|other| is_same_place(place(other), here, curve.parameter_scale))
 }
 
 /// Whether periods and parameters of two special cycles agree.
@@ -196,9 +195,17 @@ pub(super) fn is_same_place(one: [f64; 2], other: [f64; 2], parameter_scale: f64
     (one[0] / other[0] - 1.0).abs().max((one[1] - other[1]).abs() / parameter_scale) < SAME_PLACE
 }
 
-/// Whether rounding alone changes the multipliers of a special cycle by as much as they differ from critical ones.
-fn is_as_uncertain(curve: &mut CycleCurve<'_>, located: &Located, kind: Kind) -> Result<bool, Error> {
-    let Some(critical) = kind.critical() else { return Ok(false) };
+/// Whether rounding alone leaves a special cycle where it is and changes its multipliers by as much as they differ from critical ones.
+fn is_as_uncertain(
+    curve: &mut CycleCurve<'_>,
+    located: &Located,
+    kind: Kind,
+    critical: Multiplier,
+) -> Result<bool, Error> {
+    let rounded = rounded(curve, located, kind);
+    if !stays(curve, located, &rounded) {
+        return Ok(false);
+    }
     let critical = critical.to_complex();
     let product = |floquet: &Floquet| {
         let distances = floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex() - critical);
@@ -208,7 +215,7 @@ fn is_as_uncertain(curve: &mut CycleCurve<'_>, located: &Located, kind: Kind) ->
     let tangent = &located.solution.tangent;
     let mut residual = vec![0.0; tangent.len()];
     let mut largest = 0.0_f64;
-    for unknown in rounded(curve, located, kind) {
+    for unknown in rounded {
         curve.factorize(&unknown, tangent, &mut residual);
         let point = curve.inspect(&unknown, tangent, 0.0)?;
         largest = largest.max((product(&point.floquet) - here).abs());
@@ -333,8 +340,7 @@ fn describe(
     located: Located,
     kind: Kind,
 ) -> Result<Solution<CycleInspection>, Error> {
-    let errors = coefficient_errors(curve, &located, kind);
-    let Located { mut solution, eigenfunctions } = located;
+    let Located { solution, eigenfunctions } = &located;
     let end = solution.unknown.len() - 2;
     let mut residual = vec![0.0; solution.unknown.len()];
     curve.collocation.factorize(&solution.unknown, &solution.tangent, &mut residual);
@@ -347,51 +353,45 @@ fn describe(
         period: solution.unknown[end],
     };
     let branching = match kind {
-        Kind::Doubling => doubled(&orbit, &eigenfunctions),
+        Kind::Doubling => doubled(&orbit, eigenfunctions),
         // What borders do to second derivatives is not computed.
         Kind::BranchPoint if critical.has_borders => None,
         Kind::BranchPoint => other_branch(
             &orbit,
-            &eigenfunctions,
+            eigenfunctions,
             &critical,
             (curve.collocation.problem.active, curve.parameter_scale),
             &solution.tangent,
         ),
         Kind::Fold | Kind::Torus | Kind::Cycle => None,
     };
-    let mut normal_form = critical.coefficients(kind, &eigenfunctions);
-    // Each is followed by its error.
-    for (name, error) in errors {
-        if let Some(place) = normal_form.iter().position(|(known, _)| *known == name) {
-            normal_form.insert(place + 1, (error_name(name), error));
-        }
-    }
+    let coefficients = critical.coefficients(kind, eigenfunctions);
+    let normal_form = with_errors(curve, &located, kind, coefficients);
+    let mut solution = located.solution;
     (solution.point.normal_form, solution.point.branching) = (normal_form, branching);
     Ok(solution)
 }
 
-/// Errors of the coefficients of the normal form by their names: the differences from those on intervals half as wide. Empty
-/// where the cycle does not exist there.
-fn coefficient_errors(curve: &CycleCurve<'_>, located: &Located, kind: Kind) -> Vec<(&'static str, f64)> {
-    if curve.collocation.problem.has_borders() {
-        return Vec::new();
+/// Coefficients of the normal form by their names, each followed by its error: the difference from that on intervals half as wide.
+/// Those of fields with borders, and those of a cycle that does not exist there, are left without.
+fn with_errors(
+    curve: &CycleCurve<'_>,
+    located: &Located,
+    kind: Kind,
+    coefficients: Vec<(&'static str, f64)>,
+) -> Vec<(&'static str, f64)> {
+    if coefficients.is_empty() || curve.collocation.problem.has_borders() {
+        return coefficients;
     }
-    if matches!(kind, Kind::BranchPoint | Kind::Cycle) {
-        return Vec::new();
-    }
-    let Some(finer) = on_halves(curve, located, kind) else { return Vec::new() };
-    let here = {
-        let mut collocation = curve.collocation.clone();
-        let mut residual = vec![0.0; located.solution.unknown.len()];
-        collocation.factorize(&located.solution.unknown, &located.solution.tangent, &mut residual);
-        CriticalCycle::of(&collocation, &located.solution.unknown).coefficients(kind, &located.eigenfunctions)
-    };
+    let Some(finer) = on_halves(curve, located, kind) else { return coefficients };
     let there = finer.coefficients(kind);
-    let named = here.into_iter().filter_map(|(name, value)| {
-        let (_, finer) = there.iter().find(|(other, _)| *other == name)?;
-        Some((name, (value - finer).abs().max(LEAST_ERROR * value.abs())))
-    });
-    named.filter(|(_, error)| error.is_finite()).collect()
+    let with_error = |(name, value): (&'static str, f64)| {
+        let finer = there.iter().find(|(other, _)| *other == name).map(|(_, finer)| *finer);
+        let error = finer.map(|finer| (value - finer).abs().max(LEAST_ERROR * value.abs()));
+        let error = error.filter(|error| error.is_finite()).map(|error| (error_name(name), error));
+        std::iter::once((name, value)).chain(error)
+    };
+    coefficients.into_iter().flat_map(with_error).collect()
 }
 
 /// The name under which the error of a coefficient is told.
