@@ -129,6 +129,37 @@ fn folds_of_a_homoclinic_snake_alternate() {
     }
 }
 
+// Arneodo, Coullet and Tresser's jerk equation, whose cycles snake to a homoclinic orbit of Shilnikov's.
+field!(Jerk, ["x", "y", "z"], ["a"], |s, k, d| {
+    d[0] = s[1];
+    d[1] = s[2];
+    d[2] = k[0] * s[0] - s[0] * s[0] - s[1] * 1.2 - s[2] * 0.6;
+});
+
+/// Folds by shooting (DOP853 at 3e-13 and Newton's method, extrema of `a` over the period), and none of them is a family for one value
+/// of the parameter, though this hardly changes there.
+#[test]
+fn folds_beside_a_homoclinic_orbit_are_no_neutral_families() {
+    let equilibria = Equilibria::of(&Jerk).parameters(&[0.3]).start(&[0.3, 0.0, 0.0]);
+    let branch = equilibria.along("a", 0.3..=2.0).run().unwrap();
+    let hopf = branch.hopf_points().next().expect("a Hopf point");
+    let cycles = Cycles::of(&Jerk, CycleStart::from(hopf)).parameters(&hopf.parameters);
+    let branch = cycles.along("a", 0.3..=6.0).run().unwrap();
+    let folds: Vec<_> = branch.of_kind(SpecialKind::FoldOfCycles).collect();
+    let truth = [
+        (13.706459589, 2.3101764496252),
+        (15.972365857, 2.3126372424223),
+        (18.166640445, 2.3122155879297),
+        (20.413962148, 2.3123000660324),
+    ];
+    for (period, value) in truth {
+        let found =
+            |fold: &&CyclePoint| (fold.period - period).abs() < 1e-6 && (fold.value - value).abs() < 1e-12;
+        assert!(folds.iter().any(|fold| found(fold)), "no fold at the period {period}");
+    }
+    assert!(folds.len() >= 10 && folds.iter().all(|fold| !fold.neutral), "{}", folds.len());
+}
+
 /// What lies beside a branch: growth rates that are polynomials of the parameter with known zeros.
 #[derive(Clone, Debug)]
 struct Beside {

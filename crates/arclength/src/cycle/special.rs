@@ -369,6 +369,8 @@ fn describe(
     let normal_form = with_errors(curve, &located, kind, coefficients);
     let mut solution = located.solution;
     (solution.point.normal_form, solution.point.branching) = (normal_form, branching);
+    // The parameter stands still there because it turns, and not along a family.
+    solution.point.is_neutral &= kind != Kind::Fold;
     Ok(solution)
 }
 
