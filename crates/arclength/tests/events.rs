@@ -155,7 +155,7 @@ fn folds_beside_a_homoclinic_orbit_are_no_neutral_families() {
     for (period, value) in truth {
         let found =
             |fold: &&CyclePoint| (fold.period - period).abs() < 1e-6 && (fold.value - value).abs() < 1e-12;
-        assert!(folds.iter().any(|fold| found(fold)), "no fold at the period {period}");
+        assert!(folds.iter().any(found), "no fold at the period {period}");
     }
     assert!(folds.len() >= 10 && folds.iter().all(|fold| !fold.neutral), "{}", folds.len());
 }
