@@ -62,3 +62,48 @@ fn the_multiplier_in_the_plane_is_known() {
         assert_eq!(point.stable, Some(true));
     }
 }
+
+/// A circle of radius `sqrt(m)`, and beside it a direction that turns a thousand times as fast and dies out: on the cycle it rests,
+/// so that no mesh of the cycle needs to see it.
+struct Ringing;
+
+const TURNS: f64 = 1300.1;
+
+impl VectorField for Ringing {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "p", "q"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["m".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let growth = p[0] - s[0] * s[0] - s[1] * s[1];
+        d[0] = growth * s[0] - s[1];
+        d[1] = growth * s[1] + s[0];
+        let (rate, turns) = (s[0] * 0.3 - 0.2, (s[1] * 0.5 + 1.0) * TURNS);
+        d[2] = rate * s[2] - turns * s[3];
+        d[3] = turns * s[2] + rate * s[3];
+    }
+}
+
+#[test]
+fn multipliers_of_a_direction_that_turns_fast_are_right() {
+    let start = Orbit::from_function(TAU, |time| vec![time.cos(), time.sin(), 0.0, 0.0]);
+    let cycles = Cycles::of(&Ringing, CycleStart::Orbit(start)).parameters(&[1.0]);
+    let branch = cycles.along("m", 0.5..=2.0).at(&[1.5]).run().unwrap();
+    // The means of the rates are -0.2 and 1300.1.
+    let (modulus, argument) = ((-0.2 * TAU).exp(), 0.1 * TAU);
+    let shown: Vec<_> = branch.points.iter().filter(|point| point.label.is_some()).collect();
+    assert!(shown.iter().any(|point| point.value == 1.5));
+    for point in shown {
+        let ringing = point.multipliers.iter().zip(&point.multiplier_errors);
+        let ringing: Vec<_> = ringing.filter(|(multiplier, _)| multiplier.im != 0.0).collect();
+        assert_eq!(ringing.len(), 2, "{:?}", point.multipliers);
+        for (multiplier, error) in ringing {
+            let off =
+                (multiplier.norm() / modulus - 1.0).abs().max((multiplier.arg().abs() - argument).abs());
+            assert!(off <= error.max(1e-9) && *error < 1e-2, "{off:e}, told {error:e}");
+        }
+        assert_eq!(point.stable, Some(true));
+    }
+}

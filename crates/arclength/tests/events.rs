@@ -160,6 +160,30 @@ fn folds_beside_a_homoclinic_orbit_are_no_neutral_families() {
     assert!(folds.len() >= 10 && folds.iter().all(|fold| !fold.neutral), "{}", folds.len());
 }
 
+// FitzHugh and Nagumo's model with two time scales: the explosion of its canards is far shorter than the last digit of the current.
+field!(Nagumo, ["v", "w"], ["i", "e"], |s, k, d| {
+    d[0] = s[0] - s[0].powi(3) / 3.0 - s[1] + k[0];
+    d[1] = k[1] * (s[0] + 0.61474 - s[1] * 0.64755);
+});
+
+/// The multiplier of a planar cycle is the exponential of the integral of the divergence, and one at a fold.
+#[test]
+fn folds_on_the_explosion_of_a_canard_have_their_multiplier() {
+    for e in [0.02, 0.030413, 0.05] {
+        let equilibria = Equilibria::of(&Nagumo).parameters(&[-1.0, e]).start(&[-1.6, -1.0]);
+        let branch = equilibria.along("i", -1.0..=1.3).run().unwrap();
+        let hopf = branch.hopf_points().next().expect("a Hopf point");
+        let cycles = Cycles::of(&Nagumo, CycleStart::from(hopf)).parameters(&hopf.parameters);
+        let branch = cycles.along("i", -1.0..=1.3).run().unwrap();
+        let folds: Vec<_> = branch.of_kind(SpecialKind::FoldOfCycles).collect();
+        assert!(!folds.is_empty(), "{e}");
+        for fold in folds {
+            let integral = fold.period * fold.orbit.mean(|state| 1.0 - state[0] * state[0] - e * 0.64755);
+            assert!(integral.abs() < 1e-4, "{e}: period {}, {integral:e}", fold.period);
+        }
+    }
+}
+
 /// What lies beside a branch: growth rates that are polynomials of the parameter with known zeros.
 #[derive(Clone, Debug)]
 struct Beside {

@@ -8,8 +8,10 @@
 use super::branch::{CycleBranch, CyclePoint};
 use super::curve::{CycleCurve, MOST_FITS};
 use super::floquet::Floquet;
+use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::start::Asked;
+use super::variational::{KnownOrbit, resolved_multipliers};
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::halved;
@@ -54,11 +56,12 @@ struct Told {
 }
 
 /// A cycle on one of the meshes.
-struct Level {
+struct Level<'a> {
     mesh: Vec<f64>,
     unknown: Vec<f64>,
     told: Told,
     floquet: Floquet,
+    problem: LimitCycle<'a>,
     /// What extremes count against.
     sizes: Vec<f64>,
     /// Part of period and extremes that is rounding.
@@ -67,7 +70,7 @@ struct Level {
     estimate: f64,
 }
 
-impl Asked<'_> {
+impl<'a> Asked<'a> {
     /// Confirms the cycles at the parameter values that were asked for, and those at the ends, as far as they can be. (Where a
     /// monitor has a value the parameter may be more sensitive than the cycle.)
     pub(super) fn confirm(&self, branch: &mut CycleBranch, at: &[f64]) {
@@ -96,18 +99,19 @@ impl Asked<'_> {
         let mut before = Told::of(point);
         let mut estimated = point.error_estimate;
         let mut last_change = None;
+        let enough = CHANGE.max(ACCEPTED * self.resolution.tolerance);
         for _ in 0..MOST_HALVINGS {
             if mesh.len() - 1 > self.resolution.most_intervals {
                 break;
             }
-            let Some(level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
+            let Some(mut level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
                 if last_change.is_none() {
                     (point.error_estimate, point.stable) = (UNCONFIRMED, None);
                 }
                 break;
             };
             let change = level.change_from(&before);
-            let errors = level.multiplier_changes(&before.multipliers);
+            let mut errors = multiplier_changes(&level.told.multipliers, &before.multipliers);
             // Where the change is what was estimated the estimate on the finer mesh holds too, else what the change leaves.
             let error = if change <= AS_ESTIMATED * estimated {
                 level.estimate
@@ -116,12 +120,22 @@ impl Asked<'_> {
             };
             let error = error.max(ROUNDING * level.rounding).max(LEAST_ERROR);
             estimated = level.estimate;
+            let mut ends = change < enough && are_resolved(&level.floquet, &errors);
+            if change < enough && !ends {
+                let orbits = [(&mesh, &unknown), (&level.mesh, &level.unknown)];
+                let orbits = orbits.map(|(mesh, unknown)| KnownOrbit { mesh, degree, unknown });
+                let changes =
+                    |now: &Floquet, then: &Floquet| multiplier_changes(&now.nontrivial, &then.nontrivial);
+                let resolved = resolved_multipliers(&level.problem, orbits, changes, are_resolved);
+                if let Some((floquet, changes)) =
+                    resolved.filter(|(floquet, changes)| are_resolved(floquet, changes))
+                {
+                    level.told.multipliers = floquet.nontrivial.clone();
+                    (level.floquet, errors, ends) = (floquet, changes, true);
+                }
+            }
             level.tell(point, error, &errors, &before.multipliers);
-            let counted = errors.iter().zip(&level.told.multipliers);
-            let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
-            let enough = CHANGE.max(ACCEPTED * self.resolution.tolerance);
-            let is_consistent = level.floquet.defect() < MULTIPLIER_CHANGE;
-            if change < enough && is_consistent && counted.all(|(error, _)| *error < MULTIPLIER_CHANGE) {
+            if ends {
                 break;
             }
             last_change = Some(change);
@@ -136,7 +150,7 @@ impl Asked<'_> {
         (mesh, unknown): (&[f64], &[f64]),
         degree: usize,
         neutral: bool,
-    ) -> Option<Level> {
+    ) -> Option<Level<'a>> {
         let halves = halved(mesh);
         let coarse = Collocation::new(self.problem(), mesh.to_vec(), degree);
         let mut unknown = coarse.carry(unknown, &halves);
@@ -194,6 +208,7 @@ impl Asked<'_> {
             told: Told { period, extremes, multipliers },
             unknown,
             floquet: inspection.floquet,
+            problem: curve.collocation.problem,
             sizes,
             rounding,
             estimate,
@@ -219,25 +234,13 @@ impl Told {
     }
 }
 
-impl Level {
+impl Level<'_> {
     /// Largest change of period and extremes, relative to the period and to the sizes of the states.
     fn change_from(&self, before: &Told) -> f64 {
         let states = self.told.extremes.iter().zip(&before.extremes).zip(&self.sizes);
         let extremes =
             states.flat_map(|((now, then), size)| [0, 1].map(|end| ((now[end] - then[end]) / size).abs()));
         extremes.fold((self.told.period / before.period - 1.0).abs(), f64::max)
-    }
-
-    /// Changes of the multipliers, the largest moduli first, relative to themselves.
-    fn multiplier_changes(&self, before: &[Multiplier]) -> Vec<f64> {
-        let pairs = self.told.multipliers.iter().zip(before);
-        pairs
-            .map(|(now, then)| {
-                let turn = (now.argument.abs() - then.argument.abs()).abs();
-                (now.log_modulus - then.log_modulus).abs().max(turn)
-            })
-            .map(|change| if change.is_nan() { 0.0 } else { change })
-            .collect()
     }
 
     /// Tells the point what was found on this mesh, with the errors that were measured.
@@ -268,4 +271,23 @@ impl Level {
         point.orbit.states = self.unknown[..self.unknown.len() - 2].to_vec();
         point.orbit.period = self.told.period;
     }
+}
+
+/// Changes of multipliers, the largest moduli first, relative to themselves.
+fn multiplier_changes(now: &[Multiplier], then: &[Multiplier]) -> Vec<f64> {
+    let pairs = now.iter().zip(then);
+    pairs
+        .map(|(now, then)| {
+            let turn = (now.argument.abs() - then.argument.abs()).abs();
+            (now.log_modulus - then.log_modulus).abs().max(turn)
+        })
+        .map(|change| if change.is_nan() { 0.0 } else { change })
+        .collect()
+}
+
+/// Whether multipliers change little from mesh to mesh, as far as they count, and do not contradict Liouville's formula.
+fn are_resolved(floquet: &Floquet, changes: &[f64]) -> bool {
+    let counted = changes.iter().zip(&floquet.nontrivial);
+    let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
+    floquet.defect() < MULTIPLIER_CHANGE && counted.all(|(change, _)| *change < MULTIPLIER_CHANGE)
 }

@@ -129,10 +129,10 @@ impl Floquet {
         (product, undecided)
     }
 
-    /// The multipliers at a special cycle, one of which is known: of two the integral of the divergence gives the other.
+    /// The multipliers at a special cycle, one of which is known: of two the integral of the divergence gives the other. `None` of
+    /// any other number.
     pub(crate) fn with_critical(&self, critical: Multiplier) -> Option<Self> {
         let nontrivial = match self.nontrivial.len() {
-            1 => vec![critical],
             2 => {
                 // Their product is positive.
                 let other = Multiplier { log_modulus: self.divergence, argument: critical.argument };

@@ -23,6 +23,7 @@ pub(crate) mod slow_passage;
 mod special;
 mod start;
 mod switching;
+mod variational;
 
 pub use crate::collocation::resolution::Resolution;
 pub use branch::{CycleBranch, CyclePoint};

@@ -3,6 +3,7 @@
 
 use super::curve::{CycleCurve, CycleInspection, Fitted};
 use super::defining::Kind;
+use super::eigenfunctions::critical;
 use super::floquet::Floquet;
 use super::locating::{Located, converge, on_halves, rounded};
 use super::normal_form::CriticalCycle;
@@ -26,6 +27,8 @@ const UNPERTURBED_PART: f64 = 0.1;
 const UNPERTURBED: f64 = 1e-10;
 /// No coefficient is told to be more exact than this part of itself.
 const LEAST_ERROR: f64 = 1e-13;
+/// Part of the step to which the place is bracketed where a multiplier passes one.
+const PASSING: f64 = 1e-12;
 /// A special cycle may lie this part of the step, and this far in the metric, outside it: cycles are known to the tolerance of
 /// Newton's method only, and close to homoclinic orbits brackets are shorter than what comes of it.
 const MARGIN: f64 = 0.01;
@@ -71,7 +74,14 @@ pub(super) fn locate(
     if kind == SpecialKind::Torus && !is_pair_between(before, after, rank) {
         return Ok(Location::Nothing);
     }
-    match newton(curve, defining, [before, after], rank)? {
+    let mut located = newton(curve, defining, [before, after], rank)?;
+    if defining == Kind::Fold
+        && before.point.floquet.nontrivial.len() == 1
+        && located.as_ref().is_none_or(|located| !is_critical(&located.solution.point.floquet, defining))
+    {
+        located = passing_one(curve, [before, after])?;
+    }
+    match located {
         // The defining system may have a solution where the mesh does not resolve the multipliers: they have to agree.
         Some(mut located) if !is_critical(&located.solution.point.floquet, defining) => {
             if let Some(solution) = on_finer_mesh(curve, &located.solution, [before, after], defining)? {
@@ -113,6 +123,28 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
         // Next to a resonance two real ones may be a pair by rounding.
         (multiplier.is_real() == real || away < CRITICAL) && multiplier.log_modulus.abs().max(away) < CRITICAL
     })
+}
+
+/// The fold between two solutions in the plane where the multiplier passes one. On the explosion of a canard the parameter does not
+/// change to its last digit, so that its extreme value is anywhere, but the integral of the divergence is known.
+fn passing_one(curve: &mut CycleCurve<'_>, [before, after]: [&Node; 2]) -> Result<Option<Located>, Error> {
+    let settings = curve.settings;
+    let test = |_: &mut CycleCurve<'_>, solution: &Node| {
+        solution.point.floquet.nontrivial.first().map(|multiplier| multiplier.log_modulus)
+    };
+    let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
+    let mut solution = match bracket.narrow(curve, &settings, PASSING, test) {
+        Ok(Some(solution)) if is_critical(&solution.point.floquet, Kind::Fold) => solution.clone(),
+        Ok(_) | Err(Error::NotFound { .. }) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    let mut residual = vec![0.0; solution.unknown.len()];
+    curve.factorize(&solution.unknown, &solution.tangent, &mut residual);
+    let error = curve.global_error.of(&mut curve.collocation, &solution.unknown);
+    solution.point.parameter_error = error.last().map(|error| error.abs());
+    let multipliers = solution.point.floquet.multipliers();
+    let eigenfunctions = critical(&mut curve.collocation, &solution.unknown, &multipliers, Kind::Fold)?;
+    Ok(eigenfunctions.map(|eigenfunctions| Located { solution, eigenfunctions }))
 }
 
 /// The special cycle next to one that its own multipliers refute, on the first finer mesh where they do not, described there.
@@ -237,9 +269,7 @@ fn is_passed(solution: &Node, ends: [&Node; 2], kind: Kind) -> bool {
     let crosses = matches!(ends.map(outside), [Some(one), Some(other)] if one != other);
     let value = |node: &Node| node.unknown[node.unknown.len() - 1];
     let [one, other] = ends.map(|end| value(solution) - value(end));
-    // In the plane that is no witness, since the multiplier is known better than the parameter.
-    let is_extreme = one * other >= 0.0 && solution.point.floquet.nontrivial.len() > 1;
-    crosses || (kind == Kind::Fold && is_extreme)
+    crosses || (kind == Kind::Fold && one * other >= 0.0)
 }
 
 /// Pairs of multipliers that cross the unit circle at one place, where the number of those outside changes by `change`.
@@ -385,7 +415,8 @@ fn with_errors(
     if coefficients.is_empty() || curve.collocation.problem.has_borders() {
         return coefficients;
     }
-    let Some(finer) = on_halves(curve, located, kind) else { return coefficients };
+    // What cannot be measured is not told: next to homoclinic orbits and on canards coefficients change by orders of magnitude.
+    let Some(finer) = on_halves(curve, located, kind) else { return Vec::new() };
     let there = finer.coefficients(kind);
     let with_error = |(name, value): (&'static str, f64)| {
         let finer = there.iter().find(|(other, _)| *other == name).map(|(_, finer)| *finer);
