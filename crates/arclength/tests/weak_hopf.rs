@@ -81,3 +81,41 @@ fn a_first_cycle_far_from_its_hopf_point_is_none() {
     );
     assert!(values.last().unwrap() > &10.0);
 }
+
+/// A subcritical Hopf point with a fold close by, beside a pair of states that oscillates for ever: `r' = r (m + a r^2 - r^4)` has a
+/// fold of cycles at `m = -a^2/4`.
+struct BesideNeutral;
+
+impl VectorField for BesideNeutral {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z", "w"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        ["m", "a"].map(String::from).to_vec()
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let square = s[0] * s[0] + s[1] * s[1];
+        let growth = p[0] + p[1] * square - square * square;
+        d[0] = growth * s[0] - s[1];
+        d[1] = growth * s[1] + s[0];
+        d[2] = s[3] * 0.7;
+        d[3] = s[2] * -0.7;
+    }
+}
+
+#[test]
+fn the_first_cycle_is_on_the_side_that_the_normal_form_says_whatever_rings_beside_it() {
+    for a in [0.5, 0.1, 0.02] {
+        let start = [0.0; 4];
+        let equilibria = Equilibria::of(&BesideNeutral).start(&start).parameters(&[-1.0, a]);
+        let branch = equilibria.along("m", -1.0..=1.0).run().unwrap();
+        let hopf = branch.hopf_points().next().expect("a Hopf point");
+        assert!(hopf.value.abs() < 1e-12 && hopf.first_lyapunov.is_some_and(|first| first > 0.0));
+        let cycles = Cycles::of(&BesideNeutral, CycleStart::from(hopf)).parameters(&hopf.parameters);
+        let branch = cycles.along("m", -1.0..=1.0).run().unwrap();
+        assert!(branch.points[0].value < 0.0, "{a}: {}", branch.points[0].value);
+        let fold = branch.points.iter().map(|point| point.value).fold(f64::INFINITY, f64::min);
+        let size = 0.25 * a * a;
+        assert!(fold < -0.5 * size && fold > -1.001 * size, "{a}: {fold}");
+    }
+}

@@ -258,8 +258,11 @@ impl Frame {
         let bar = self.bar.as_ref().map_or(0.0, ColorBar::width);
         let corner = match self.place {
             Legend::Right => Some(Point::new(plot.right + bar + LABEL_GAP, plot.top - 2.0)),
+            // Below the middle, unless it would leave the picture.
             Legend::Below => Some(Point::new(
-                plot.center().x - 0.5 * legend.width,
+                (plot.center().x - 0.5 * legend.width)
+                    .min(plot.right + self.margins.right - legend.width)
+                    .max(plot.left - self.margins.left),
                 plot.bottom + self.margins.bottom - legend.height,
             )),
             Legend::Emptiest | Legend::None => None,

@@ -67,6 +67,27 @@ fn the_png_is_what_another_renderer_makes_of_the_svg() {
     assert!(dark > 1e-2, "{dark}");
 }
 
+/// Entries of many widths, so that some rows are as wide as a row may be.
+#[test]
+fn a_legend_below_stays_in_the_picture() {
+    for length in 1..30 {
+        let entries = (1..=5).map(|number| format!("{number}{}", "m".repeat(length)));
+        let panel = entries.fold(
+            Panel::new(Axis::new("$v$").limits(0.0, 3.6), Axis::new("$l$").limits(0.0, 1.0)),
+            |panel, entry| panel.curve(Line::new([(0.0, 0.0), (1.0, 1.0)]).legend(entry)),
+        );
+        let figure = Figure::single_column().panel(panel.legend(Legend::Below));
+        let png = figure.to_png(100.0).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        let column = |x: usize| pixels.chunks(3).skip(x).step_by(info.width as usize);
+        for x in [0, info.width as usize - 1] {
+            assert!(column(x).all(|pixel| pixel.iter().all(|part| *part > 200)), "{length} letters");
+        }
+    }
+}
+
 #[test]
 fn the_same_figure_gives_the_same_bytes() {
     let (a, b) = (rich_figure(), rich_figure());

@@ -10,6 +10,7 @@ mod hopf;
 mod locus;
 mod margin;
 mod paper;
+mod report;
 mod safe_kick;
 mod simulate;
 mod stability;
@@ -35,6 +36,7 @@ struct Kingpin {
 #[derive(Debug, Subcommand)]
 enum Command {
     Paper(paper::Paper),
+    Report(report::ReportCommand),
     Steady(steady::Steady),
     Stability(stability::Stability),
     Chart(chart::Chart),
@@ -53,6 +55,7 @@ impl Command {
     fn run(&self) -> Result<(), Failure> {
         match self {
             Self::Paper(command) => command.run(),
+            Self::Report(command) => command.run(),
             Self::Steady(command) => command.run(),
             Self::Stability(command) => command.run(),
             Self::Chart(command) => command.run(),

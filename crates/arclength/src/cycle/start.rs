@@ -333,10 +333,12 @@ impl<'a> Asked<'a> {
         let standing = vec![0.0; hopf.state.len()];
         let scales = natural_scales(&self.field, hopf.state, &self.parameters, &standing);
         let mut amplitude = share * hopf.first_amplitude(self.bound.width(), &scales);
-        // A first cycle of another stability than the normal form gives lies behind a fold, or behind another bifurcation.
-        if let Some(expected) = self.unstable_at_birth(hopf) {
+        // A first cycle of another stability than the normal form gives lies behind a fold, or behind another bifurcation, and so does
+        // one whose parameter is elsewhere.
+        if hopf.cubic_coefficient.is_normal() {
+            let expected = self.unstable_at_birth(hopf);
             let reduced = std::iter::successors(Some(amplitude), |last| Some(last * AMPLITUDE_REDUCTION));
-            let fits = |amplitude: &f64| self.unstable_at(hopf, *amplitude, request) == Some(expected);
+            let fits = |amplitude: &f64| self.is_as_born(hopf, *amplitude, expected, request);
             amplitude = reduced.take(MOST_REDUCTIONS).find(fits).unwrap_or(amplitude);
         }
         let place = self.parameters[self.active];
@@ -382,18 +384,25 @@ impl<'a> Asked<'a> {
         certain.then_some(unstable + usize::from(hopf.cubic_coefficient > 0.0))
     }
 
-    /// Number of multipliers outside the unit circle of the cycle near a Hopf point that has an amplitude.
-    fn unstable_at(
+    /// Whether the cycle near a Hopf point that has an amplitude has as many multipliers outside the unit circle as those that are
+    /// born there; where that number is not certain, whether its parameter is about where the normal form says.
+    fn is_as_born(
         &self,
         hopf: &HopfStart<'_>,
         amplitude: f64,
+        unstable_at_birth: Option<usize>,
         request: &Request<'_, CycleInspection>,
-    ) -> Option<usize> {
-        let start = hopf.cycle(self.parameters[self.active], amplitude, None, self.resolution.degree);
+    ) -> bool {
+        let place = self.parameters[self.active];
+        let start = hopf.cycle(place, amplitude, None, self.resolution.degree);
         let mut curve = self.curve(&start);
-        let found = exact_start(&mut curve, start.unknown, start.tangent, request).ok()?;
-        let (unstable, certain) = found.point.floquet.unstable();
-        certain.then_some(unstable)
+        let Ok(found) = exact_start(&mut curve, start.unknown, start.tangent, request) else { return false };
+        if let Some(expected) = unstable_at_birth {
+            return found.point.floquet.unstable() == (expected, true);
+        }
+        let expected = -amplitude * amplitude * hopf.cubic_coefficient / hopf.crossing_speed;
+        let ratio = (found.unknown[found.unknown.len() - 1] - place) / expected;
+        (FARTHEST_FIRST.recip()..=FARTHEST_FIRST).contains(&ratio)
     }
 
     /// The first run that finds a cycle, at ever smaller distances.

@@ -8,7 +8,6 @@ pub mod claims;
 mod data;
 mod diagrams_in_space;
 mod drawing;
-mod files;
 mod numbers;
 mod page;
 mod request;

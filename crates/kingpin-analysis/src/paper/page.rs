@@ -1,17 +1,8 @@
 //! `report.html`: the figures and the statements on one page that needs no other file.
 
 use super::claims::{Claim, Verdict};
+use crate::page::{PageFigure, document, prose};
 use std::fmt::Write;
-
-/// A figure as it stands on the page.
-pub(super) struct PageFigure<'a> {
-    pub number: u8,
-    pub svg: &'a str,
-    /// In HTML.
-    pub caption: &'a str,
-}
-
-const STYLE: &str = include_str!("page.css");
 
 /// The page.
 pub(super) fn page(figures: &[PageFigure], claims: &[Claim], parameters: &str) -> String {
@@ -28,12 +19,8 @@ pub(super) fn page(figures: &[PageFigure], claims: &[Claim], parameters: &str) -
          statement of its text beside what was computed: {}.</p>\n<p class=\"parameters\">{parameters}</p>\n</header>\n<main>\n",
         summary.join(", ")
     );
-    for PageFigure { number, svg, caption } in figures {
-        body += &format!(
-            "<figure id=\"figure{number}\">\n<div class=\"picture\">{}</div>\n<figcaption><b>Figure {number}.</b> {caption} \
-             <span class=\"files\">Files: figure{number}.svg, figure{number}.png, figure{number}.csv.</span></figcaption>\n</figure>\n",
-            own_names(svg, *number)
-        );
+    for figure in figures {
+        body += &figure.html();
     }
     body += "<h2 id=\"statements\">Statements</h2>\n<p>The statements are paraphrased. Verdicts and numbers were computed in \
              the run that wrote this page.</p>\n<ol class=\"statements\">\n";
@@ -41,13 +28,7 @@ pub(super) fn page(figures: &[PageFigure], claims: &[Claim], parameters: &str) -
         body += &statement(claim);
     }
     body += "</ol>\n</main>\n";
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>The towed wheel in cornering</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n{body}\
-         <footer>Written by kingpin {}.</footer>\n</body>\n</html>\n",
-        env!("CARGO_PKG_VERSION")
-    )
+    document("The towed wheel in cornering", &body)
 }
 
 fn statement(claim: &Claim) -> String {
@@ -68,47 +49,6 @@ fn statement(claim: &Claim) -> String {
 
 fn badge(verdict: Verdict) -> String {
     format!("<span class=\"verdict {0}\">{0}</span>", verdict.word())
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-/// Plain text as HTML: indices lowered, and no line break before a unit or beside an equals sign.
-fn prose(text: &str) -> String {
-    const UNITS: [&str; 6] = ["m", "m/s", "rad", "rad/s", "N", "%"];
-    let mut html = String::new();
-    let mut before = "";
-    for word in text.split(' ') {
-        let unit = word.trim_end_matches([',', '.', ';', ':', ')']);
-        let after_number = before.ends_with(|character: char| character.is_ascii_digit());
-        if !html.is_empty() {
-            let together = word == "=" || before == "=" || (after_number && UNITS.contains(&unit));
-            html.push_str(if together { "&nbsp;" } else { " " });
-        }
-        html.push_str(&with_indices(&escaped(word)));
-        before = word;
-    }
-    html
-}
-
-/// `m_c` with its index lowered.
-fn with_indices(word: &str) -> String {
-    let mut parts = word.split('_');
-    let mut html = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let end = part.find(|character: char| !character.is_alphabetic()).unwrap_or(part.len());
-        let (index, rest) = part.split_at(end);
-        html += &format!("<sub>{index}</sub>{rest}");
-    }
-    html
-}
-
-/// The names of glyphs are those of one picture; on a page with several each gets its own. The picture takes the width
-/// that there is.
-fn own_names(svg: &str, number: u8) -> String {
-    svg.replace(" id=\"", &format!(" id=\"f{number}-"))
-        .replace("xlink:href=\"#", &format!("xlink:href=\"#f{number}-"))
 }
 
 #[cfg(test)]

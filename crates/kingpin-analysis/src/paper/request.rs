@@ -4,14 +4,16 @@ use super::branches::{self, Branches};
 use super::claims::{self, Claim, Computed};
 use super::drawing::{Drawing, Pictures};
 use super::numbers::number;
-use super::page::{PageFigure, page};
+use super::page::page;
 use super::result::PaperResult;
 use super::rolling_limit::RollingLimits;
 use super::stability_chart::StabilityChart;
 use super::tasks::Tasks;
 use super::uniform_motion::UniformMotions;
-use super::{diagrams_in_space, files, turning_radii};
+use super::{diagrams_in_space, turning_radii};
 use crate::error::Error;
+use crate::folder;
+use crate::page::PageFigure;
 use arclength_analysis::Control;
 use kingpin::{Key, Wheel};
 use rayon::prelude::*;
@@ -52,7 +54,7 @@ impl PaperRequest {
                 allowed,
             ));
         }
-        files::prepare(&self.out)?;
+        folder::prepare(&self.out)?;
         let (drawings, claims) = match self.figure {
             Some(number) => (vec![one_figure(number, control)?], Vec::new()),
             None => everything(control)?,
@@ -78,7 +80,7 @@ impl PaperRequest {
             contents.push((name("png"), png));
             contents.push((name("csv"), drawing.data.to_csv().into_bytes()));
         }
-        Ok(PaperResult { files: files::write(&self.out, &contents)?, claims })
+        Ok(PaperResult { files: folder::write(&self.out, &contents)?, claims })
     }
 }
 

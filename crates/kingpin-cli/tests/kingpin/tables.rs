@@ -31,6 +31,30 @@ fn damper() {
 }
 
 #[test]
+fn report() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels/trolley.toml");
+    let wheels = [
+        ("paper", String::new()),
+        ("loaded", "-s F_Az=-20 -s v=3 -s r=2".to_owned()),
+        ("trolley", format!("--wheel {file}")),
+        ("damped", format!("--wheel {file} -s c_psi=0.02 --up-to v=3")),
+    ];
+    for (name, wheel) in wheels {
+        let folder = Folder::new();
+        let run = folder.succeed(&format!("report -q --out page {wheel}"));
+        insta::assert_snapshot!(format!("report_{name}"), run.output);
+        let page = std::fs::read_to_string(folder.path("page/report.html")).unwrap();
+        for file in run.output.lines().filter(|line| line.ends_with(".svg")) {
+            let file = file.rsplit(['/', '\\']).next().unwrap();
+            assert!(page.contains(file), "{file}");
+        }
+    }
+    let run = Folder::new().run("report -q --up-to v=1");
+    assert_eq!(run.exit_code, 2);
+    insta::assert_snapshot!("report_slower_than_the_wheel", run.messages);
+}
+
+#[test]
 fn chart() {
     insta::assert_snapshot!(
         Folder::new().succeed("chart --x v=0.1:12:120 --y l=0.02:0.3:57 -s F_Az=-20").output

@@ -6,14 +6,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Creates the folder where it is missing and makes sure that files can be written there.
-pub(super) fn prepare(folder: &Path) -> Result<(), ReportError> {
+pub(crate) fn prepare(folder: &Path) -> Result<(), ReportError> {
     let failed = |source| ReportError::Unwritable { path: folder.to_owned(), source };
     fs::create_dir_all(folder).map_err(failed)?;
     check_writable(&folder.join("report.html"))
 }
 
 /// Writes every file under a temporary name first; only when all are complete do they get their names.
-pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
+pub(crate) fn write(folder: &Path, files: &[(String, Vec<u8>)]) -> Result<Vec<PathBuf>, ReportError> {
     let stage = |(name, content): &(String, Vec<u8>)| {
         let encoding = |source| ReportError::Encoding { format: "a file", source };
         Staged::new(&folder.join(name), |out| out.write_all(content).map_err(encoding))

@@ -1,0 +1,74 @@
+//! What dampers it takes.
+
+use super::finding::Finding;
+use super::illustration::Illustration;
+use crate::damper::{DamperRequest, DamperResult};
+use crate::error::Error;
+use crate::wheel_request::WheelRequest;
+use arclength_analysis::{Assignment, Control};
+use kingpin_figure::{Axis, Figure, Line, Panel, palette};
+use kingpin_report::Columns;
+use kingpin_report::numbers::{readable, significant};
+
+/// The smallest dampers with which no shimmy is born up to a speed.
+///
+/// # Errors
+/// [`Error::Stopped`].
+pub(super) fn seek(wheel: &WheelRequest, fastest: f64, control: &Control<'_>) -> Result<DamperResult, Error> {
+    let up_to = Assignment { key: "v".to_owned(), value: fastest.to_string() };
+    DamperRequest { wheel: wheel.clone(), up_to }.run(control)
+}
+
+/// What is said of them.
+pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
+    let up_to = readable(dampers.up_to);
+    let text = match (dampers.c_q, dampers.c_psi) {
+        (Some(c_q), Some(c_psi)) if c_q == 0.0 && c_psi == 0.0 => {
+            format!("No damper is needed for the uniform motion to be stable up to {up_to} m/s.")
+        }
+        (lateral, rotational) => {
+            let one = |damping: Option<f64>, key: &str, unit: &str| {
+                damping.map_or_else(
+                    || format!("no {key} that was tried is enough alone"),
+                    |damping| format!("{key} = {} {unit}", significant(damping, 4)),
+                )
+            };
+            format!(
+                "For the uniform motion to be stable up to {up_to} m/s it takes {}, or {}.",
+                one(lateral, "c_q", "N s/m"),
+                one(rotational, "c_psi", "N m s/rad")
+            )
+        }
+    };
+    let check = "Boundaries of stability, followed in the damper at every speed. Large cycles beside the uniform motion may take more; they \
+                 were not sought.";
+    Finding::new(subject, text, check).undecided_if(dampers.c_q.is_none() && dampers.c_psi.is_none())
+}
+
+/// Both dampers together; nothing where none is needed.
+pub(super) fn illustration(dampers: &DamperResult) -> Option<Illustration> {
+    let front = &dampers.front;
+    if front.c_q.len() < 2 {
+        return None;
+    }
+    let points = front.c_q.iter().copied().zip(front.c_psi.iter().copied());
+    let end = |values: &[f64]| 1.05 * values.iter().copied().fold(0.0, f64::max);
+    let panel = Panel::new(
+        Axis::new("$c_q$ (N s/m)").limits(0.0, end(&front.c_q)),
+        Axis::new("$c_\\psi$ (N m s/rad)").limits(0.0, end(&front.c_psi)),
+    )
+    .curve(Line::new(points).color(palette::BLUE));
+    let figure = Figure::single_column()
+        .description("Smallest damper about the king pin beside a lateral damper")
+        .panel(panel);
+    let caption = format!(
+        "Dampers with which the uniform motion is stable up to {} m/s lie above the line.",
+        readable(dampers.up_to)
+    );
+    let data = Columns::new()
+        .numbers("c_q", front.c_q.iter().copied())
+        .unit("N s/m")
+        .numbers("c_psi", front.c_psi.iter().copied())
+        .unit("N m s/rad");
+    Some(Illustration { figure, data, caption })
+}

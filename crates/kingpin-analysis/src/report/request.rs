@@ -1,0 +1,307 @@
+//! What a report is asked for by, and how it is computed and written.
+
+use super::finding::Finding;
+use super::illustration::{Illustration, Pictures};
+use super::page::page;
+use super::result::ReportResult;
+use super::rolling::Motions;
+use super::speeds::Speeds;
+use super::{blow, cycles, dampers, limits};
+use crate::chart::ChartRequest;
+use crate::classification::Contact;
+use crate::error::{Error, unless_stopped};
+use crate::folder;
+use crate::page::PageFigure;
+use crate::wheel_request::WheelRequest;
+use arclength_analysis::{Assignment, Control, SampledInterval};
+use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// The report looks at speeds up to so many times that of the wheel, where nothing else is asked for; farther, beyond the critical speed,
+/// where that is not too far.
+const SPEEDS: f64 = 2.0;
+const FARTHEST: f64 = 5.0;
+/// Radius in m of the circle on which a wheel is looked at that is towed straight otherwise.
+const CIRCLE: f64 = 2.0;
+/// Caster lengths of the chart, as parts of that of the wheel; where a longer one is stable straight at every speed, up to that.
+const LENGTHS: [f64; 2] = [0.1, 3.0];
+const BEYOND_CRITICAL: f64 = 1.2;
+/// The longest caster of the chart, as part of that of the wheel.
+const LONGEST: f64 = 20.0;
+/// Points of the chart along each axis.
+const CHART: [usize; 2] = [160, 120];
+/// Parts of the time that the subjects take, roughly.
+const MOTIONS: Range<f64> = 0.0..0.03;
+const CHARTED: Range<f64> = 0.03..0.2;
+const DAMPED: Range<f64> = 0.2..0.3;
+const FOLLOWED: Range<f64> = 0.3..0.4;
+const STRUCK: Range<f64> = 0.4..1.0;
+
+/// A report on a wheel: its stability straight and on a circle, where it rolls, its limit cycles, the smallest blow from which it
+/// does not return, and the dampers that it takes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReportRequest {
+    /// Which wheel.
+    #[serde(flatten)]
+    pub wheel: WheelRequest,
+    /// The largest speed that is looked at, `v=3`. Where it is not given, twice that of the wheel, or more if the critical speed is in
+    /// reach.
+    pub up_to: Option<Assignment>,
+    /// The folder for the files; it is created where it is missing.
+    pub out: PathBuf,
+}
+
+impl Default for ReportRequest {
+    fn default() -> Self {
+        Self { wheel: WheelRequest::default(), up_to: None, out: "report".into() }
+    }
+}
+
+/// A request that makes sense, with its wheel.
+#[derive(Clone, Debug)]
+pub struct ReportAnalysis {
+    request: ReportRequest,
+    wheel: Wheel,
+    fastest: f64,
+}
+
+impl ReportRequest {
+    /// Reads the wheel and checks every field.
+    ///
+    /// # Errors
+    /// What is wrong with the wheel or the speed.
+    pub fn validate(&self) -> Result<ReportAnalysis, Error> {
+        let wheel = self.wheel.read()?;
+        let speed = wheel.get(Key::V);
+        let fastest = match &self.up_to {
+            None => {
+                let critical =
+                    wheel.critical_speed().map_or(0.0, |critical| BEYOND_CRITICAL * critical.speed);
+                let farthest = if critical <= FARTHEST * speed { critical } else { 0.0 };
+                rounded(farthest.max(SPEEDS * speed))
+            }
+            Some(Assignment { key, value }) => {
+                let given = || format!("{key}={value}");
+                if !matches!(key.parse(), Ok(Key::V)) {
+                    return Err(Error::invalid(&["up_to"], given(), "not a speed", "v=VALUE, in m/s"));
+                }
+                let mut fastest = wheel;
+                fastest.set(key, value).map_err(|source| Error::Set { given: given(), source })?;
+                fastest.get(Key::V)
+            }
+        };
+        if fastest < speed || fastest <= 0.0 {
+            let allowed = format!("at least the wheel's own, {} m/s, and above 0", readable(speed));
+            return Err(Error::invalid(&["up_to"], readable(fastest), "slower than the wheel", allowed));
+        }
+        Ok(ReportAnalysis { request: self.clone(), wheel, fastest })
+    }
+}
+
+/// A number with two digits.
+fn rounded(value: f64) -> f64 {
+    let unit = 10_f64.powf(value.log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+/// What was found so far.
+#[derive(Default)]
+struct Found {
+    findings: Vec<Finding>,
+    illustrations: Vec<Illustration>,
+}
+
+impl Found {
+    /// Takes what was found on a subject, or why nothing was; a stop goes on as an error.
+    fn take(&mut self, subject: &str, found: Result<Found, Error>) -> Result<(), Error> {
+        match found {
+            Ok(found) => {
+                self.findings.extend(found.findings);
+                self.illustrations.extend(found.illustrations);
+            }
+            Err(Error::Stopped) => return Err(Error::Stopped),
+            Err(error) => self.findings.push(Finding::not_computed(subject, &error)),
+        }
+        Ok(())
+    }
+}
+
+impl ReportAnalysis {
+    /// Computes everything and writes it when all is ready. What cannot be computed is said in the report.
+    ///
+    /// # Errors
+    /// The files cannot be written; [`Error::Stopped`]. Then no file was written.
+    pub fn run(&self, control: &Control<'_>) -> Result<ReportResult, Error> {
+        folder::prepare(&self.request.out)?;
+        let found = self.compute(control)?;
+        let pictures: Vec<Pictures> =
+            found.illustrations.par_iter().map(Illustration::pictures).collect::<Result<_, _>>()?;
+        let numbered = || (1_u8..).zip(found.illustrations.iter().zip(&pictures));
+        let figures: Vec<PageFigure> = numbered()
+            .map(|(number, (illustration, pictures))| PageFigure {
+                number,
+                svg: &pictures.svg,
+                caption: &illustration.caption,
+            })
+            .collect();
+        let page = page(&self.name(), &self.wheel, &found.findings, &figures);
+        let mut contents = vec![("report.html".to_owned(), page.into_bytes())];
+        for (number, Pictures { svg, png, csv }) in (1_u8..).zip(pictures) {
+            let name = |ending: &str| format!("figure{number}.{ending}");
+            contents.push((name("svg"), svg.into_bytes()));
+            contents.push((name("png"), png));
+            contents.push((name("csv"), csv));
+        }
+        let files = folder::write(&self.request.out, &contents)?;
+        Ok(ReportResult { wheel: self.wheel, up_to: self.fastest, findings: found.findings, files })
+    }
+
+    fn compute(&self, control: &Control<'_>) -> Result<Found, Error> {
+        let own_radius = self.wheel.get(Key::TurningRadius);
+        let radius = if own_radius.is_finite() { own_radius } else { CIRCLE };
+        let straight = "straight".to_owned();
+        let circle = format!("r = {} m", readable(radius));
+        let own = if own_radius.is_finite() { &circle } else { &straight };
+        let mut found = Found::default();
+        let mut stable_here = None;
+        for (subject, radius) in [(&straight, f64::INFINITY), (&circle, radius)] {
+            let speeds = self
+                .with_radius(radius)
+                .and_then(|wheel| Speeds::follow(&wheel, self.fastest, &control.part(MOTIONS)));
+            if radius == own_radius {
+                stable_here = speeds.as_ref().ok().and_then(|speeds| speeds.at(self.wheel.get(Key::V)));
+            }
+            let speeds = speeds.map(|speeds| Found {
+                findings: vec![speeds.finding(format!("stability, {subject}"))],
+                illustrations: Vec::new(),
+            });
+            found.take(&format!("stability, {subject}"), speeds)?;
+        }
+        found.findings.extend(self.with_dry_friction()?);
+        let subject = format!("rolling, {circle}");
+        let rolling = self.with_radius(radius).and_then(|wheel| Motions::compute(&wheel, self.fastest));
+        let rolling = rolling.map(|motions| Found {
+            findings: vec![motions.finding(subject.clone())],
+            illustrations: vec![motions.illustration()],
+        });
+        found.take(&subject, rolling)?;
+        found.take("chart", self.chart(own_radius, &control.part(CHARTED)))?;
+        let subject = "dampers, straight";
+        let damped = dampers::seek(&self.request_at(f64::INFINITY), self.fastest, &control.part(DAMPED));
+        let damped = damped.map(|dampers| Found {
+            findings: vec![dampers::finding(subject.to_owned(), &dampers)],
+            illustrations: dampers::illustration(&dampers).into_iter().collect(),
+        });
+        found.take(subject, damped)?;
+        let subject = format!("limit cycles, {own}");
+        found.take(&subject, self.cycles(&subject, stable_here, &control.part(FOLLOWED)))?;
+        unless_stopped(control)?;
+        let subject = format!("blow, {own}");
+        found.take(&subject, self.blow(&subject, stable_here, &control.part(STRUCK)))?;
+        Ok(found)
+    }
+
+    /// The wheel on another circle.
+    fn with_radius(&self, radius: f64) -> Result<Wheel, Error> {
+        Ok(self.wheel.with(Key::TurningRadius, radius)?)
+    }
+
+    /// The request for the wheel on another circle.
+    fn request_at(&self, radius: f64) -> WheelRequest {
+        let mut request = self.request.wheel.clone();
+        let value = if radius.is_infinite() { "inf".to_owned() } else { radius.to_string() };
+        request.set.push(Assignment { key: Key::TurningRadius.name().to_owned(), value });
+        request
+    }
+
+    /// What dry friction about the king pin, however little, makes of it: the closed form is for straight towing.
+    fn with_dry_friction(&self) -> Result<Option<Finding>, Error> {
+        let wheel = self.with_radius(f64::INFINITY)?;
+        let Some(factor) = wheel.swing_factor() else { return Ok(None) };
+        let text = match wheel.critical_speed_with_friction() {
+            Some(0.0) => {
+                "Small motions grow at every speed even with dry friction about the king pin.".to_owned()
+            }
+            Some(speed) => format!(
+                "With dry friction about the king pin, however little, small motions die out up to {} m/s.",
+                readable(speed)
+            ),
+            None => {
+                "With dry friction about the king pin, however little, small motions die out at every speed."
+                    .to_owned()
+            }
+        };
+        let check = format!(
+            "At the wheel's own speed each swing multiplies a small caster angle by {} (absolute value below 1: it dies out).",
+            readable(factor)
+        );
+        Ok(Some(Finding::new("dry friction, straight", text, check)))
+    }
+
+    /// The stability chart on axes that fit the wheel.
+    fn chart(&self, radius: f64, control: &Control<'_>) -> Result<Found, Error> {
+        let length = self.wheel.get(Key::L);
+        let critical = self.with_radius(f64::INFINITY)?.critical_caster_length();
+        let longest = critical.map_or(0.0, |critical| (BEYOND_CRITICAL * critical).min(LONGEST * length));
+        let lengths = [LENGTHS[0] * length, longest.max(LENGTHS[1] * length)];
+        let request = ChartRequest {
+            wheel: self.request.wheel.clone(),
+            x: SampledInterval::new("v", self.fastest / CHART[0] as f64, self.fastest, CHART[0]),
+            y: SampledInterval::new("l", lengths[0], lengths[1], CHART[1]),
+        };
+        let chart = request.validate()?.run(control)?;
+        let caption = format!(
+            "Growth rate of the uniform motion over speed and caster length at <i>r</i> = {}; the wheel has <i>v</i> = {} m/s, <i>l</i> = {} m.",
+            if radius.is_infinite() { "∞".to_owned() } else { format!("{} m", readable(radius)) },
+            readable(self.wheel.get(Key::V)),
+            readable(length)
+        );
+        let mut illustrations: Vec<Illustration> = Illustration::of(&chart, caption)?.into_iter().collect();
+        illustrations.push(limits::illustration(&self.wheel, self.fastest, lengths, &control.quiet())?);
+        Ok(Found { findings: Vec::new(), illustrations })
+    }
+
+    fn cycles(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
+        let speeds = [self.wheel.get(Key::V), self.fastest];
+        let cycles = cycles::follow(&self.request.wheel, speeds, control)?;
+        let illustration = match &cycles {
+            Some(cycles) => cycles::illustration(cycles, self.wheel.get(Key::TurningRadius))?,
+            None => None,
+        };
+        let finding = cycles::finding(subject.to_owned(), cycles.as_ref(), speeds, stable);
+        Ok(Found { findings: vec![finding], illustrations: illustration.into_iter().collect() })
+    }
+
+    fn blow(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
+        let speed = self.wheel.get(Key::V);
+        if stable == Some(false) {
+            let text = format!(
+                "At {} m/s the uniform motion is unstable: without friction about the king pin no blow is small enough.",
+                readable(speed)
+            );
+            return Ok(Found { findings: vec![Finding::new(subject, text, "")], illustrations: Vec::new() });
+        }
+        let mut found = Found::default();
+        for contact in [Contact::Sliding, Contact::Rolling] {
+            let part = if contact == Contact::Sliding { 0.0..0.7 } else { 0.7..1.0 };
+            let subject = format!("{subject}, {}", contact.model().name());
+            let result = blow::seek(&self.request.wheel, contact, &control.part(part)).and_then(|result| {
+                let illustrations = blow::illustration(&result)?.into_iter().collect();
+                Ok(Found { findings: vec![blow::finding(subject.clone(), &result, speed)], illustrations })
+            });
+            found.take(&subject, result)?;
+        }
+        Ok(found)
+    }
+
+    /// What the wheel is called: its file, without the folder.
+    fn name(&self) -> String {
+        let file = self.request.wheel.wheel.as_ref().and_then(|file| file.file_stem());
+        file.map_or_else(|| "The paper's wheel".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+}

@@ -1,0 +1,140 @@
+//! At which speeds the uniform motion is stable.
+
+use super::finding::Finding;
+use crate::error::{Error, unless_stopped};
+use arclength::continuation::Stop;
+use arclength::equilibrium::equilibrium_settings;
+use arclength_analysis::Control;
+use kingpin::branches::{Along, MotionBranch};
+use kingpin::{Key, Wheel};
+use kingpin_report::numbers::{readable, significant};
+
+/// The slowest speed, as part of the fastest.
+const SLOWEST: f64 = 1e-3;
+/// Speeds in each part at which the stability that was followed is compared with that of the motion in closed form.
+const COMPARED: usize = 20;
+
+/// A part of the speeds with one stability.
+struct Part {
+    from: f64,
+    to: f64,
+    /// Nothing where it is undecided.
+    stable: Option<bool>,
+}
+
+/// The stability of the uniform motion of a wheel over the speed.
+pub(super) struct Speeds {
+    wheel: Wheel,
+    branch: MotionBranch,
+    parts: Vec<Part>,
+}
+
+impl Speeds {
+    /// Follows the uniform motion up to a speed.
+    ///
+    /// # Errors
+    /// No uniform motion, [`Error::Stopped`].
+    pub(super) fn follow(wheel: &Wheel, fastest: f64, control: &Control<'_>) -> Result<Self, Error> {
+        let along = Along::new(Key::V, SLOWEST * fastest, fastest)?;
+        let branch = wheel.motion_branch(along, equilibrium_settings(), |_| control.flow())?;
+        unless_stopped(control)?;
+        let ends = [branch.motions.first(), branch.motions.last()];
+        let ends = ends.map(|motion| motion.map_or(f64::NAN, |motion| motion.value));
+        let turns = branch.hopf_points.iter().map(|hopf| hopf.value);
+        let edges: Vec<f64> = std::iter::once(ends[0]).chain(turns).chain([ends[1]]).collect();
+        let parts = edges.windows(2).map(|pair| {
+            let inside =
+                branch.motions.iter().filter(|motion| pair[0] < motion.value && motion.value < pair[1]);
+            let mut words = inside.map(|motion| motion.stability.is_stable());
+            let first = words.next().unwrap_or(None);
+            let stable = if words.all(|word| word == first) { first } else { None };
+            Part { from: pair[0], to: pair[1], stable }
+        });
+        let mut joined: Vec<Part> = Vec::new();
+        for part in parts {
+            match joined.last_mut() {
+                Some(before) if before.stable == part.stable => before.to = part.to,
+                _ => joined.push(part),
+            }
+        }
+        let parts = joined;
+        Ok(Self { wheel: *wheel, branch, parts })
+    }
+
+    /// Whether the motion is stable at a speed.
+    pub(super) fn at(&self, speed: f64) -> Option<bool> {
+        self.parts.iter().find(|part| part.from < speed && speed <= part.to).and_then(|part| part.stable)
+    }
+
+    /// What is said of it.
+    pub(super) fn finding(&self, subject: String) -> Finding {
+        let undecided = self.parts.iter().any(|part| part.stable.is_none());
+        Finding::new(subject, self.text(), self.check()).undecided_if(undecided)
+    }
+
+    fn text(&self) -> String {
+        let word = |stable: Option<bool>| match stable {
+            Some(true) => "stable",
+            Some(false) => "unstable",
+            None => "of undecided stability",
+        };
+        let end = self.parts.last().map_or(f64::NAN, |part| part.to);
+        let mut text = match self.parts.as_slice() {
+            [only] => {
+                format!(
+                    "The uniform motion is {} at every speed up to {} m/s",
+                    word(only.stable),
+                    readable(end)
+                )
+            }
+            parts => {
+                let said = parts.iter().enumerate().map(|(index, part)| {
+                    let to = significant(part.to, 5);
+                    match index {
+                        0 => format!("{} up to {to} m/s", word(part.stable)),
+                        _ => format!("{} from there to {to} m/s", word(part.stable)),
+                    }
+                });
+                format!("The uniform motion is {}", said.collect::<Vec<_>>().join(", "))
+            }
+        };
+        if let [_, Some(stop)] = &self.branch.stops
+            && !matches!(stop, Stop::RangeEnd { .. })
+        {
+            text += &format!("; beyond, it could not be followed ({stop})");
+        }
+        text + "."
+    }
+
+    fn check(&self) -> String {
+        let mut agree = 0;
+        let mut compared = 0;
+        for part in &self.parts {
+            for index in 0..COMPARED {
+                let speed = part.from + (part.to - part.from) * (index as f64 + 0.5) / COMPARED as f64;
+                let motion = self.wheel.with(Key::V, speed).and_then(|wheel| wheel.uniform_motion());
+                compared += 1;
+                agree += usize::from(motion.is_ok_and(|motion| motion.is_stable() == part.stable));
+            }
+        }
+        let mut text = format!(
+            "The changes are located by Newton's method on the equations of a Hopf point; the characteristic polynomial says the same \
+             at {agree} of {compared} speeds between them"
+        );
+        if let Some(critical) = self.wheel.critical_speed() {
+            let values = self.branch.hopf_points.iter().map(|hopf| (hopf.value / critical.speed - 1.0).abs());
+            match values.min_by(f64::total_cmp) {
+                Some(apart) if apart < 1e-3 => {
+                    text += &format!(
+                        "; the critical speed from it differs by {} (relative)",
+                        significant(apart, 2)
+                    );
+                }
+                _ => {
+                    text += &format!("; the critical speed from it is {} m/s", significant(critical.speed, 6))
+                }
+            }
+        }
+        text + "."
+    }
+}

@@ -1,0 +1,59 @@
+//! `kingpin report`: everything about a wheel on one page.
+
+use crate::wheel_options::{WheelOptions, parameter_help};
+use arclength_analysis::Assignment;
+use clap::Args;
+use kingpin_analysis::report::ReportRequest;
+use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "kingpin report --wheel trolley.toml --up-to v=3 --out report";
+
+/// Report on your wheel: whether it shimmies, what blow starts it, what damper it takes
+///
+/// Its stability straight and on a circle (its own, or 2 m), up to which speed it rolls, what dry friction about the king pin does,
+/// its limit cycles, the smallest sideways blow from which it does not return, rolling and sliding, and the dampers with which it is
+/// stable at every speed; with pictures, their data, and how each statement was checked.
+#[derive(Args, Debug)]
+#[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
+pub(crate) struct ReportCommand {
+    /// Largest speed that is looked at [default: twice that of the wheel]
+    #[arg(long, value_name = "v=VALUE")]
+    up_to: Option<Assignment>,
+
+    /// Folder for the files
+    #[arg(short, long, value_name = "DIR", default_value_os_t = ReportRequest::default().out)]
+    out: PathBuf,
+
+    /// Format in which the findings are printed
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+
+    /// Number of threads; results do not depend on it [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
+    threads: Option<u16>,
+
+    /// No progress
+    #[arg(short, long)]
+    quiet: bool,
+
+    #[command(flatten)]
+    wheel: WheelOptions,
+}
+
+impl ReportCommand {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// Why it failed.
+    pub(crate) fn run(&self) -> Result<(), Failure> {
+        start_threads(self.threads)?;
+        let output = Output::new(self.format, &[], self.quiet, &[])?;
+        let request =
+            ReportRequest { wheel: self.wheel.request(), up_to: self.up_to.clone(), out: self.out.clone() };
+        let analysis = request.validate()?;
+        let progress = ProgressDisplay::bar("report", self.quiet);
+        let (result, _) = output.watch(progress, |control| analysis.run(control));
+        output.deliver(&result?)
+    }
+}
