@@ -24,6 +24,7 @@
 
 use crate::characteristic::roots;
 use crate::critical_speed::bisect;
+use crate::error::KingpinError;
 use crate::linear_stability::lateral_cubic;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
@@ -66,6 +67,45 @@ impl Wheel {
         let Some(before) = first.checked_sub(1) else { return Some(0.0) };
         let slower = speed(before);
         bisect(slower, excess(slower), speed(first), |speed| Some(excess(speed)))
+    }
+
+    /// The lateral deflections `q` in m of the king pin, from lowest to highest, at which the rolling wheel rests with the caster along
+    /// its path: there dry friction takes the moment of the spring, `|k l b + m omega V| <= M_f`. `None` where there is no closed
+    /// form: on a circle with unequal stiffnesses.
+    ///
+    /// Towed straight they are those up to `M_f/(k_q l)`. On a circle the caster rests at the angle of the uniform motion only; with
+    /// `q` the speed and `u` vary, `u' = q' = V' = 0`.
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel};
+    /// let wheel = Wheel::default().with(Key::Curvature, 0.0)?.with(Key::MF, 0.02)?;
+    /// assert_eq!(wheel.resting_deflections()?, Some([-0.0025, 0.0025]));
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn resting_deflections(&self) -> Result<Option<[f64; 2]>, KingpinError> {
+        let motion = self.uniform_motion()?;
+        let [_, q, psi, ..] = motion.state();
+        let omega = self.towing_yaw_rate();
+        if omega != 0.0 && self.get(Key::KU) != self.get(Key::KQ) {
+            return Ok(None);
+        }
+        let body = self.body();
+        let stiffness = body.lateral_stiffness * body.caster_length - body.static_moment * omega * omega;
+        let half = self.get(Key::MF) * psi.cos() / stiffness;
+        Ok(Some([q - half, q + half]))
+    }
+
+    /// The largest caster angle in rad that stays as it is while the wheel is towed straight and slides sideways: the friction about
+    /// the king pin takes the moment of that of the ground, `mu_d N l + k_psi psi <= M_f`. `None` where it takes none of them, and
+    /// on a circle; without `k_psi` it is any angle, up to a quarter turn and beyond.
+    pub fn largest_resting_angle_while_sliding(&self) -> Option<f64> {
+        self.get(Key::TurningRadius).is_infinite().then_some(())?;
+        let spare = self.get(Key::MF) - self.get(Key::MuD) * self.normal_force() * self.get(Key::L);
+        let stiffness = self.get(Key::KPsi);
+        (spare > 0.0).then(|| if stiffness > 0.0 { (spare / stiffness).min(PI) } else { PI })
     }
 
     fn swing_factor_at(&self, speed: f64) -> f64 {

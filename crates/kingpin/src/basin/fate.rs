@@ -97,8 +97,11 @@ impl ClassificationSettings {
 pub(super) struct Target {
     state: [f64; 5],
     /// Turns differences of the states into speeds in m/s. In rectilinear towing `u` and `V` do not count: near straight
-    /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy.
+    /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy. On a circle, neither
+    /// do they nor `q` where dry friction about the king pin may hold the caster, behind which all of them ring.
     weights: [f64; 5],
+    /// With dry friction the wheel rests with any lateral deflection up to this many m from that of the uniform motion.
+    resting_deflection: f64,
     /// The larger of the towing speed and the caster length times the natural frequency of the springs, in m/s.
     reference_speed: f64,
     /// Natural period of the wheel on its springs in s.
@@ -124,11 +127,28 @@ impl Target {
         let length = body.caster_length;
         let reference_speed = wheel.get(Key::V).max(frequency * length);
         let straight = wheel.get(Key::Curvature) == 0.0;
-        let longitudinal = if straight { 0.0 } else { 1.0 };
+        let dry = wheel.get(Key::MF) > 0.0;
+        let longitudinal = if straight || dry { 0.0 } else { 1.0 };
+        let lateral = if dry && !straight { 0.0 } else { 1.0 };
+        let [low, high] = wheel.resting_deflections()?.unwrap_or_default();
+        let is_stable = decisive_growth_rate(wheel)? <= NEUTRAL * frequency;
+        let attracts = match wheel.swing_factor().filter(|_| dry) {
+            // However slowly they grow where it is larger: no simulation would tell.
+            Some(factor) => factor.abs() < 1.0,
+            None if dry && !is_stable => {
+                wheel.check_without_dry_friction(
+                    "whether small motions die out on a circle, where they grow without it,",
+                    "tow it straight (r = inf), lower v, or look at motions with `simulate`",
+                )?;
+                false
+            }
+            None => is_stable,
+        };
         Ok(Self {
             state: wheel.uniform_motion()?.state(),
-            attracts: decisive_growth_rate(wheel)? <= NEUTRAL * frequency,
-            weights: [longitudinal * frequency, frequency, reference_speed, longitudinal, length],
+            attracts,
+            weights: [longitudinal * frequency, lateral * frequency, reference_speed, longitudinal, length],
+            resting_deflection: 0.5 * (high - low),
             reference_speed,
             natural_period: TAU / frequency,
         })
@@ -144,7 +164,11 @@ impl Target {
         let mut sum = 0.0;
         for (i, (&weight, &target)) in self.weights.iter().zip(&self.state).enumerate() {
             let difference = state[i] - target;
-            let difference = if i == 2 { difference - TAU * (difference / TAU).round() } else { difference };
+            let difference = match i {
+                1 => difference - difference.clamp(-self.resting_deflection, self.resting_deflection),
+                2 => difference - TAU * (difference / TAU).round(),
+                _ => difference,
+            };
             sum += (weight * difference).powi(2);
         }
         sum.sqrt() / self.reference_speed

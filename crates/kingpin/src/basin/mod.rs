@@ -82,7 +82,8 @@ enum Follower {
     Ensemble(Ensemble),
     /// Rolling wheels that have no quadratic form.
     Rolling,
-    Sliding(Box<SlidingWheel>),
+    /// Wheels that may slide, or whose caster swings and sticks.
+    Hybrid(Box<SlidingWheel>),
 }
 
 impl Destinations {
@@ -107,7 +108,10 @@ impl Destinations {
         }
         let isotropic = wheel.get(Key::KU) == wheel.get(Key::KQ) && wheel.get(Key::CU) == wheel.get(Key::CQ);
         let follower = match model {
-            ContactModel::Sliding => Follower::Sliding(Box::new(wheel.sliding()?)),
+            ContactModel::Sliding => Follower::Hybrid(Box::new(wheel.sliding()?)),
+            ContactModel::Rolling if wheel.get(Key::MF) > 0.0 => {
+                Follower::Hybrid(Box::new(wheel.always_rolling()?.tolerance(CLASSIFICATION_TOLERANCE)))
+            }
             ContactModel::Rolling if isotropic => {
                 Follower::Ensemble(Ensemble::new(wheel)?.tolerance(CLASSIFICATION_TOLERANCE))
             }
@@ -143,9 +147,9 @@ impl Destinations {
                 let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?, control);
                 initial.par_iter().map(fate).collect()
             }
-            Follower::Sliding(sliding) => {
+            Follower::Hybrid(sliding) => {
                 let fate = |state: &[f64; 5]| {
-                    self.of_course(Course::sliding(sliding, sliding.rolling_state(state))?, control)
+                    self.of_course(Course::hybrid(sliding, sliding.rolling_state(state)), control)
                 };
                 initial.par_iter().map(fate).collect()
             }
@@ -162,8 +166,8 @@ impl Destinations {
         control: &Control<'_>,
     ) -> Result<Fate, SimulationError> {
         match &self.follower {
-            Follower::Sliding(sliding) => {
-                self.of_course(Course::sliding(sliding, sliding.slipping_state(initial))?, control)
+            Follower::Hybrid(sliding) => {
+                self.of_course(Course::hybrid(sliding, sliding.slipping_state(initial)), control)
             }
             _ => {
                 let [u, q, psi, speed, _, yaw, _] = *initial;
