@@ -84,54 +84,33 @@ impl SlidingWheel {
     /// The mode in which the motion goes on from a state.
     pub(crate) fn mode(&self, present: &HybridState) -> Mode {
         let state = &present.state;
-        let regimes: &[Regime] = match present.contact {
-            Contact::Rolling => &[Regime::Rolling, Regime::Onset],
-            Contact::Sliding => &[Regime::Sliding],
-        };
         let limit = self.equations.largest_friction_moment;
+        if limit == 0.0 {
+            return self.mode_under(FrictionMoment::Absent, present);
+        }
         let rate = self.equations.swing_rate(state);
-        let moments: &[FrictionMoment<f64>] = if limit == 0.0 {
-            &[FrictionMoment::Absent]
-        } else if rate != 0.0 {
-            &[FrictionMoment::Swinging(limit.copysign(rate))]
-        } else {
-            &[FrictionMoment::Sticking, FrictionMoment::Swinging(limit), FrictionMoment::Swinging(-limit)]
-        };
-        // Where rounding lets no mode fit, the caster is at its limit and sticks.
-        let mut at_limit = Mode { regime: regimes[0], friction_moment: moments[0] };
-        for &regime in regimes {
-            for &friction_moment in moments {
-                let equations = self.equations.under(friction_moment);
-                let is_contact = match regime {
-                    Regime::Rolling => self.holds(&equations, state),
-                    Regime::Onset => !self.holds(&equations, state),
-                    Regime::Sliding => true,
-                };
-                let mode = Mode { regime, friction_moment };
-                if is_contact && fits_about_king_pin(&equations, mode, state) {
-                    return mode;
-                }
-                if is_contact && friction_moment == FrictionMoment::Sticking {
-                    at_limit = mode;
-                }
-            }
+        if rate != 0.0 {
+            return self.mode_under(FrictionMoment::Swinging(limit.copysign(rate)), present);
         }
-        at_limit
+        let sticking = self.mode_under(FrictionMoment::Sticking, present);
+        let equations = self.equations_in(sticking);
+        let needed = equations.friction_moment(state, sticking.regime.friction(&equations, state));
+        if needed.abs() <= limit {
+            return sticking;
+        }
+        // Friction opposes the swing that takes more than it can give.
+        self.mode_under(FrictionMoment::Swinging(limit.copysign(needed)), present)
     }
-}
 
-/// Whether what the caster does about the king pin fits the forces.
-fn fits_about_king_pin(equations: &Equations<f64>, mode: Mode, state: &[f64]) -> bool {
-    let friction = mode.regime.friction(equations, state);
-    match mode.friction_moment {
-        FrictionMoment::Absent => true,
-        FrictionMoment::Sticking => {
-            equations.friction_moment(state, friction).abs() <= equations.largest_friction_moment
-        }
-        FrictionMoment::Swinging(moment) => {
-            let mut rate = [0.0; 7];
-            equations.derivative(state, friction, &mut rate);
-            equations.swing_rate(state) != 0.0 || -rate[5] * moment > 0.0
-        }
+    /// The mode with a moment about the king pin.
+    fn mode_under(&self, friction_moment: FrictionMoment<f64>, present: &HybridState) -> Mode {
+        let regime = match present.contact {
+            Contact::Sliding => Regime::Sliding,
+            Contact::Rolling if self.holds(&self.equations.under(friction_moment), &present.state) => {
+                Regime::Rolling
+            }
+            Contact::Rolling => Regime::Onset,
+        };
+        Mode { regime, friction_moment }
     }
 }
