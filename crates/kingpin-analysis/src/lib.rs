@@ -19,6 +19,7 @@ pub mod hopf;
 mod journal;
 pub mod locus;
 pub mod margin;
+mod neglected_dry_friction;
 pub mod paper;
 mod parameters;
 mod result_file;
@@ -35,6 +36,7 @@ pub use classification::{Classification, Contact, NamedFate};
 pub use disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 pub use error::Error;
 pub use journal::Journal;
+pub use neglected_dry_friction::NeglectedDryFriction;
 pub use wheel_request::WheelRequest;
 
 /// The code of the README, which is tested.

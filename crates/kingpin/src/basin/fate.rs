@@ -154,6 +154,11 @@ impl Target {
         })
     }
 
+    /// Whether motions return at all.
+    pub(super) fn attracts(&self) -> bool {
+        self.attracts
+    }
+
     /// The uniform motion.
     pub(super) fn state(&self) -> &[f64; 5] {
         &self.state

@@ -130,6 +130,11 @@ impl Destinations {
         self.settings
     }
 
+    /// Whether small motions die out: without dry friction about the king pin by the eigenvalues, with it by the factor of a swing.
+    pub fn attracts(&self) -> bool {
+        self.target.attracts()
+    }
+
     /// Whether the wheel may slide.
     pub fn model(&self) -> ContactModel {
         self.model
