@@ -7,6 +7,8 @@
 //! resumed; [`SafeKick`] finds the smallest disturbance from which the wheel does not return.
 
 mod course;
+#[cfg(test)]
+mod dry_friction_tests;
 mod fate;
 mod kick;
 mod lasting;
@@ -117,7 +119,7 @@ impl Destinations {
             }
             ContactModel::Rolling => Follower::Rolling,
         };
-        Ok(Self { wheel: *wheel, model, target: Target::new(wheel)?, settings, follower })
+        Ok(Self { wheel: *wheel, model, target: Target::new(wheel, model)?, settings, follower })
     }
 
     /// The wheel.

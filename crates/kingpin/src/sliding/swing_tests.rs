@@ -60,6 +60,39 @@ fn every_swing_multiplies_small_angles_by_the_factor_of_theory() {
 }
 
 #[test]
+fn swings_from_the_largest_returning_angle_just_end_at_rest() {
+    for values in [
+        &[(Key::L, 0.04), (Key::V, 0.3)][..],
+        &[(Key::L, 0.08), (Key::V, 2.0)],
+        &[(Key::L, 0.04), (Key::V, 2.0), (Key::CPsi, 2e-4), (Key::CQ, 0.3), (Key::KPsi, 0.05)],
+    ] {
+        let wheel = straight(values).with(Key::MF, 1e-5).unwrap();
+        let rolling = wheel.always_rolling().unwrap();
+        let largest = wheel.largest_returning_angle().unwrap();
+        let rests_after_a_swing = |angle: f64| {
+            // Where no moment is needed yet.
+            let damper = wheel.get(Key::CQ) * wheel.get(Key::V);
+            let q = (damper + wheel.get(Key::KPsi) / wheel.get(Key::L)) * angle / wheel.get(Key::KQ);
+            let start = wheel.perturbed_uniform_motion(&[("psi", angle), ("q", q)]).unwrap();
+            let mut phases = Vec::new();
+            let visit = |piece: Piece<'_>| {
+                phases.push(piece.phase.king_pin);
+                phases.len() < 3
+            };
+            rolling.follow(rolling.rolling_state(&start), 1e3, &[], &Control::none(), visit).unwrap();
+            assert_eq!(phases[..2], [KingPin::Sticking, KingPin::Swinging]);
+            phases[2] == KingPin::Sticking
+        };
+        for part in [-0.999, 0.5, 0.999] {
+            assert!(rests_after_a_swing(part * largest), "{values:?} {part}");
+        }
+        for part in [-1.001, 1.001, 1.2] {
+            assert!(!rests_after_a_swing(part * largest), "{values:?} {part}");
+        }
+    }
+}
+
+#[test]
 fn deflections_up_to_the_limit_are_at_rest_and_those_beyond_are_not() {
     for wheel in [
         straight(&[(Key::MF, 0.02)]),
