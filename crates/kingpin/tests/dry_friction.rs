@@ -338,14 +338,18 @@ fn check_energy(wheel: &Wheel, kick: &[(&str, f64)], duration: f64) -> Result<us
     let history = history(wheel, kick, duration, count + 1);
     let mut work = 0.0;
     let mut turnover = 0.0;
+    let mut swung = 0.0;
     for (index, (towing, dissipated)) in
         history.towing_power.iter().zip(&history.dissipated_power).enumerate()
     {
         let weight = if index == 0 || index == count { 0.5 } else { 1.0 };
         prop_assert!(*dissipated >= -1e-9 * (1.0 + towing.abs()), "{dissipated}");
         work += weight * duration / count as f64 * (towing - dissipated);
+        let rate = wheel.towing_yaw_rate() - history.states[index][5];
+        swung += weight * duration / count as f64 * history.friction_moment[index] * rate;
         turnover += duration / count as f64 * (towing.abs() + dissipated);
     }
+    prop_assert!((swung - history.dry_friction_work).abs() < 5e-3 * turnover.max(1e-9), "{swung}");
     for moment in &history.friction_moment {
         prop_assert!(moment.abs() <= wheel.get(Key::MF) * (1.0 + 1e-9), "{moment}");
     }

@@ -67,11 +67,14 @@ impl Phase {
     }
 
     /// Tells how the caster swings and sticks, where dry friction acts about the king pin.
-    pub(super) fn tell_swings(phases: &[Self], psi: Option<f64>, out: &mut dyn Write) -> io::Result<()> {
+    pub(super) fn tell_swings(
+        phases: &[Self],
+        psi: Option<f64>,
+        work: Option<f64>,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
+        let Some(work) = work else { return Ok(()) };
         let is = |phase: &&Self, word: KingPin| phase.king_pin == Some(king_pin(word));
-        if phases.iter().all(|phase| phase.king_pin.is_none()) {
-            return Ok(());
-        }
         let time = |phases: &mut dyn Iterator<Item = &Self>| -> f64 {
             phases.map(|phase| phase.end - phase.start).sum()
         };
@@ -79,7 +82,11 @@ impl Phase {
         let stuck = time(&mut phases.iter().filter(|phase| is(phase, KingPin::Sticking)));
         let swings = phases.iter().filter(|phase| is(phase, KingPin::Swinging)).count();
         let share = if total > 0.0 { 100.0 * stuck / total } else { 0.0 };
-        writeln!(out, "the caster swings in {swings} phases and sticks for {share:.1} % of the time")?;
+        writeln!(
+            out,
+            "the caster swings in {swings} phases and sticks for {share:.1} % of the time; dry friction takes {} J",
+            readable(work)
+        )?;
         // Contact may change while it goes on sticking.
         let last = phases.iter().rev().take_while(|phase| is(phase, KingPin::Sticking)).last();
         match (last, psi) {

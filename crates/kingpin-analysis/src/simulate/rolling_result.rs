@@ -45,6 +45,9 @@ pub struct RollingHistory {
     /// Moment of dry friction about the king pin in N m, at every time, where there is any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_moment: Option<Vec<f64>>,
+    /// Work in J that it took, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_work: Option<f64>,
     /// The stretches of time in which the caster only swings or only sticks, where dry friction acts about the king pin.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub phases: Vec<Phase>,
@@ -69,6 +72,7 @@ impl RollingHistory {
             normal_force: history.normal_force(),
             king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
             friction_moment: dry.then(|| history.friction_moment.clone()),
+            dry_friction_work: dry.then_some(history.dry_friction_work),
             phases: Phase::list(&wheel, &history.phases),
         }
     }
@@ -128,7 +132,7 @@ impl Report for RollingHistory {
             }
             None => writeln!(out, "the static friction suffices for rolling throughout"),
         }?;
-        Phase::tell_swings(&self.phases, self.psi.last().copied(), out)
+        Phase::tell_swings(&self.phases, self.psi.last().copied(), self.dry_friction_work, out)
     }
 
     fn columns(&self) -> Columns {

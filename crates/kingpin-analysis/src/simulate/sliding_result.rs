@@ -55,6 +55,9 @@ pub struct SlidingHistory {
     /// Moment of dry friction about the king pin in N m, at every time, where there is any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_moment: Option<Vec<f64>>,
+    /// Work in J that it took, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_work: Option<f64>,
     /// The stretches of time in which it does the same.
     pub phases: Vec<Phase>,
     /// Part of the time in which it slides.
@@ -85,6 +88,7 @@ impl SlidingHistory {
             phase: history.times.iter().map(contact).collect(),
             king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
             friction_moment: dry.then_some(history.friction_moment.clone()),
+            dry_friction_work: dry.then_some(history.dry_friction_work),
             phases: Phase::list(&wheel, &history.phases),
             sliding_fraction: history.sliding_fraction(),
             t: history.times,
@@ -133,7 +137,7 @@ impl Report for SlidingHistory {
             ),
             None => writeln!(out, "it rolls throughout"),
         }?;
-        Phase::tell_swings(&self.phases, self.psi.last().copied(), out)
+        Phase::tell_swings(&self.phases, self.psi.last().copied(), self.dry_friction_work, out)
     }
 
     fn columns(&self) -> Columns {

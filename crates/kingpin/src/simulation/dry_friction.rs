@@ -26,13 +26,15 @@ impl Wheel {
             contact_forces: Vec::with_capacity(times.len()),
             rolling_lost_at: (limit < 0.0).then_some(0.0),
             friction_moment: Vec::with_capacity(times.len()),
+            dry_friction_work: 0.0,
             phases: Vec::new(),
             statistics: Statistics::default(),
         };
         let duration = times.last().copied().unwrap_or(0.0);
         let mut present = rolling.rolling_state(initial).state;
         rolling.follow(rolling.rolling_state(initial), duration, times, control, |piece| {
-            let Piece { phase, mode, solution, .. } = piece;
+            let &Piece { phase, mode, solution, .. } = &piece;
+            history.dry_friction_work += piece.dry_friction_work(present[2]);
             let equations = rolling.equations_in(mode);
             if history.rolling_lost_at.is_none() {
                 // The force jumps where the caster begins to swing or to stick.

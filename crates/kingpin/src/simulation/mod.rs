@@ -38,6 +38,8 @@ pub struct TimeHistory {
     pub rolling_lost_at: Option<f64>,
     /// Moment of dry friction about the king pin in N m, one for each time; empty without it.
     pub friction_moment: Vec<f64>,
+    /// Work in J that it took: `M_f` times the angle through which the caster swung to and fro.
+    pub dry_friction_work: f64,
     /// What the caster does, in order; empty without dry friction about the king pin.
     pub phases: Vec<Phase>,
     /// Work done by the integration.
@@ -172,6 +174,7 @@ impl Wheel {
             rolling_lost_at: if lost_at_once { Some(0.0) } else { first_loss },
             times: solution.times,
             friction_moment: Vec::new(),
+            dry_friction_work: 0.0,
             phases: Vec::new(),
             statistics: solution.statistics,
         })

@@ -27,6 +27,8 @@ pub struct SlidingHistory {
     pub normal_force: f64,
     /// Phases in order; neighbours of the same kind are those between which the slip passed through zero.
     pub phases: Vec<Phase>,
+    /// Work in J that dry friction about the king pin took: `M_f` times the angle through which the caster swung to and fro.
+    pub dry_friction_work: f64,
     /// Kinetic and spring energy at the end less that at the start, in J.
     pub energy_gained: f64,
 }
@@ -148,10 +150,12 @@ impl SlidingWheel {
             dissipated_power: Vec::with_capacity(samples),
             normal_force: self.rolling.wheel().normal_force(),
             phases: Vec::new(),
+            dry_friction_work: 0.0,
             energy_gained: 0.0,
         };
+        let mut psi = initial.state[2];
         let end = self.follow(initial, duration, &times, control, |piece| {
-            let Piece { phase, mode, resumes, solution } = piece;
+            let &Piece { phase, mode, resumes, solution } = &piece;
             let equations = self.equations_in(mode);
             for (time, state) in solution.samples() {
                 let state: SlipState = as_slip_state(state);
@@ -167,6 +171,8 @@ impl SlidingWheel {
                 history.towing_power.push(towing);
                 history.dissipated_power.push(dissipated);
             }
+            history.dry_friction_work += piece.dry_friction_work(psi);
+            psi = solution.state[2];
             match history.phases.last_mut() {
                 Some(before) if resumes => before.end = phase.end,
                 Some(_) if phase.end == phase.start => {}

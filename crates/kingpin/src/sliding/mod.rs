@@ -68,6 +68,13 @@ pub const VANISHING_SLIP: f64 = 1e-9;
 /// Absolute tolerance of the slip velocity in m/s.
 const SLIP_RESOLUTION: f64 = 1e-4 * VANISHING_SLIP;
 
+/// Caster angle in rad below which a wheel whose small motions die out with dry friction about the king pin is at rest: further swings
+/// would be smaller and smaller, without end.
+pub const RESTING_ANGLE: f64 = 1e-9;
+
+/// Part of `M_f` by which rounding may exceed it at rest.
+const RESTING_EXCESS: f64 = 1e-9;
+
 /// Relative tolerance of the integration unless another is set.
 pub const SLIDING_TOLERANCE: f64 = 1e-10;
 
@@ -121,6 +128,8 @@ pub struct SlidingWheel {
     rolling: RollingWheel,
     /// Whether the ground supplies whatever force rolling takes.
     rolls_always: bool,
+    /// Whether small motions die out with dry friction about the king pin, in straight towing.
+    comes_to_rest: bool,
     while_rolling: Integrator,
     while_sliding: Integrator,
     maximum_phases: usize,
@@ -166,6 +175,7 @@ impl Wheel {
             equations,
             rolling: self.rolling(&[])?,
             rolls_always,
+            comes_to_rest: self.swing_factor().is_some_and(|factor| factor.abs() < 1.0),
             while_rolling: rolling_integrator(SLIDING_TOLERANCE),
             while_sliding: sliding_integrator(SLIDING_TOLERANCE),
             maximum_phases: MAXIMUM_PHASES,

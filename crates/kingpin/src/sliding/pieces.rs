@@ -21,6 +21,16 @@ pub(crate) struct Piece<'a> {
     pub solution: &'a Solution,
 }
 
+impl Piece<'_> {
+    /// Work in J that dry friction about the king pin takes along it, from a caster angle on, which grows or falls all the way.
+    pub(crate) fn dry_friction_work(&self, psi: f64) -> f64 {
+        match self.mode.friction_moment {
+            FrictionMoment::Swinging(moment) => moment * (self.solution.state[2] - psi),
+            FrictionMoment::Absent | FrictionMoment::Sticking => 0.0,
+        }
+    }
+}
+
 /// Where a piece begins and how far it may go.
 struct Stretch<'a> {
     start: f64,
@@ -97,6 +107,9 @@ impl SlidingWheel {
         let stops = solution.ended_by == Some(mode.regime.contact_events());
         if mode.friction_moment == FrictionMoment::Sticking || stops {
             next.state[5] = equations.towing_yaw_rate();
+        }
+        if stops && mode.friction_moment != FrictionMoment::Sticking {
+            next = self.laid_along_path(next);
         }
         Ok((solution, next))
     }

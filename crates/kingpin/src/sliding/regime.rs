@@ -7,8 +7,9 @@
 //! sliding one, holding comes first.
 
 use super::model::{Equations, FrictionMoment};
-use super::{Contact, HybridState, SlidingWheel};
+use super::{Contact, HybridState, RESTING_ANGLE, RESTING_EXCESS, SlidingWheel};
 use arclength::Scalar;
+use std::f64::consts::TAU;
 
 /// What the caster does about the king pin where dry friction acts there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,11 +96,23 @@ impl SlidingWheel {
         let sticking = self.mode_under(FrictionMoment::Sticking, present);
         let equations = self.equations_in(sticking);
         let needed = equations.friction_moment(state, sticking.regime.friction(&equations, state));
-        if needed.abs() <= limit {
+        let rests = self.comes_to_rest
+            && present.contact == Contact::Rolling
+            && off_path(state).abs() < RESTING_ANGLE;
+        if needed.abs() <= if rests { limit * (1.0 + RESTING_EXCESS) } else { limit } {
             return sticking;
         }
         // Friction opposes the swing that takes more than it can give.
         self.mode_under(FrictionMoment::Swinging(limit.copysign(needed)), present)
+    }
+
+    /// A state where a swing has ended, with the caster laid along the straight path where what is left of its angle is no motion.
+    pub(crate) fn laid_along_path(&self, mut present: HybridState) -> HybridState {
+        let angle = off_path(&present.state);
+        if self.comes_to_rest && present.contact == Contact::Rolling && angle.abs() < RESTING_ANGLE {
+            present.state[2] -= angle;
+        }
+        present
     }
 
     /// The mode with a moment about the king pin.
@@ -113,4 +126,9 @@ impl SlidingWheel {
         };
         Mode { regime, friction_moment }
     }
+}
+
+/// Caster angle less whole turns.
+fn off_path(state: &[f64]) -> f64 {
+    state[2] - TAU * (state[2] / TAU).round()
 }

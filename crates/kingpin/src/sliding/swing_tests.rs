@@ -165,6 +165,22 @@ fn a_caster_that_slides_rests_where_its_friction_takes_the_moment_of_the_ground(
 }
 
 #[test]
+fn a_wheel_whose_swings_shrink_comes_to_rest() {
+    // The factor is 0.27, so that swings in the same sense follow each other faster than the angle falls.
+    let wheel = straight(&[(Key::L, 0.04), (Key::V, 0.3), (Key::MF, 1e-3)]);
+    let start = wheel.perturbed_uniform_motion(&[("psi", 0.02)]).unwrap();
+    let history = wheel.simulate_from(&start, 100.0, 3, &Control::none()).unwrap();
+    assert!((5..60).contains(&history.phases.len()), "{}", history.phases.len());
+    let [u, q, psi, _, yaw] = history.states[2];
+    assert_eq!((psi, yaw), (0.0, 0.0));
+    assert_eq!((psi, q), (history.states[1][2], history.states[1][1]));
+    let held = wheel.resting_deflections().unwrap().unwrap()[1];
+    assert!((q.abs() - held).abs() < 1e-6 * held, "at the limit at which the last swing left it");
+    // Without c_u the longitudinal oscillation goes on for ever.
+    assert!(u != history.states[1][0]);
+}
+
+#[test]
 fn little_friction_is_the_wheel_without_and_much_lets_nothing_swing() {
     for start in [[0.0, 0.001, 0.4, 3.8, -3.0], [0.0, 0.0, 0.0, 4.0, 30.0]] {
         let run = |moment: f64| {
