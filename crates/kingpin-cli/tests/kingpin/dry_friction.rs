@@ -107,3 +107,19 @@ fn small_motions_of_the_real_wheels_end_as_the_factor_of_a_swing_says() {
         }
     }
 }
+
+#[test]
+fn margins_follow_the_moment_and_vanish_where_swings_grow() {
+    let folder = Folder::new();
+    let margin = "margin TROLLEY --kind release-angle --contact sliding --duration 1 --largest 0.004 -q";
+    let along_moment = folder.succeed(&trolley(&format!("{margin} --along M_f=0:0.005:2"))).output;
+    let lines: Vec<&str> = along_moment.lines().collect();
+    assert!(lines[4].ends_with("the uniform motion is unstable"), "{along_moment}");
+    assert!(lines[5].ends_with("all that were tried return"), "{along_moment}");
+    assert!(along_moment.contains("whatever M_f"), "{along_moment}");
+    // The critical speed with friction is 8.33 m/s.
+    let along_speed = folder.succeed(&trolley(&format!("{margin} --along v=8:9:2 -s M_f=0.3"))).output;
+    let lines: Vec<&str> = along_speed.lines().collect();
+    assert!(lines[4].ends_with("all that were tried return"), "{along_speed}");
+    assert!(lines[5].ends_with("small motions grow in spite of dry friction"), "{along_speed}");
+}
