@@ -1,6 +1,7 @@
 //! Where motions end with dry friction about the king pin.
 
 use super::*;
+use proptest::prelude::*;
 
 /// The paper's wheel with a short caster towed straight: unstable at every speed without friction.
 fn short_caster(moment: f64) -> Wheel {
@@ -83,4 +84,30 @@ fn on_a_circle_only_what_is_known_is_told() {
     let unstable = stable.with(Key::V, 9.0).unwrap();
     let refused = Destinations::new(&unstable, ContactModel::Rolling, settings).unwrap_err().to_string();
     assert!(refused.contains("M_f = 0.01") && refused.contains("r = inf"), "{refused}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// On a circle small motions that die out without friction die out with it, however much there is.
+    #[test]
+    fn friction_does_no_harm_on_a_circle(
+        l in 0.05..0.12f64, part in 0.2..0.9f64, curvature in 0.3..1.5f64, moment in -5.0..0.0f64, psi in -0.15..0.15f64,
+        yaw in -5.0..5.0f64, c_u in prop_oneof![Just(0.0), 0.0..0.5f64],
+    ) {
+        let wheel = Wheel::default()
+            .with(Key::L, l)
+            .and_then(|wheel| wheel.with(Key::Curvature, curvature))
+            .and_then(|wheel| wheel.with(Key::MF, 10f64.powf(moment)))
+            .and_then(|wheel| wheel.with(Key::CU, c_u))
+            .unwrap();
+        let critical = wheel.critical_speed().map_or(5.0, |critical| critical.speed);
+        let wheel = wheel.with(Key::V, part * critical).unwrap();
+        prop_assume!(wheel.uniform_motion().is_ok_and(|motion| motion.is_stable() == Some(true)));
+        let settings = ClassificationSettings::for_wheel(&wheel).unwrap();
+        let destinations = Destinations::new(&wheel, ContactModel::Rolling, settings).unwrap();
+        let start = wheel.perturbed_uniform_motion(&[("psi", psi), ("Omega", yaw)]).unwrap();
+        let fate = destinations.of(&[start], &Control::none()).unwrap()[0];
+        prop_assert_eq!(fate, Fate::UniformMotion);
+    }
 }
