@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use kingpin::basin::{ClassificationSettings, ContactModel, Fate};
-use kingpin::{KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Color, palette};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -80,8 +80,17 @@ impl Classification {
                     .to_owned(),
             );
         }
-        if motion.is_stable() == Some(false) {
-            warnings.push("the uniform motion is unstable: see `kingpin stability`".to_owned());
+        let with_friction = wheel.swing_factor().filter(|_| wheel.get(Key::MF) > 0.0);
+        match with_friction {
+            Some(factor) if factor.abs() >= 1.0 => warnings.push(
+                "small motions grow in spite of dry friction about the king pin: see `kingpin stability`"
+                    .to_owned(),
+            ),
+            Some(_) => {}
+            None if motion.is_stable() == Some(false) => {
+                warnings.push("the uniform motion is unstable: see `kingpin stability`".to_owned());
+            }
+            None => {}
         }
         Ok(warnings)
     }

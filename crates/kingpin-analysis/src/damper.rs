@@ -2,6 +2,7 @@
 
 use crate::description;
 use crate::error::Error;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
@@ -66,7 +67,8 @@ impl DamperRequest {
         let [c_q, c_psi] = [lateral, rotational].map(|damper| damper.map(|damper| damper.damping));
         let speed = |damper: Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
         let corner = Corner { c_q: speed(lateral), c_psi: speed(rotational) };
-        Ok(DamperResult { wheel, requirement: REQUIREMENT, up_to, c_q, c_psi, corner, front })
+        let dry_friction = NeglectedDryFriction::of(&wheel, &[Key::V]);
+        Ok(DamperResult { wheel, requirement: REQUIREMENT, up_to, c_q, c_psi, corner, front, dry_friction })
     }
 }
 
@@ -88,6 +90,9 @@ pub struct DamperResult {
     pub corner: Corner,
     /// Both dampers together.
     pub front: Front,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 /// Speeds in m/s at which the motion is unstable with a weaker damper; nothing where none is needed.
@@ -149,7 +154,8 @@ impl Report for DamperResult {
         writeln!(
             out,
             "\nsmall motions die out then; large cycles beside them (an isola) may take more and were not sought"
-        )
+        )?;
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

@@ -21,6 +21,7 @@ mod journal;
 pub mod locus;
 pub mod margin;
 mod page;
+mod neglected_dry_friction;
 pub mod paper;
 mod parameters;
 pub mod report;
@@ -38,6 +39,7 @@ pub use classification::{Classification, Contact, NamedFate};
 pub use disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 pub use error::Error;
 pub use journal::Journal;
+pub use neglected_dry_friction::NeglectedDryFriction;
 pub use wheel_request::WheelRequest;
 
 /// The code of the README, which is tested.

@@ -9,6 +9,7 @@ use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::io::{self, Write};
 
 /// Linear stability of the uniform motion: eigenvalues and critical speed.
@@ -40,6 +41,8 @@ impl StabilityRequest {
             critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
             swing_factor: wheel.swing_factor(),
             critical_speed_with_friction: wheel.critical_speed_with_friction(),
+            resting_deflections: if wheel.get(Key::MF) > 0.0 { wheel.resting_deflections()? } else { None },
+            largest_resting_angle_while_sliding: wheel.largest_resting_angle_while_sliding(),
             wheel,
         })
     }
@@ -66,6 +69,13 @@ pub struct StabilityResult {
     /// Towed straight, the speed in m/s beyond which small motions grow in spite of dry friction; it does not depend on how much
     /// there is.
     pub critical_speed_with_friction: Option<f64>,
+    /// With dry friction about the king pin, the lowest and highest lateral deflection in m at which the rolling wheel rests; nothing
+    /// without, and on a circle with k_u other than k_q.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resting_deflections: Option<[f64; 2]>,
+    /// The largest caster angle in rad that dry friction about the king pin holds while the wheel slides sideways, towed straight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_resting_angle_while_sliding: Option<f64>,
 }
 
 impl Report for StabilityResult {
@@ -108,6 +118,45 @@ impl Report for StabilityResult {
                 writeln!(out, "no critical speed: {always} at every speed{where_it_is}")
             }
         }?;
+        self.write_dry_friction(out)
+    }
+
+    fn columns(&self) -> Columns {
+        Columns::new()
+            .numbers("real_part", self.eigenvalues.iter().map(|[real, _]| *real))
+            .unit("1/s")
+            .numbers("imaginary_part", self.eigenvalues.iter().map(|[_, imaginary]| *imaginary))
+            .unit("rad/s")
+    }
+}
+
+impl StabilityResult {
+    /// What dry friction about the king pin makes of small motions.
+    fn write_dry_friction(&self, out: &mut dyn Write) -> io::Result<()> {
+        let moment = self.wheel.get(Key::MF);
+        if moment > 0.0 {
+            writeln!(
+                out,
+                "\nall this without dry friction about the king pin, M_f = {} N m",
+                readable(moment)
+            )?;
+            if let Some([low, high]) = self.resting_deflections {
+                writeln!(
+                    out,
+                    "with it the rolling wheel rests with q from {} to {} m",
+                    readable(low),
+                    readable(high)
+                )?;
+            }
+            if let Some(angle) = self.largest_resting_angle_while_sliding {
+                let held = if angle < PI {
+                    format!("angles up to {} rad", readable(angle))
+                } else {
+                    "any angle".to_owned()
+                };
+                writeln!(out, "while it slides sideways the caster is held at {held}")?;
+            }
+        }
         let Some(factor) = self.swing_factor else { return Ok(()) };
         writeln!(
             out,
@@ -119,13 +168,5 @@ impl Report for StabilityResult {
             Some(speed) => writeln!(out, "small motions die out up to {} m/s", readable(speed)),
             None => writeln!(out, "small motions die out at every speed"),
         }
-    }
-
-    fn columns(&self) -> Columns {
-        Columns::new()
-            .numbers("real_part", self.eigenvalues.iter().map(|[real, _]| *real))
-            .unit("1/s")
-            .numbers("imaginary_part", self.eigenvalues.iter().map(|[_, imaginary]| *imaginary))
-            .unit("rad/s")
     }
 }

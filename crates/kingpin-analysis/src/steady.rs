@@ -4,7 +4,7 @@ use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
-use kingpin::{UniformMotion, Wheel};
+use kingpin::{Key, UniformMotion, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,12 @@ impl SteadyRequest {
     /// # Errors
     /// What is wrong with the wheel; no uniform motion.
     pub fn run(&self) -> Result<SteadyResult, Error> {
-        Ok(SteadyResult::of(&self.wheel.read()?.uniform_motion()?))
+        let wheel = self.wheel.read()?;
+        let mut result = SteadyResult::of(&wheel.uniform_motion()?);
+        if wheel.get(Key::MF) > 0.0 {
+            result.resting_deflections = wheel.resting_deflections()?;
+        }
+        Ok(result)
     }
 }
 
@@ -54,6 +59,10 @@ pub struct SteadyResult {
     pub normal_force: f64,
     /// Whether the ground can supply the friction.
     pub rolls: bool,
+    /// With dry friction about the king pin, the lowest and highest lateral deflection in m at which the wheel rests as well; nothing
+    /// without, and on a circle with k_u other than k_q.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resting_deflections: Option<[f64; 2]>,
 }
 
 impl SteadyResult {
@@ -70,6 +79,7 @@ impl SteadyResult {
             friction_force: contact.friction(),
             normal_force: contact.normal,
             rolls: contact.rolls(),
+            resting_deflections: None,
         }
     }
 }
@@ -85,7 +95,7 @@ impl Report for SteadyResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "uniform motion at {}\n", description::of(&self.wheel, &[]))?;
-        let limit = self.wheel.get(kingpin::Key::MuS) * self.normal_force;
+        let limit = self.wheel.get(Key::MuS) * self.normal_force;
         let rolling = if self.rolls {
             format!("yes: the ground can supply {} N", readable(limit))
         } else {
@@ -104,7 +114,23 @@ impl Report for SteadyResult {
         row("friction_force", self.friction_force, "N", "between wheel and ground");
         row("normal_force", self.normal_force, "N", "between wheel and ground");
         table.write(out)?;
-        writeln!(out, "rolls           {rolling}")
+        writeln!(out, "rolls           {rolling}")?;
+        let moment = self.wheel.get(Key::MF);
+        match self.resting_deflections {
+            Some([low, high]) => writeln!(
+                out,
+                "\ndry friction about the king pin, M_f = {} N m, lets it rest with any q from {} to {} m",
+                readable(moment),
+                readable(low),
+                readable(high)
+            ),
+            None if moment > 0.0 => writeln!(
+                out,
+                "\nwith M_f = {} N m it rests at others beside this one, of which none are told where k_u and k_q differ",
+                readable(moment)
+            ),
+            None => Ok(()),
+        }
     }
 
     fn columns(&self) -> Columns {

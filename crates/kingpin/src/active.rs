@@ -39,6 +39,9 @@ impl ActiveParameters {
     /// That these keys cannot vary together, or not from this wheel.
     pub(crate) fn new(wheel: &Wheel, keys: &[Key]) -> Result<Self, KingpinError> {
         Key::check_independent(keys)?;
+        if keys.contains(&Key::MF) {
+            return Err(KingpinError::DryFrictionVaries);
+        }
         let (longitudinal, lateral) = (wheel.get(Key::KU), wheel.get(Key::KQ));
         if keys.contains(&Key::K) && longitudinal != lateral {
             return Err(KingpinError::AmbiguousStiffness { longitudinal, lateral });

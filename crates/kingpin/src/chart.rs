@@ -68,7 +68,8 @@ impl Wheel {
     /// ```
     ///
     /// # Errors
-    /// [`GridSize`](KingpinError::GridSize) and [`Interrupted`](KingpinError::Interrupted).
+    /// [`GridSize`](KingpinError::GridSize), [`DryFrictionVaries`](KingpinError::DryFrictionVaries) and
+    /// [`Interrupted`](KingpinError::Interrupted).
     pub fn growth_rate_chart(
         &self,
         plane: &Plane,
@@ -150,6 +151,9 @@ fn axes(plane: &Plane, [columns, rows]: [usize; 2]) -> Result<(Vec<f64>, Vec<f64
     let few_enough = columns.checked_mul(rows).is_some_and(|points| points <= MOST_POINTS);
     if columns < 2 || rows < 2 || !few_enough {
         return Err(KingpinError::GridSize { columns, rows, most: MOST_POINTS });
+    }
+    if [plane.x(), plane.y()].iter().any(|axis| axis.key() == Key::MF) {
+        return Err(KingpinError::DryFrictionVaries);
     }
     Ok((plane.x().values(columns), plane.y().values(rows)))
 }

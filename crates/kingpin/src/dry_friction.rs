@@ -24,6 +24,7 @@
 
 use crate::characteristic::roots;
 use crate::critical_speed::bisect;
+use crate::error::KingpinError;
 use crate::linear_stability::lateral_cubic;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
@@ -50,7 +51,16 @@ impl Wheel {
     /// ```
     pub fn swing_factor(&self) -> Option<f64> {
         let speed = self.get(Key::V);
-        (self.get(Key::TurningRadius).is_infinite() && speed > 0.0).then(|| self.swing_factor_at(speed))
+        (self.get(Key::TurningRadius).is_infinite() && speed > 0.0).then(|| self.swing_at(speed).factor)
+    }
+
+    /// The largest caster angle in rad, if that is small, from which the next swing of the rolling wheel ends at rest about the king pin
+    /// and does not turn back at once: `J |psi''| <= 2 M_f` there. Where the [factor](Self::swing_factor) of a swing is below one the
+    /// caster returns from any angle up to it. `None` unless the wheel is towed straight and moves.
+    pub fn largest_returning_angle(&self) -> Option<f64> {
+        self.swing_factor()?;
+        let swing = self.swing_at(self.get(Key::V));
+        Some(2.0 * self.get(Key::MF) * self.body().inverse_yaw_inertia / swing.deceleration.abs())
     }
 
     /// The smallest speed in m/s beyond which small motions in rectilinear towing grow in spite of dry friction about the king pin;
@@ -61,34 +71,83 @@ impl Wheel {
         self.get(Key::TurningRadius).is_infinite().then_some(())?;
         let ratio = (Key::V.allowed().highest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
         let speed = |index: usize| SLOWEST * ratio.powi(index as i32);
-        let excess = |speed: f64| self.swing_factor_at(speed).abs() - 1.0;
+        let excess = |speed: f64| self.swing_at(speed).factor.abs() - 1.0;
         let first = (0..SPEEDS).find(|&index| excess(speed(index)) > 0.0)?;
         let Some(before) = first.checked_sub(1) else { return Some(0.0) };
         let slower = speed(before);
         bisect(slower, excess(slower), speed(first), |speed| Some(excess(speed)))
     }
 
-    fn swing_factor_at(&self, speed: f64) -> f64 {
-        swing_factor(lateral_cubic(&self.body(), speed))
+    /// The lateral deflections `q` in m of the king pin, from lowest to highest, at which the rolling wheel rests with the caster along
+    /// its path: there dry friction takes the moment of the spring, `|k l b + m omega V| <= M_f`. `None` where there is no closed
+    /// form: on a circle with unequal stiffnesses.
+    ///
+    /// Towed straight they are those up to `M_f/(k_q l)`. On a circle the caster rests at the angle of the uniform motion only; with
+    /// `q` the speed and `u` vary, `u' = q' = V' = 0`.
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel};
+    /// let wheel = Wheel::default().with(Key::Curvature, 0.0)?.with(Key::MF, 0.02)?;
+    /// assert_eq!(wheel.resting_deflections()?, Some([-0.0025, 0.0025]));
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn resting_deflections(&self) -> Result<Option<[f64; 2]>, KingpinError> {
+        let motion = self.uniform_motion()?;
+        let [_, q, psi, ..] = motion.state();
+        let omega = self.towing_yaw_rate();
+        if omega != 0.0 && self.get(Key::KU) != self.get(Key::KQ) {
+            return Ok(None);
+        }
+        let body = self.body();
+        let stiffness = body.lateral_stiffness * body.caster_length - body.static_moment * omega * omega;
+        let half = self.get(Key::MF) * psi.cos() / stiffness;
+        Ok(Some([q - half, q + half]))
+    }
+
+    /// The largest caster angle in rad that stays as it is while the wheel is towed straight and slides sideways: the friction about
+    /// the king pin takes the moment of that of the ground, `mu_d N l + k_psi psi <= M_f`. `None` where it takes none of them, and
+    /// on a circle; without `k_psi` it is any angle, up to a quarter turn and beyond.
+    pub fn largest_resting_angle_while_sliding(&self) -> Option<f64> {
+        self.get(Key::TurningRadius).is_infinite().then_some(())?;
+        let spare = self.get(Key::MF) - self.get(Key::MuD) * self.normal_force() * self.get(Key::L);
+        let stiffness = self.get(Key::KPsi);
+        (spare > 0.0).then(|| if stiffness > 0.0 { (spare / stiffness).min(PI) } else { PI })
+    }
+
+    fn swing_at(&self, speed: f64) -> Swing {
+        swing(lateral_cubic(&self.body(), speed))
     }
 }
 
-/// The factor of a swing from the characteristic cubic `s^3 + c1 s^2 + c2 s + c3`, whose coefficients are not negative.
-fn swing_factor([c1, c2, c3]: [f64; 3]) -> f64 {
+/// The end of a swing that begins at `psi = 1`.
+#[derive(Clone, Copy, Debug)]
+struct Swing {
+    /// `psi`.
+    factor: f64,
+    /// `psi''`.
+    deceleration: f64,
+}
+
+/// The swing of a motion with the characteristic cubic `s^3 + c1 s^2 + c2 s + c3`, whose coefficients are not negative.
+fn swing([c1, c2, c3]: [f64; 3]) -> Swing {
+    let creeps = Swing { factor: 0.0, deceleration: 0.0 };
     let roots = roots(&[c1, c2, c3]);
-    let Some(pair) = roots.iter().find(|root| root.im > 0.0) else { return 0.0 };
-    let Some(lambda) = roots.iter().find(|root| root.im == 0.0).map(|root| root.re) else { return 0.0 };
+    let Some(pair) = roots.iter().find(|root| root.im > 0.0) else { return creeps };
+    let Some(lambda) = roots.iter().find(|root| root.im == 0.0).map(|root| root.re) else { return creeps };
     let (alpha, beta) = (pair.re, pair.im);
     let gamma = alpha - lambda;
     if gamma <= 0.0 {
-        return 0.0;
+        return creeps;
     }
     // In units of 1/beta; the logarithm does not overflow where many swings would fit into the decay.
     let excess = |time: f64| {
         let wave = time.cos() - gamma / beta * time.sin();
         Some(if wave > 0.0 { gamma / beta * time + wave.ln() } else { f64::NEG_INFINITY })
     };
-    let Some(end) = bisect(PI, f64::NEG_INFINITY, 2.0 * PI, excess) else { return 0.0 };
+    let Some(end) = bisect(PI, f64::NEG_INFINITY, 2.0 * PI, excess) else { return creeps };
     let (sine, cosine) = end.sin_cos();
     let [real, oscillating] = [lambda, alpha].map(|rate| (rate * end / beta).exp());
     let amplitude = -c3 / (gamma * gamma + beta * beta);
@@ -98,7 +157,7 @@ fn swing_factor([c1, c2, c3]: [f64; 3]) -> f64 {
         * (lambda * lambda * real
             - oscillating
                 * ((alpha * lambda - slope * beta) * cosine - (alpha * slope + lambda * beta) * sine));
-    -(third + c1 * second) / c3
+    Swing { factor: -(third + c1 * second) / c3, deceleration: second }
 }
 
 #[cfg(test)]
@@ -211,9 +270,9 @@ mod tests {
             c1 in 1e-3..10.0_f64, c2 in 1e-3..10.0_f64, part in 1e-3..0.999_f64, unit in 1e-3..1e3_f64,
         ) {
             let c3 = part * c1 * c2;
-            let factor = swing_factor([c1, c2, c3]);
+            let factor = swing([c1, c2, c3]).factor;
             prop_assert!(factor.abs() < 1.0, "{factor}");
-            let scaled = swing_factor([c1 * unit, c2 * unit.powi(2), c3 * unit.powi(3)]);
+            let scaled = swing([c1 * unit, c2 * unit.powi(2), c3 * unit.powi(3)]).factor;
             prop_assert!((factor - scaled).abs() < 1e-9, "{factor} {scaled}");
         }
     }

@@ -171,6 +171,22 @@ pub enum KingpinError {
          charts, Hopf points, cycles and simulations of ideal rolling"
     )]
     LateralElasticityOnly,
+    /// Something that is not computed with dry friction about the king pin.
+    #[error("M_f = {moment} N m: {what} with dry friction about the king pin is not computed; {remedy}")]
+    DryFriction {
+        /// `M_f` in N m.
+        moment: f64,
+        /// What is not computed with it.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// `M_f` cannot vary along a branch or an axis.
+    #[error(
+        "`M_f` cannot vary here: uniform motions, eigenvalues and cycles are those without dry friction about the king pin; \
+         `margin --along M_f=A:B:N` shows what it does to motions"
+    )]
+    DryFrictionVaries,
     /// The three-state model has no longitudinal elasticity.
     #[error("k_u = {longitudinal} N/m: the model with lateral elasticity only needs k_u = inf")]
     LongitudinalElasticity {

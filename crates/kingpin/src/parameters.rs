@@ -38,6 +38,7 @@ pub enum Key {
     CQ,
     CPsi,
     KPsi,
+    MF,
     /// Both stiffnesses at once; reads as `k_q`.
     K,
     /// `1/r`, zero in rectilinear towing: the continuation passes through `r = inf` with it.
@@ -139,6 +140,7 @@ const TABLE: [Entry; STORED + 2] = [
     entry("c_q", "c_q", "N s/m", "lateral damping at the king pin", DAMPING, 0.0),
     entry("c_psi", "c_ψ", "N m s/rad", "rotational damping about the king pin", DAMPING, 0.0),
     entry("k_psi", "k_ψ", "N m/rad", "rotational stiffness about the king pin", DAMPING, 0.0),
+    entry("M_f", "M_f", "N m", "moment of dry friction about the king pin", DAMPING, 0.0),
     entry("k", "k", "N/m", "stiffness at the king pin, sets k_u and k_q", STIFFNESS, 100.0),
     entry("curvature", "1/r", "1/m", "curvature of the towing path, sets r", Allowed::between(0.0, 1e3), 1.0),
 ];
@@ -166,6 +168,7 @@ impl Key {
         Key::CQ,
         Key::CPsi,
         Key::KPsi,
+        Key::MF,
         Key::K,
         Key::Curvature,
     ];

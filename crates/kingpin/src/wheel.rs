@@ -169,6 +169,16 @@ impl Wheel {
             .map_err(|source| KingpinError::InFile { path: path.to_owned(), source: Box::new(source) })
     }
 
+    /// That there is no dry friction about the king pin, with which something is not computed.
+    pub(crate) fn check_without_dry_friction(
+        &self,
+        what: &'static str,
+        remedy: &'static str,
+    ) -> Result<(), KingpinError> {
+        let moment = self.get(Key::MF);
+        if moment == 0.0 { Ok(()) } else { Err(KingpinError::DryFriction { moment, what, remedy }) }
+    }
+
     /// Yaw rate `omega = v/r` of the towing frame in rad/s.
     #[inline]
     pub fn towing_yaw_rate(&self) -> f64 {

@@ -71,6 +71,7 @@ fn every_parameter_refuses_what_is_not_allowed() {
             | Key::CQ
             | Key::CPsi
             | Key::KPsi
+            | Key::MF
             | Key::Curvature => [true, false],
             _ => [false, false],
         };

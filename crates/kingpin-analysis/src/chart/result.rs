@@ -3,6 +3,7 @@
 use crate::axis_label;
 use crate::description;
 use crate::error::Error;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
 use arclength_analysis::Control;
 use kingpin::{Axis, Curve, GrowthRateChart, Plane, Wheel};
@@ -61,6 +62,9 @@ pub struct ChartResult {
     pub stability_boundary: Vec<Vec<[f64; 2]>>,
     /// The limit of rolling, as curves of points.
     pub rolling_limit: Vec<Vec<[f64; 2]>>,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 impl ChartResult {
@@ -84,6 +88,7 @@ impl ChartResult {
             rolls,
             stability_boundary: points_of(wheel.stability_boundary(&plane, control)?),
             rolling_limit: points_of(wheel.rolling_limit(&plane, control)?),
+            dry_friction: NeglectedDryFriction::of(&wheel, &[plane.x().key(), plane.y().key()]),
             plane,
         })
     }
@@ -159,7 +164,7 @@ impl Report for ChartResult {
         if undecided > 0 {
             writeln!(out, "? undecided, at {undecided} points: rounding could make it stable or unstable")?;
         }
-        Ok(())
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

@@ -6,6 +6,7 @@ use super::point::{CyclePointResult, at_cycle, at_hopf, cells};
 use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::STATE_UNITS;
 use arclength::branch::LabelCounter;
@@ -70,6 +71,9 @@ pub struct CyclesResult {
     pub missed: Vec<f64>,
     /// Their cycles, branch by branch.
     pub points: Vec<CyclePointResult>,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 /// The result as it is read back.
@@ -86,9 +90,12 @@ impl TryFrom<StoredCycles> for CyclesResult {
 
     fn try_from(stored: StoredCycles) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
+        let wheel = wheel_of(&stored.parameters.0)?;
+        let interval = along(&Interval::new(key, *start, *end))?;
         Ok(Self {
-            wheel: wheel_of(&stored.parameters.0)?,
-            interval: along(&Interval::new(key, *start, *end))?,
+            wheel,
+            interval,
+            dry_friction: NeglectedDryFriction::of(&wheel, &[interval.key()]),
             along: stored.along,
             branches: stored.branches,
             missed: Vec::new(),
@@ -161,7 +168,8 @@ impl CyclesResult {
             });
             all.extend(points);
         }
-        Ok(Self { wheel, interval, along, branches, missed, points: all })
+        let dry_friction = NeglectedDryFriction::of(&wheel, &[interval.key()]);
+        Ok(Self { wheel, interval, along, branches, missed, points: all, dry_friction })
     }
 
     /// What was detected but not located, and what was asked for and not found.
@@ -217,7 +225,7 @@ impl Report for CyclesResult {
             }
             table.write(out)?;
         }
-        Ok(())
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

@@ -4,6 +4,7 @@ use super::motion::{BracketedResult, MotionResult, named_tests};
 use super::search::label;
 use crate::along::{along, varying};
 use crate::description;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::{STATE_UNITS, named_state};
 use arclength::branch::Criticality;
@@ -79,6 +80,9 @@ pub struct HopfResult {
     pub points: Vec<HopfPointResult>,
     /// The uniform motions that were computed on the way.
     pub motions: Vec<MotionResult>,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 /// The result as it is read back.
@@ -103,9 +107,12 @@ impl TryFrom<StoredHopfPoints> for HopfResult {
 
     fn try_from(stored: StoredHopfPoints) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
+        let wheel = wheel_of(&stored.parameters.0)?;
+        let interval = along(&Interval::new(key, *start, *end))?;
+        let dry_friction = NeglectedDryFriction::of(&wheel, &[interval.key()]);
         Ok(Self {
-            wheel: wheel_of(&stored.parameters.0)?,
-            interval: along(&Interval::new(key, *start, *end))?,
+            wheel,
+            interval,
             along: stored.along,
             searched: stored.searched,
             stable_at_ends: stored.stable_at_ends,
@@ -113,6 +120,7 @@ impl TryFrom<StoredHopfPoints> for HopfResult {
             unlocated: stored.unlocated,
             points: stored.points,
             motions: stored.motions,
+            dry_friction,
         })
     }
 }
@@ -150,6 +158,7 @@ impl HopfResult {
                 .collect(),
             motions,
             along,
+            dry_friction: NeglectedDryFriction::of(&wheel, &[interval.key()]),
         }
     }
 
@@ -208,7 +217,8 @@ impl Report for HopfResult {
                 criticality(point.criticality).into(),
             ]);
         }
-        table.write(out)
+        table.write(out)?;
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

@@ -2,6 +2,7 @@
 
 use crate::along::ParameterPlane;
 use crate::description;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
 use arclength_analysis::Origin;
@@ -25,6 +26,9 @@ pub struct CycleLocusResult {
     /// The curve.
     #[serde(flatten)]
     pub curve: CycleCurve,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 /// The result as it is read back.
@@ -39,7 +43,10 @@ impl TryFrom<StoredCurve> for CycleLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: ParameterPlane::of(&curve.plane)?, curve })
+        let wheel = wheel_of(&parameters.0)?;
+        let plane = ParameterPlane::of(&curve.plane)?;
+        let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
+        Ok(Self { wheel, plane, curve, dry_friction })
     }
 }
 
@@ -57,7 +64,8 @@ impl CycleLocusResult {
         let kingpin::branches::CycleCurve { kind, points, stops, unlocated } = curve;
         let curve =
             CycleCurve::new(Some(kind), plane.varying(), from, points, &stops, &unlocated, named_state);
-        Self { wheel, plane, curve }
+        let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
+        Self { wheel, plane, curve, dry_friction }
     }
 }
 
@@ -73,7 +81,8 @@ impl Report for CycleLocusResult {
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let kind = self.curve.name();
         let heading = format!("curve: {kind}, at {}", description::of(&self.wheel, &self.plane.keys()));
-        self.curve.write_table(&heading, out)
+        self.curve.write_table(&heading, out)?;
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

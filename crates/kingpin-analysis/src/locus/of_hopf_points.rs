@@ -2,6 +2,7 @@
 
 use crate::along::ParameterPlane;
 use crate::description;
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
 use arclength::branch::SpecialKind;
@@ -27,6 +28,9 @@ pub struct HopfLocusResult {
     /// The curve.
     #[serde(flatten)]
     pub curve: EquilibriumCurve,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
 }
 
 /// The result as it is read back.
@@ -41,7 +45,10 @@ impl TryFrom<StoredCurve> for HopfLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: ParameterPlane::of(&curve.plane)?, curve })
+        let wheel = wheel_of(&parameters.0)?;
+        let plane = ParameterPlane::of(&curve.plane)?;
+        let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
+        Ok(Self { wheel, plane, curve, dry_friction })
     }
 }
 
@@ -55,7 +62,8 @@ impl HopfLocusResult {
         let HopfCurve { points, stops, unlocated } = curve;
         let curve =
             EquilibriumCurve::new(Some(kind), plane.varying(), from, points, stops, unlocated, named_state);
-        Self { wheel, plane, curve }
+        let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
+        Self { wheel, plane, curve, dry_friction }
     }
 }
 
@@ -70,7 +78,8 @@ impl Report for HopfLocusResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let heading = format!("curve of Hopf points at {}", description::of(&self.wheel, &self.plane.keys()));
-        self.curve.write_table(&heading, out)
+        self.curve.write_table(&heading, out)?;
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
     fn columns(&self) -> Columns {

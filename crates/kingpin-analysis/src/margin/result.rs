@@ -7,9 +7,9 @@ use crate::disturbance::Edge;
 use crate::parameters::parameters_of;
 use crate::{axis_label, description};
 use arclength_analysis::VaryingParameter;
-use kingpin::Wheel;
 use kingpin::basin::{ContactModel, Disturbance};
 use kingpin::branches::Along;
+use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Table};
@@ -43,8 +43,8 @@ impl MarginPoint {
         Self { value, resolution, found, safe, unstable_amplitude, ratio }
     }
 
-    /// What is to be said of it beside the numbers.
-    fn remark(&self) -> String {
+    /// What is to be said of it beside the numbers; `dry` tells of dry friction about the king pin.
+    fn remark(&self, dry: bool) -> String {
         if let Some(problem) = &self.found.problem {
             return problem.clone();
         }
@@ -53,7 +53,12 @@ impl MarginPoint {
             return "all that were tried return".to_owned();
         }
         if self.safe == Some(0.0) {
-            return "the uniform motion is unstable".to_owned();
+            let dry_or_not = if dry {
+                "small motions grow in spite of dry friction"
+            } else {
+                "the uniform motion is unstable"
+            };
+            return dry_or_not.to_owned();
         }
         let ends: Vec<&str> = edges.into_iter().flatten().map(|edge| edge.ending()).collect();
         let mut distinct = ends.clone();
@@ -186,6 +191,14 @@ impl MarginResult {
     }
 }
 
+impl MarginResult {
+    /// Whether dry friction acts about the king pin at a point.
+    fn is_dry(&self, point: &MarginPoint) -> bool {
+        let varies = self.interval.key() == Key::MF;
+        if varies { point.value > 0.0 } else { self.wheel.get(Key::MF) > 0.0 }
+    }
+}
+
 impl Report for MarginResult {
     fn schema(&self) -> Schema {
         Schema::first("kingpin.margin")
@@ -214,7 +227,7 @@ impl Report for MarginResult {
                 safe(point.found.negative),
                 point.unstable_amplitude.into(),
                 point.ratio.into(),
-                point.remark().into(),
+                point.remark(self.is_dry(point)).into(),
             ]);
         }
         table.write(out)?;
@@ -249,7 +262,7 @@ impl Report for MarginResult {
             .optional_numbers("unstable_amplitude", points().map(|point| point.unstable_amplitude))
             .unit("rad")
             .optional_numbers("ratio", points().map(|point| point.ratio))
-            .texts("beyond", points().map(|point| Some(point.remark())))
+            .texts("beyond", points().map(|point| Some(point.remark(self.is_dry(point)))))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -2,8 +2,8 @@
 
 use crate::error::Error;
 use arclength_analysis::Control;
-use kingpin::Wheel;
 use kingpin::branches::{Along, CycleOptions};
+use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Cycles are followed to this part of the smallest value, so that it lies inside.
@@ -34,6 +34,11 @@ pub(super) fn unstable_cycles(
     control.at("unstable limit cycles");
     let mut found = UnstableCycles { amplitudes: vec![None; values.len()], remarks: Vec::new() };
     let key = along.key();
+    let dry = "limit cycles are those without dry friction about the king pin, whatever M_f";
+    if key == Key::MF {
+        found.remarks.push(format!("no unstable limit cycle: {dry}"));
+        return Ok(found);
+    }
     let (start, end) = along.ends();
     // A search begins at the wheel's own value where that is inside.
     let wheel = wheel.with(key, 0.5 * (start + end))?;
@@ -91,6 +96,9 @@ pub(super) fn unstable_cycles(
     }
     if found.amplitudes.iter().all(Option::is_some) {
         found.remarks.clear();
+    }
+    if wheel.get(Key::MF) > 0.0 {
+        found.remarks.push(dry.to_owned());
     }
     Ok(found)
 }

@@ -1,11 +1,13 @@
 //! A time history from the uniform motion with some states perturbed.
 
+mod phase;
 mod request;
 mod result;
 mod rolling_result;
 mod sliding_result;
 
+pub use phase::Phase;
 pub use request::{SimulateAnalysis, SimulateRequest};
 pub use result::HistoryResult;
 pub use rolling_result::RollingHistory;
-pub use sliding_result::{Phase, SlidingHistory};
+pub use sliding_result::SlidingHistory;

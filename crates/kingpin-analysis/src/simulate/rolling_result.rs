@@ -1,5 +1,6 @@
 //! Time histories of a wheel that rolls as a result.
 
+use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
 use kingpin::rolling::STATE_NAMES;
@@ -38,12 +39,26 @@ pub struct RollingHistory {
     pub friction_force: Vec<f64>,
     /// Force of the ground on the wheel in N.
     pub normal_force: Vec<f64>,
+    /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub king_pin: Option<Vec<&'static str>>,
+    /// Moment of dry friction about the king pin in N m, at every time, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_moment: Option<Vec<f64>>,
+    /// Work in J that it took, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_work: Option<f64>,
+    /// The stretches of time in which the caster only swings or only sticks, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub phases: Vec<Phase>,
 }
 
 impl RollingHistory {
     /// The result of a motion.
     pub(super) fn new(wheel: Wheel, history: &TimeHistory) -> Self {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
+        let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
+        let dry = wheel.get(Key::MF) > 0.0;
         Self {
             wheel,
             rolling_lost_at: history.rolling_lost_at,
@@ -55,6 +70,10 @@ impl RollingHistory {
             yaw_rate: state(4),
             friction_force: history.friction_force(),
             normal_force: history.normal_force(),
+            king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
+            friction_moment: dry.then(|| history.friction_moment.clone()),
+            dry_friction_work: dry.then_some(history.dry_friction_work),
+            phases: Phase::list(&wheel, &history.phases),
         }
     }
 
@@ -112,20 +131,22 @@ impl Report for RollingHistory {
                 writeln!(out, "rolling needs more than the static friction first at {} s", readable(time))
             }
             None => writeln!(out, "the static friction suffices for rolling throughout"),
-        }
+        }?;
+        Phase::tell_swings(&self.phases, self.psi.last().copied(), self.dry_friction_work, out)
     }
 
     fn columns(&self) -> Columns {
         let times = Columns::new().numbers("t", self.t.iter().copied()).unit("s");
         let states = self.states().into_iter();
-        states
+        let columns = states
             .fold(times, |columns, (name, values, unit, _)| {
                 columns.numbers(name, values.iter().copied()).unit(unit)
             })
             .numbers("friction_force", self.friction_force.iter().copied())
             .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
-            .unit("N")
+            .unit("N");
+        phase::columns(columns, self.friction_moment.as_deref(), self.king_pin.as_deref())
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -1,5 +1,6 @@
 //! Time histories of a wheel that rolls or slides as a result.
 
+use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
 use kingpin::sliding::{Contact, SLIDING_STATE_NAMES};
@@ -13,17 +14,6 @@ use std::io::{self, Write};
 
 /// Units of the states.
 const UNITS: [&str; 7] = ["m", "m", "rad", "m/s", "m/s", "rad/s", "m/s"];
-
-/// A stretch of time in which the wheel only rolls or only slides.
-#[derive(Debug, Serialize)]
-pub struct Phase {
-    /// `rolling` or `sliding`.
-    pub contact: &'static str,
-    /// Its start in s.
-    pub start: f64,
-    /// Its end in s.
-    pub end: f64,
-}
 
 /// A list of the times, one per state, of the slip speed, of the forces, and of what the wheel does.
 #[derive(Debug, Serialize)]
@@ -59,17 +49,19 @@ pub struct SlidingHistory {
     pub normal_force: Vec<f64>,
     /// What the wheel does at every time, `rolling` or `sliding`.
     pub phase: Vec<&'static str>,
-    /// The stretches of time in which it only rolls or only slides.
+    /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub king_pin: Option<Vec<&'static str>>,
+    /// Moment of dry friction about the king pin in N m, at every time, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_moment: Option<Vec<f64>>,
+    /// Work in J that it took, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_work: Option<f64>,
+    /// The stretches of time in which it does the same.
     pub phases: Vec<Phase>,
     /// Part of the time in which it slides.
     pub sliding_fraction: f64,
-}
-
-fn word(contact: Contact) -> &'static str {
-    match contact {
-        Contact::Rolling => "rolling",
-        Contact::Sliding => "sliding",
-    }
 }
 
 impl SlidingHistory {
@@ -78,7 +70,9 @@ impl SlidingHistory {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let friction_force: Vec<f64> =
             history.friction.iter().map(|[along, across]| along.hypot(*across)).collect();
-        let phase = |&time: &f64| history.contact_at(time).map_or("rolling", word);
+        let contact = |&time: &f64| history.contact_at(time).map_or("rolling", phase::contact);
+        let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
+        let dry = wheel.get(Key::MF) > 0.0;
         Self {
             wheel,
             u: state(0),
@@ -91,12 +85,11 @@ impl SlidingHistory {
             slip: history.slip(),
             normal_force: vec![history.normal_force; friction_force.len()],
             friction_force,
-            phase: history.times.iter().map(phase).collect(),
-            phases: history
-                .phases
-                .iter()
-                .map(|phase| Phase { contact: word(phase.contact), start: phase.start, end: phase.end })
-                .collect(),
+            phase: history.times.iter().map(contact).collect(),
+            king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
+            friction_moment: dry.then_some(history.friction_moment.clone()),
+            dry_friction_work: dry.then_some(history.dry_friction_work),
+            phases: Phase::list(&wheel, &history.phases),
             sliding_fraction: history.sliding_fraction(),
             t: history.times,
         }
@@ -132,7 +125,7 @@ impl Report for SlidingHistory {
         let more = [("slip", &self.slip, "m/s"), ("friction_force", &self.friction_force, "N")];
         summary(self.states().into_iter().chain(more)).write(out)?;
         let slides: Vec<&Phase> =
-            self.phases.iter().filter(|phase| phase.contact == word(Contact::Sliding)).collect();
+            self.phases.iter().filter(|phase| phase.contact == phase::contact(Contact::Sliding)).collect();
         writeln!(out)?;
         match slides.first() {
             Some(first) => writeln!(
@@ -143,13 +136,14 @@ impl Report for SlidingHistory {
                 100.0 * self.sliding_fraction
             ),
             None => writeln!(out, "it rolls throughout"),
-        }
+        }?;
+        Phase::tell_swings(&self.phases, self.psi.last().copied(), self.dry_friction_work, out)
     }
 
     fn columns(&self) -> Columns {
         let times = Columns::new().numbers("t", self.t.iter().copied()).unit("s");
         let states = self.states().into_iter();
-        states
+        let columns = states
             .fold(times, |columns, (name, values, unit)| {
                 columns.numbers(name, values.iter().copied()).unit(unit)
             })
@@ -159,7 +153,8 @@ impl Report for SlidingHistory {
             .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
             .unit("N")
-            .texts("phase", self.phase.iter().map(|phase| Some((*phase).to_owned())))
+            .texts("phase", self.phase.iter().map(|phase| Some((*phase).to_owned())));
+        phase::columns(columns, self.friction_moment.as_deref(), self.king_pin.as_deref())
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

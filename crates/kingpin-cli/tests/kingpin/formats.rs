@@ -31,7 +31,7 @@ fn steady_has_the_fields_that_scripts_rely_on() {
     assert_eq!(result["schema"], serde_json::json!({"name": "kingpin.steady", "version": 1}));
     assert_eq!(result["parameters"]["r"], "inf");
     assert_eq!(result["parameters"]["v"], 5.0);
-    assert_eq!(result["parameters"].as_object().unwrap().len(), 20);
+    assert_eq!(result["parameters"].as_object().unwrap().len(), 21);
     for key in ["u", "q", "psi", "V", "Omega", "residual", "friction_force", "normal_force"] {
         assert!(result[key].is_f64(), "{key}");
     }

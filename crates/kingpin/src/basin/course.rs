@@ -4,7 +4,6 @@ use super::fate::Target;
 use crate::rolling::RollingWheel;
 use crate::shimmy::passage::passages;
 use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
-use crate::sliding::model::Equations;
 use crate::sliding::{HybridState, SlidingWheel};
 use crate::wheel::Wheel;
 use arclength::VectorField;
@@ -26,24 +25,24 @@ pub(super) struct Node {
 /// Where a motion is, and how it goes on.
 #[derive(Clone, Debug)]
 pub(super) enum Course<'a> {
-    Rolling { field: RollingWheel, state: [f64; 5] },
-    Sliding { wheel: &'a SlidingWheel, equations: Equations<f64>, state: HybridState },
+    Rolling { field: Box<RollingWheel>, state: [f64; 5] },
+    Hybrid { wheel: &'a SlidingWheel, state: HybridState },
 }
 
 impl<'a> Course<'a> {
     pub(super) fn rolling(wheel: &Wheel, state: [f64; 5]) -> Result<Self, SimulationError> {
-        Ok(Self::Rolling { field: wheel.rolling(&[])?, state })
+        Ok(Self::Rolling { field: Box::new(wheel.rolling(&[])?), state })
     }
 
-    pub(super) fn sliding(wheel: &'a SlidingWheel, state: HybridState) -> Result<Self, SimulationError> {
-        Ok(Self::Sliding { wheel, equations: Equations::new(wheel.wheel())?, state })
+    pub(super) fn hybrid(wheel: &'a SlidingWheel, state: HybridState) -> Self {
+        Self::Hybrid { wheel, state }
     }
 
     /// The state `(u, q, psi, V, Omega)`.
     pub(super) fn state(&self) -> [f64; 5] {
         match self {
             Self::Rolling { state, .. } => *state,
-            Self::Sliding { state, .. } => reduced(&state.public()),
+            Self::Hybrid { state, .. } => reduced(&state.public()),
         }
     }
 
@@ -60,7 +59,7 @@ impl<'a> Course<'a> {
         nodes.clear();
         match self {
             Self::Rolling { field, state } => {
-                let field = &*field;
+                let field = &**field;
                 let integrator = Integrator::with_tolerance(SIMULATION_TOLERANCE);
                 let solution = integrator.under(control).sample(autonomous(field, &[]), &*state, &times)?;
                 nodes.extend(solution.samples().map(|(time, state)| {
@@ -71,13 +70,14 @@ impl<'a> Course<'a> {
                 }));
                 *state = std::array::from_fn(|i| solution.state[i]);
             }
-            Self::Sliding { wheel, equations, state } => {
+            Self::Hybrid { wheel, state } => {
                 let (passages, end) = passages(wheel, *state, duration, &times[1..count], control)?;
                 for passage in &passages {
+                    let equations = wheel.equations_in(passage.mode);
                     nodes.extend(passage.nodes().map(|(time, inside)| {
                         let mut rate = [0.0; 7];
-                        passage.regime.field(equations, inside, &mut rate);
-                        let present = HybridState { contact: passage.regime.contact(), state: *inside };
+                        passage.mode.regime.field(&equations, inside, &mut rate);
+                        let present = HybridState { contact: passage.mode.regime.contact(), state: *inside };
                         Node {
                             time,
                             angle: [inside[2], rate[2], -rate[5]],
@@ -102,7 +102,7 @@ impl<'a> Course<'a> {
                 let centre = [u, q, turned(state[2]), speed, yaw];
                 state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
             }
-            Self::Sliding { state, .. } => {
+            Self::Hybrid { state, .. } => {
                 let centre = [u, q, turned(state.state[2]), speed, 0.0, yaw, 0.0];
                 state.state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
             }

@@ -1,5 +1,6 @@
 //! What becomes of a motion.
 
+use super::ContactModel;
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
@@ -19,6 +20,8 @@ pub(super) const PATIENCE: f64 = 10.0;
 const SHORTEST_DURATION: f64 = 30.0;
 const LONGEST_DURATION: f64 = 300.0;
 const DECAY_TIMES: f64 = 12.0;
+/// Part of an angle from the theory of small motions that holds for motions that are near the uniform motion.
+const LINEAR: f64 = 0.99;
 /// Eigenvalues with a real part below this, relative to the natural frequency, count as neutral.
 const NEUTRAL: f64 = 1e-9;
 
@@ -97,14 +100,20 @@ impl ClassificationSettings {
 pub(super) struct Target {
     state: [f64; 5],
     /// Turns differences of the states into speeds in m/s. In rectilinear towing `u` and `V` do not count: near straight
-    /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy.
+    /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy. On a circle, neither
+    /// do they nor `q` where dry friction about the king pin may hold the caster, behind which all of them ring.
     weights: [f64; 5],
+    /// With dry friction the wheel rests with any lateral deflection up to this many m from that of the uniform motion.
+    resting_deflection: f64,
     /// The larger of the towing speed and the caster length times the natural frequency of the springs, in m/s.
     reference_speed: f64,
     /// Natural period of the wheel on its springs in s.
     pub natural_period: f64,
     /// Whether motions return at all: near an unstable uniform motion they only linger.
     attracts: bool,
+    /// Where dry friction alone makes small motions die out, the largest angle in rad at which the caster must come to stick: to be
+    /// near means nothing then, since motions that are large beside the friction grow.
+    sticks_up_to: Option<f64>,
 }
 
 /// Growth rate of the disturbances on which the fate depends: in rectilinear towing those of the lateral motion.
@@ -117,21 +126,55 @@ fn decisive_growth_rate(wheel: &Wheel) -> Result<f64, SimulationError> {
     Ok(wheel.uniform_motion()?.growth_rate())
 }
 
+/// Whether small motions that grow without dry friction about the king pin die out with it, and the largest angle from which they do
+/// once the caster sticks.
+fn returning_angle(wheel: &Wheel, model: ContactModel) -> Result<(bool, Option<f64>), SimulationError> {
+    // On a circle there is no closed form.
+    let Some(factor) = wheel.swing_factor() else {
+        wheel.check_without_dry_friction(
+            "whether small motions die out on a circle, where they grow without it,",
+            "tow it straight (r = inf), lower v, or look at motions with `simulate`",
+        )?;
+        return Ok((false, None));
+    };
+    let ground = wheel.get(Key::MuS) * wheel.normal_force() * wheel.get(Key::L);
+    if model == ContactModel::Sliding && wheel.get(Key::MF) > ground {
+        // The wheel slides before the caster breaks away.
+        return Ok((true, Some(f64::INFINITY)));
+    }
+    // However slowly they grow at a larger factor: no simulation would tell.
+    let angle = wheel.largest_returning_angle().map(|angle| LINEAR * angle);
+    Ok((factor.abs() < 1.0, angle))
+}
+
 impl Target {
-    pub(super) fn new(wheel: &Wheel) -> Result<Self, SimulationError> {
+    pub(super) fn new(wheel: &Wheel, model: ContactModel) -> Result<Self, SimulationError> {
         let body = wheel.body();
         let frequency = (wheel.get(Key::KQ) * body.inverse_rolling_mass).sqrt();
         let length = body.caster_length;
         let reference_speed = wheel.get(Key::V).max(frequency * length);
         let straight = wheel.get(Key::Curvature) == 0.0;
-        let longitudinal = if straight { 0.0 } else { 1.0 };
+        let dry = wheel.get(Key::MF) > 0.0;
+        let longitudinal = if straight || dry { 0.0 } else { 1.0 };
+        let lateral = if dry && !straight { 0.0 } else { 1.0 };
+        let [low, high] = wheel.resting_deflections()?.unwrap_or_default();
+        let is_stable = decisive_growth_rate(wheel)? <= NEUTRAL * frequency;
+        let (attracts, sticks_up_to) =
+            if is_stable || !dry { (is_stable, None) } else { returning_angle(wheel, model)? };
         Ok(Self {
             state: wheel.uniform_motion()?.state(),
-            attracts: decisive_growth_rate(wheel)? <= NEUTRAL * frequency,
-            weights: [longitudinal * frequency, frequency, reference_speed, longitudinal, length],
+            attracts,
+            sticks_up_to,
+            weights: [longitudinal * frequency, lateral * frequency, reference_speed, longitudinal, length],
+            resting_deflection: 0.5 * (high - low),
             reference_speed,
             natural_period: TAU / frequency,
         })
+    }
+
+    /// Whether motions return at all.
+    pub(super) fn attracts(&self) -> bool {
+        self.attracts
     }
 
     /// The uniform motion.
@@ -139,16 +182,30 @@ impl Target {
         &self.state
     }
 
+    /// Whether the caster sticks, `Omega = omega` to the last bit, at an angle up to a largest one.
+    fn sticks(&self, state: &[f64; 5], largest: f64) -> bool {
+        state[4] == self.state[4] && within_a_turn(state[2] - self.state[2]).abs() <= largest
+    }
+
     /// Distance from the uniform motion in units of the reference speed; the caster angle counts modulo a turn.
     fn distance(&self, state: &[f64; 5]) -> f64 {
         let mut sum = 0.0;
         for (i, (&weight, &target)) in self.weights.iter().zip(&self.state).enumerate() {
             let difference = state[i] - target;
-            let difference = if i == 2 { difference - TAU * (difference / TAU).round() } else { difference };
+            let difference = match i {
+                1 => difference - difference.clamp(-self.resting_deflection, self.resting_deflection),
+                2 => within_a_turn(difference),
+                _ => difference,
+            };
             sum += (weight * difference).powi(2);
         }
         sum.sqrt() / self.reference_speed
     }
+}
+
+/// An angle less whole turns.
+fn within_a_turn(angle: f64) -> f64 {
+    angle - TAU * (angle / TAU).round()
 }
 
 /// Watches one motion and tells when it has returned, escaped, or turns right round at the end.
@@ -191,7 +248,11 @@ impl Watch {
         }
         if distance < NEAR && self.target.attracts {
             let since = *self.near_since.get_or_insert(time);
-            if time - since >= PERIODS_NEAR * self.target.natural_period {
+            let returns = match self.target.sticks_up_to {
+                None => time - since >= PERIODS_NEAR * self.target.natural_period,
+                Some(largest) => self.target.sticks(state, largest),
+            };
+            if returns {
                 return self.decide(Fate::UniformMotion);
             }
         } else {

@@ -243,7 +243,13 @@ impl SafeKick {
             Ok::<_, SimulationError>((returns, fails, beyond))
         };
         let [scanned, narrowed] = PARTS;
-        let magnitudes = (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
+        let mut magnitudes: Vec<f64> =
+            (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
+        let undisturbed = disturbance.apply(wheel, model, 0.0)?.0;
+        if !Destinations::new(&undisturbed, model, settings)?.attracts() {
+            // Nothing returns; the smallest one tells where motions end.
+            magnitudes.truncate(2);
+        }
         let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else { return Ok(None) };
         let (mut returns, mut fails, mut beyond) = narrow(first, &control.part(scanned..narrowed))?;
         let beside = control.part(narrowed..1.0);

@@ -7,6 +7,8 @@
 //! resumed; [`SafeKick`] finds the smallest disturbance from which the wheel does not return.
 
 mod course;
+#[cfg(test)]
+mod dry_friction_tests;
 mod fate;
 mod kick;
 mod lasting;
@@ -82,7 +84,8 @@ enum Follower {
     Ensemble(Ensemble),
     /// Rolling wheels that have no quadratic form.
     Rolling,
-    Sliding(Box<SlidingWheel>),
+    /// Wheels that may slide, or whose caster swings and sticks.
+    Hybrid(Box<SlidingWheel>),
 }
 
 impl Destinations {
@@ -107,13 +110,16 @@ impl Destinations {
         }
         let isotropic = wheel.get(Key::KU) == wheel.get(Key::KQ) && wheel.get(Key::CU) == wheel.get(Key::CQ);
         let follower = match model {
-            ContactModel::Sliding => Follower::Sliding(Box::new(wheel.sliding()?)),
+            ContactModel::Sliding => Follower::Hybrid(Box::new(wheel.sliding()?)),
+            ContactModel::Rolling if wheel.get(Key::MF) > 0.0 => {
+                Follower::Hybrid(Box::new(wheel.always_rolling()?.tolerance(CLASSIFICATION_TOLERANCE)))
+            }
             ContactModel::Rolling if isotropic => {
                 Follower::Ensemble(Ensemble::new(wheel)?.tolerance(CLASSIFICATION_TOLERANCE))
             }
             ContactModel::Rolling => Follower::Rolling,
         };
-        Ok(Self { wheel: *wheel, model, target: Target::new(wheel)?, settings, follower })
+        Ok(Self { wheel: *wheel, model, target: Target::new(wheel, model)?, settings, follower })
     }
 
     /// The wheel.
@@ -124,6 +130,11 @@ impl Destinations {
     /// How motions are classified.
     pub fn settings(&self) -> ClassificationSettings {
         self.settings
+    }
+
+    /// Whether small motions die out: without dry friction about the king pin by the eigenvalues, with it by the factor of a swing.
+    pub fn attracts(&self) -> bool {
+        self.target.attracts()
     }
 
     /// Whether the wheel may slide.
@@ -143,9 +154,9 @@ impl Destinations {
                 let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?, control);
                 initial.par_iter().map(fate).collect()
             }
-            Follower::Sliding(sliding) => {
+            Follower::Hybrid(sliding) => {
                 let fate = |state: &[f64; 5]| {
-                    self.of_course(Course::sliding(sliding, sliding.rolling_state(state))?, control)
+                    self.of_course(Course::hybrid(sliding, sliding.rolling_state(state)), control)
                 };
                 initial.par_iter().map(fate).collect()
             }
@@ -162,8 +173,8 @@ impl Destinations {
         control: &Control<'_>,
     ) -> Result<Fate, SimulationError> {
         match &self.follower {
-            Follower::Sliding(sliding) => {
-                self.of_course(Course::sliding(sliding, sliding.slipping_state(initial))?, control)
+            Follower::Hybrid(sliding) => {
+                self.of_course(Course::hybrid(sliding, sliding.slipping_state(initial)), control)
             }
             _ => {
                 let [u, q, psi, speed, _, yaw, _] = *initial;

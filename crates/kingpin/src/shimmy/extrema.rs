@@ -19,7 +19,7 @@ pub(super) fn caster_angles(equations: &Equations<f64>, passages: &[Passage]) ->
     for passage in passages {
         let node = |(time, state): (f64, &SlipState)| {
             let mut rate = [0.0; STATES];
-            passage.regime.field(equations, state, &mut rate);
+            passage.mode.regime.field(equations, state, &mut rate);
             (time, [state[PSI], rate[PSI], -rate[5]])
         };
         let mut before: Option<Node> = None;

@@ -25,12 +25,12 @@ pub use search::SlidingMotionSearch;
 
 use crate::simulation::SimulationError;
 use crate::sliding::model::Equations;
-use crate::sliding::{Contact, Phase, SlidingHistory};
+use crate::sliding::{Contact, KingPin, Phase, Regime, SlidingHistory};
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use arclength::linear::eigenvalues::eigenvalues;
 use num_complex::Complex64;
-use passage::{Passage, Regime};
+use passage::Passage;
 use return_map::{Return, ReturnMap, Start, newton_update};
 
 /// Relative tolerance of the integration of periodic motions.
@@ -158,7 +158,7 @@ fn multipliers(map: &ReturnMap, image: &Return) -> Result<(Vec<Complex64>, f64),
     }
     let mut list = eigenvalues(&monodromy, d).map_err(|error| Refusal::Integration(error.to_string()))?;
     list.sort_by(|a, b| b.norm().total_cmp(&a.norm()).then(b.im.total_cmp(&a.im)));
-    if image.passages.iter().any(|passage| passage.regime != Regime::Sliding) {
+    if image.passages.iter().any(|passage| passage.mode.regime != Regime::Sliding) {
         // Slip vanishes somewhere: in the states of sliding two multipliers are zero.
         list.truncate(5);
     }
@@ -202,14 +202,19 @@ fn phases(passages: &[Passage]) -> Vec<Phase> {
     let mut list: Vec<Phase> = Vec::new();
     let mut before = None;
     for passage in passages {
-        let phase = Phase { contact: passage.regime.contact(), start: passage.start, end: passage.end };
+        let phase = Phase {
+            contact: passage.mode.regime.contact(),
+            king_pin: KingPin::Swinging,
+            start: passage.start,
+            end: passage.end,
+        };
         match list.last_mut() {
-            Some(last) if before == Some(Regime::Onset) && passage.regime == Regime::Sliding => {
+            Some(last) if before == Some(Regime::Onset) && passage.mode.regime == Regime::Sliding => {
                 last.end = phase.end;
             }
             _ => list.push(phase),
         }
-        before = Some(passage.regime);
+        before = Some(passage.mode.regime);
     }
     list
 }
@@ -218,9 +223,9 @@ fn phases(passages: &[Passage]) -> Vec<Phase> {
 /// passage of a period are one.
 fn middle_of_longest_passage(passages: &[Passage], period: f64) -> f64 {
     let [first, .., last] = passages else { return 0.0 };
-    let is_split = first.regime == last.regime;
+    let is_split = first.mode.regime == last.mode.regime;
     let lead = if is_split { last.duration() } else { 0.0 };
-    let candidates = passages.iter().enumerate().filter(|(_, passage)| passage.regime != Regime::Onset);
+    let candidates = passages.iter().enumerate().filter(|(_, passage)| passage.mode.regime != Regime::Onset);
     let spans = candidates.map(|(index, passage)| match index {
         0 => (passage.start - lead, passage.end),
         _ if index + 1 == passages.len() && is_split => (0.0, 0.0),

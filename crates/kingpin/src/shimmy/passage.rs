@@ -2,44 +2,14 @@
 
 use super::error::Grazing;
 use crate::simulation::SimulationError;
-use crate::sliding::model::{Equations, SlipState};
-use crate::sliding::{Contact, HybridState, SlidingWheel, as_slip_state};
-use arclength::Scalar;
+use crate::sliding::model::SlipState;
+use crate::sliding::{HybridState, Mode, Piece, Regime, SlidingWheel, as_slip_state};
 use arclength::control::Control;
-
-/// Which equations hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Regime {
-    /// No slip.
-    Rolling,
-    /// Slip grows from zero along its limit direction.
-    Onset,
-    /// Slip.
-    Sliding,
-}
-
-impl Regime {
-    /// Derivative of the seven states.
-    #[inline]
-    pub(crate) fn field<T: Scalar>(self, equations: &Equations<T>, state: &[T], derivative: &mut [T]) {
-        let friction = match self {
-            Self::Rolling => equations.holding_force(state),
-            Self::Onset => equations.incipient_force(state),
-            Self::Sliding => equations.sliding_force(state),
-        };
-        equations.derivative(state, friction, derivative);
-    }
-
-    /// What the wheel is said to do.
-    pub(crate) fn contact(self) -> Contact {
-        if self == Self::Rolling { Contact::Rolling } else { Contact::Sliding }
-    }
-}
 
 /// A stretch of the motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Passage {
-    pub regime: Regime,
+    pub mode: Mode,
     pub start: f64,
     pub end: f64,
     pub initial: SlipState,
@@ -81,30 +51,24 @@ pub(crate) fn passages(
 ) -> Result<(Vec<Passage>, HybridState), SimulationError> {
     let mut list: Vec<Passage> = Vec::new();
     let mut present = initial.state;
-    let mut slides = initial.contact == Contact::Sliding;
-    let end = wheel.follow(initial, duration, times, control, |phase, resumes, solution| {
-        let regime = match phase.contact {
-            Contact::Rolling => Regime::Rolling,
-            Contact::Sliding if resumes || slides => Regime::Sliding,
-            Contact::Sliding => Regime::Onset,
-        };
-        slides = false;
-        let last = as_slip_state(&solution.state);
-        list.push(Passage {
-            regime,
-            start: phase.start,
-            end: phase.end,
-            initial: present,
-            last,
-            vanishing: (regime == Regime::Sliding)
-                .then(|| solution.crossings.first())
-                .flatten()
-                .map(|crossing| (crossing.time, as_slip_state(&crossing.state))),
-            samples: solution.samples().map(|(time, state)| (time, as_slip_state(state))).collect(),
-        });
-        present = last;
-        true
-    })?;
+    let end =
+        wheel.follow(initial, duration, times, control, |Piece { phase, mode, solution, .. }| {
+            let last = as_slip_state(&solution.state);
+            list.push(Passage {
+                mode,
+                start: phase.start,
+                end: phase.end,
+                initial: present,
+                last,
+                vanishing: (mode.regime == Regime::Sliding)
+                    .then(|| solution.crossings.first())
+                    .flatten()
+                    .map(|crossing| (crossing.time, as_slip_state(&crossing.state))),
+                samples: solution.samples().map(|(time, state)| (time, as_slip_state(state))).collect(),
+            });
+            present = last;
+            true
+        })?;
     Ok((list, end))
 }
 
@@ -112,7 +76,7 @@ pub(crate) fn passages(
 pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Grazing> {
     /// Times that differ by more than this part of the whole belong to different events.
     const SAME_EVENT: f64 = 0.02;
-    let regimes = |list: &[Passage]| list.iter().map(|passage| passage.regime).collect::<Vec<_>>();
+    let regimes = |list: &[Passage]| list.iter().map(|passage| passage.mode.regime).collect::<Vec<_>>();
     if regimes(expected) == regimes(found) {
         return None;
     }
@@ -121,8 +85,8 @@ pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Graz
     };
     let tolerance = SAME_EVENT * last_expected.end.max(last_found.end);
     for (one, other) in expected.iter().zip(found) {
-        let rolls = one.regime == Regime::Rolling;
-        if one.regime != other.regime {
+        let rolls = one.mode.regime == Regime::Rolling;
+        if one.mode.regime != other.mode.regime {
             return Some(if rolls { Grazing::HoldsNoLonger } else { Grazing::HoldsAgain });
         }
         if other.end < one.end - tolerance {
@@ -133,7 +97,7 @@ pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Graz
         }
     }
     // Same up to the end: a phase begins or is lost at the very end.
-    let rolls = last_expected.regime == Regime::Rolling;
+    let rolls = last_expected.mode.regime == Regime::Rolling;
     Some(match (found.len() > expected.len(), rolls) {
         (true, true) => Grazing::StaticLimitReached,
         (true, false) => Grazing::SlipVanishes,

@@ -7,7 +7,7 @@ use super::{MOTION_TOLERANCE, PeriodicSliding, middle_of_longest_passage};
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::sliding::model::{S1, SlipState};
-use crate::sliding::{HybridState, SlidingWheel, as_slip_state};
+use crate::sliding::{HybridState, Piece, SlidingWheel, as_slip_state};
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use std::f64::consts::{PI, TAU};
@@ -90,10 +90,15 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<PeriodicSliding, ShimmyError> {
         search.check()?;
+        self.check_without_dry_friction(
+            "periodic motion with sliding phases",
+            "set M_f = 0, or see with `simulate` on what the motion settles",
+        )
+        .map_err(SimulationError::from)?;
         let (settling, control) = (control.part(0.0..PART_OF_SETTLING), &control.quiet());
         let sliding = self.sliding()?.tolerance(SETTLING_TOLERANCE);
         let initial = sliding.rolling_state(initial);
-        let settled = sliding.follow(initial, search.settling_time, &[], &settling, |_, _, _| true)?;
+        let settled = sliding.follow(initial, search.settling_time, &[], &settling, |_| true)?;
         let recurrence = self.recurrence(&sliding, settled, search, control)?;
         let Recurrence { start, scales, turns } = recurrence;
         let map = ReturnMap::new(self, &start, scales, turns, search.tolerance)?;
@@ -135,7 +140,7 @@ impl Wheel {
         let count = (window / natural_period * SAMPLES_PER_NATURAL_PERIOD).ceil();
         let times: Vec<f64> = (0..=count as usize).map(|index| window * (index as f64 / count)).collect();
         let mut samples: Vec<(f64, HybridState)> = Vec::with_capacity(times.len());
-        sliding.follow(settled, window, &times, control, |phase, _, solution| {
+        sliding.follow(settled, window, &times, control, |Piece { phase, solution, .. }| {
             samples.extend(solution.samples().map(|(time, state)| {
                 (time, HybridState { contact: phase.contact, state: as_slip_state(state) })
             }));

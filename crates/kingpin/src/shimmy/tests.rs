@@ -57,7 +57,7 @@ fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) 
     let (list, _) = motion.map.follow(&motion.start, &[], &Control::none()).unwrap();
     let inside = list[1..list.len() - 1]
         .iter()
-        .filter(|passage| passage.regime != Regime::Onset && passage.regime.contact() == contact)
+        .filter(|passage| passage.mode.regime != Regime::Onset && passage.mode.regime.contact() == contact)
         .max_by(|a, b| a.duration().total_cmp(&b.duration()))
         .unwrap();
     let middle = 0.5 * (inside.start + inside.end);
@@ -251,7 +251,7 @@ fn grazing_ends_the_branch_where_simulation_changes() {
     let over_a_period = |v: f64| {
         let sliding = last.wheel.with(Key::V, v).unwrap().sliding().unwrap();
         let list = passages(&sliding, last.start.state, last.period, &[], &Control::none()).unwrap().0;
-        list.iter().map(|passage| passage.regime).collect::<Vec<_>>()
+        list.iter().map(|passage| passage.mode.regime).collect::<Vec<_>>()
     };
     assert_eq!(over_a_period(value - 1e-4), over_a_period(value));
     assert_eq!(over_a_period(value + 1e-4).len(), over_a_period(value).len() + 3);
@@ -305,26 +305,26 @@ fn energy_is_balanced_along_every_passage() {
     assert!(list.len() > 6);
     for passage in &list {
         let count = 2000;
-        let initial = HybridState { contact: passage.regime.contact(), state: passage.initial };
+        let initial = HybridState { contact: passage.mode.regime.contact(), state: passage.initial };
         let times: Vec<f64> =
             (1..count).map(|i| passage.duration() * f64::from(i) / f64::from(count)).collect();
         let sliding = motion.wheel.sliding().unwrap().tolerance(1e-12);
         let mut inside: Vec<_> = Vec::new();
-        if passage.regime == Regime::Onset {
+        if passage.mode.regime == Regime::Onset {
             // It is part of the sliding phase, and too short to count.
             let change = equations.energy(&passage.last) - equations.energy(&passage.initial);
             assert!(change.abs() < 1e-3 * equations.energy(&passage.initial));
             continue;
         }
         sliding
-            .follow(initial, passage.duration(), &times, &Control::none(), |_, _, solution| {
-                inside.extend(solution.samples().map(|(_, state)| as_slip_state(state)));
+            .follow(initial, passage.duration(), &times, &Control::none(), |piece| {
+                inside.extend(piece.solution.samples().map(|(_, state)| as_slip_state(state)));
                 true
             })
             .unwrap();
         let end = passage.vanishing.map_or(passage.last, |(_, state)| state);
         let power = |state: &[f64; 7]| {
-            let friction = match passage.regime {
+            let friction = match passage.mode.regime {
                 Regime::Rolling => equations.holding_force(state),
                 _ => equations.sliding_force(state),
             };
@@ -340,7 +340,7 @@ fn energy_is_balanced_along_every_passage() {
         work *= passage.duration() / f64::from(count) / 3.0;
         let gained = equations.energy(&end) - equations.energy(&passage.initial);
         let turnover = equations.energy(&end).max(equations.energy(&passage.initial));
-        assert!((work - gained).abs() < 1e-6 * turnover, "{:?}: {work} {gained}", passage.regime);
+        assert!((work - gained).abs() < 1e-6 * turnover, "{:?}: {work} {gained}", passage.mode.regime);
     }
 }
 

@@ -14,8 +14,9 @@
 //! All derivatives, those of the events and of the limit direction included, come from dual numbers.
 
 use super::error::Refusal;
-use super::passage::{Passage, Regime};
+use super::passage::Passage;
 use crate::parameters::Key;
+use crate::sliding::Regime;
 use crate::sliding::model::{Equations, S1, S2, slip_squared};
 use crate::sliding::{ONSET_SLIP, VANISHING_SLIP};
 use crate::wheel::Wheel;
@@ -80,7 +81,7 @@ pub(super) fn carry(
         extended[..STATES].copy_from_slice(&passage.initial);
         extended[STATES..].as_chunks_mut().0.copy_from_slice(columns);
         let end = passage.vanishing.map_or(passage.end, |(time, _)| time);
-        let regime = passage.regime;
+        let regime = passage.mode.regime;
         let system = from_fn(EXTENDED, |_, extended: &[f64], derivative: &mut [f64]| {
             let state = varied_state(extended);
             let mut rate = [Varied::zero(); STATES];
@@ -139,18 +140,18 @@ fn jump(equations: &Equations<Varied>, before: &Passage, after: &Passage, state:
         regime.field(equations, state, &mut rate);
         rate.map(|component| component.value)
     };
-    let rate_before = rate_of(before.regime, &values);
+    let rate_before = rate_of(before.mode.regime, &values);
     // The event along the motion: the first direction is that of the flow, free of the parameter.
     let mut along = values;
     for (varied, rate) in along.iter_mut().zip(rate_before) {
         varied.derivatives[0] = rate;
     }
-    let event_rate = event(equations, before.regime, &along).derivatives[0];
-    let delay = event(equations, before.regime, state).derivatives.map(|change| -change / event_rate);
-    let rate_after = rate_of(after.regime, &after.initial.map(Varied::from));
+    let event_rate = event(equations, before.mode.regime, &along).derivatives[0];
+    let delay = event(equations, before.mode.regime, state).derivatives.map(|change| -change / event_rate);
+    let rate_after = rate_of(after.mode.regime, &after.initial.map(Varied::from));
     for i in 0..STATES {
         // No slip is left where the passage after begins without.
-        let kept = if (i == S1 || i == S2) && after.regime != Regime::Sliding { 0.0 } else { 1.0 };
+        let kept = if (i == S1 || i == S2) && after.mode.regime != Regime::Sliding { 0.0 } else { 1.0 };
         for (derivative, delay) in state[i].derivatives.iter_mut().zip(delay) {
             *derivative = kept * (*derivative + rate_before[i] * delay) - rate_after[i] * delay;
         }

@@ -3,8 +3,10 @@
 //! A motion starts from the uniform motion with some states perturbed, or from any state, and is sampled at
 //! equal intervals from the dense output of the integration, with the contact force at every sample. The
 //! first time at which the ground can no longer supply the friction force that rolling needs, `|T| = mu_s N`, is
-//! located as an event; the history goes on as if the wheel kept rolling.
+//! located as an event; the history goes on as if the wheel kept rolling. With dry friction about the king pin the caster swings
+//! and sticks by turns.
 
+mod dry_friction;
 mod error;
 #[cfg(test)]
 mod tests;
@@ -12,6 +14,7 @@ mod tests;
 pub use error::SimulationError;
 
 use crate::rolling::STATE_NAMES;
+use crate::sliding::{KingPin, Phase, phase_at};
 use crate::{ContactForce, Key, Wheel};
 use arclength::control::Control;
 use arclength::integration::{Event, Integrator, Statistics, autonomous};
@@ -33,6 +36,12 @@ pub struct TimeHistory {
     pub contact_forces: Vec<ContactForce>,
     /// First time at which rolling needs more than the static friction: 0 if it does so from the start.
     pub rolling_lost_at: Option<f64>,
+    /// Moment of dry friction about the king pin in N m, one for each time; empty without it.
+    pub friction_moment: Vec<f64>,
+    /// Work in J that it took: `M_f` times the angle through which the caster swung to and fro.
+    pub dry_friction_work: f64,
+    /// What the caster does, in order; empty without dry friction about the king pin.
+    pub phases: Vec<Phase>,
     /// Work done by the integration.
     pub statistics: Statistics,
 }
@@ -42,6 +51,11 @@ impl TimeHistory {
     pub fn state(&self, name: &str) -> Option<Vec<f64>> {
         let index = STATE_NAMES.iter().position(|&candidate| candidate == name)?;
         Some(self.states.iter().map(|state| state[index]).collect())
+    }
+
+    /// What the caster does at a time: where two phases meet, the later one. Nothing without dry friction about the king pin.
+    pub fn king_pin_at(&self, time: f64) -> Option<KingPin> {
+        phase_at(&self.phases, time).map(|phase| phase.king_pin)
     }
 
     /// Friction force `|T|` in N at each time.
@@ -133,6 +147,9 @@ impl Wheel {
         self.check_constraints(initial, &model.full_state(&free, &[]))?;
         let last = (samples - 1) as f64;
         let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
+        if self.get(Key::MF) > 0.0 {
+            return self.simulate_with_dry_friction(initial, &times, control);
+        }
         let full_state = |state: &[f64]| model.full_state(state, &[]);
         let reserve = |state: &[f64]| {
             let force = self.contact_force(&full_state(state));
@@ -156,6 +173,9 @@ impl Wheel {
             states,
             rolling_lost_at: if lost_at_once { Some(0.0) } else { first_loss },
             times: solution.times,
+            friction_moment: Vec::new(),
+            dry_friction_work: 0.0,
+            phases: Vec::new(),
             statistics: solution.statistics,
         })
     }

@@ -1,7 +1,9 @@
 //! Sampled motions of the wheel that may slide.
 
-use super::model::{S1, S2, SlipState};
-use super::{Contact, HybridState, Phase, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state};
+use super::model::{SlipState, slips};
+use super::{
+    Contact, HybridState, KingPin, Phase, Piece, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state, phase_at,
+};
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
 use arclength::control::Control;
@@ -15,6 +17,8 @@ pub struct SlidingHistory {
     pub states: Vec<[f64; 7]>,
     /// Friction force along and across the caster in N, one for each time.
     pub friction: Vec<[f64; 2]>,
+    /// Moment of dry friction about the king pin in N m, one for each time.
+    pub friction_moment: Vec<f64>,
     /// Power of the towing frame in W, one for each time.
     pub towing_power: Vec<f64>,
     /// Power that friction and dampers dissipate in W, one for each time.
@@ -23,6 +27,8 @@ pub struct SlidingHistory {
     pub normal_force: f64,
     /// Phases in order; neighbours of the same kind are those between which the slip passed through zero.
     pub phases: Vec<Phase>,
+    /// Work in J that dry friction about the king pin took: `M_f` times the angle through which the caster swung to and fro.
+    pub dry_friction_work: f64,
     /// Kinetic and spring energy at the end less that at the start, in J.
     pub energy_gained: f64,
 }
@@ -79,7 +85,12 @@ impl Wheel {
 impl SlidingHistory {
     /// What the wheel does at a time: where two phases meet, the later one.
     pub fn contact_at(&self, time: f64) -> Option<Contact> {
-        self.phases.iter().rev().find(|phase| phase.start <= time).map(|phase| phase.contact)
+        phase_at(&self.phases, time).map(|phase| phase.contact)
+    }
+
+    /// What the caster does at a time: where two phases meet, the later one.
+    pub fn king_pin_at(&self, time: f64) -> Option<KingPin> {
+        phase_at(&self.phases, time).map(|phase| phase.king_pin)
     }
 }
 
@@ -130,39 +141,46 @@ impl SlidingWheel {
         }
         let last = (samples - 1) as f64;
         let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
-        let equations = &self.equations;
         let mut history = SlidingHistory {
             times: Vec::with_capacity(samples),
             states: Vec::with_capacity(samples),
             friction: Vec::with_capacity(samples),
+            friction_moment: Vec::with_capacity(samples),
             towing_power: Vec::with_capacity(samples),
             dissipated_power: Vec::with_capacity(samples),
             normal_force: self.rolling.wheel().normal_force(),
             phases: Vec::new(),
+            dry_friction_work: 0.0,
             energy_gained: 0.0,
         };
-        let end = self.follow(initial, duration, &times, control, |phase, resumes, solution| {
+        let mut psi = initial.state[2];
+        let end = self.follow(initial, duration, &times, control, |piece| {
+            let &Piece { phase, mode, resumes, solution } = &piece;
+            let equations = self.equations_in(mode);
             for (time, state) in solution.samples() {
                 let state: SlipState = as_slip_state(state);
                 history.times.push(time);
                 history.states.push(HybridState { contact: phase.contact, state }.public());
                 let friction = match phase.contact {
-                    Contact::Sliding if state[S1] != 0.0 || state[S2] != 0.0 => {
-                        equations.sliding_force(&state)
-                    }
+                    Contact::Sliding if slips(&state) => equations.sliding_force(&state),
                     _ => equations.holding_force(&state),
                 };
                 let (towing, dissipated) = equations.power(&state, friction);
                 history.friction.push(friction);
+                history.friction_moment.push(equations.friction_moment(&state, friction));
                 history.towing_power.push(towing);
                 history.dissipated_power.push(dissipated);
             }
+            history.dry_friction_work += piece.dry_friction_work(psi);
+            psi = solution.state[2];
             match history.phases.last_mut() {
                 Some(before) if resumes => before.end = phase.end,
+                Some(_) if phase.end == phase.start => {}
                 _ => history.phases.push(phase),
             }
             true
         })?;
+        let equations = &self.equations;
         history.energy_gained = equations.energy(&end.state) - equations.energy(&initial.state);
         Ok(history)
     }

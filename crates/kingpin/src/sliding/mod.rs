@@ -3,7 +3,8 @@
 //! While it slides with the slip velocity `s = (V1 - W, V2)` the ground pulls with `T = -mu_d N s/|s|`; while it rolls, with
 //! whatever the constraint demands, up to `mu_s N`. Unless it is set, `mu_d` is 0.8 or `mu_s`, whichever is less; a larger `mu_d` than
 //! `mu_s` is refused. The motion is a sequence of [`Phase`]s whose ends are located as
-//! events; friction is not smoothed.
+//! events; friction is not smoothed. With dry friction about the king pin (`M_f`) the caster swings or sticks besides, in the same way:
+//! each mode of the one goes with each of the other.
 //!
 //! # How slip starts
 //!
@@ -33,21 +34,26 @@
 
 mod history;
 pub(crate) mod model;
+mod pieces;
+mod regime;
 mod smoothed;
+#[cfg(test)]
+mod swing_tests;
 #[cfg(test)]
 mod tests;
 
 pub use history::SlidingHistory;
+pub use regime::KingPin;
 pub use smoothed::SmoothedSlidingWheel;
 
+use crate::error::KingpinError;
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
-use arclength::control::Control;
-use arclength::integration::{
-    Crossing, Direction, Event, Integrator, Solution, Stepper, autonomous, from_fn,
-};
-use model::{Equations, S1, S2, SlipState, slip_squared};
+use arclength::integration::Integrator;
+use model::{Equations, S1, S2, SlipState, slips};
+pub(crate) use pieces::Piece;
+pub(crate) use regime::{Mode, Regime};
 
 /// Names of the states: as those of the rolling wheel, with `V1` and `V2` the velocity of the wheel centre along and across the
 /// caster in m/s and `W` the speed of the rim in m/s.
@@ -61,6 +67,13 @@ pub const VANISHING_SLIP: f64 = 1e-9;
 
 /// Absolute tolerance of the slip velocity in m/s.
 const SLIP_RESOLUTION: f64 = 1e-4 * VANISHING_SLIP;
+
+/// Caster angle in rad below which a wheel whose small motions die out with dry friction about the king pin is at rest: further swings
+/// would be smaller and smaller, without end.
+pub const RESTING_ANGLE: f64 = 1e-9;
+
+/// Part of `M_f` by which rounding may exceed it at rest.
+const RESTING_EXCESS: f64 = 1e-9;
 
 /// Relative tolerance of the integration unless another is set.
 pub const SLIDING_TOLERANCE: f64 = 1e-10;
@@ -77,15 +90,23 @@ pub enum Contact {
     Sliding,
 }
 
-/// A stretch of time in which the wheel only rolls or only slides.
+/// A stretch of time in which the wheel only rolls or only slides, and the caster only swings or only sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// What it does.
+    /// What the wheel does.
     pub contact: Contact,
+    /// What the caster does; without dry friction about the king pin it swings.
+    pub king_pin: KingPin,
     /// Start in s.
     pub start: f64,
     /// End in s.
     pub end: f64,
+}
+
+/// The phase at a time: where two meet, the later one.
+pub(crate) fn phase_at(phases: &[Phase], time: f64) -> Option<&Phase> {
+    let later = phases.partition_point(|phase| phase.start <= time);
+    later.checked_sub(1).map(|index| &phases[index])
 }
 
 /// A wheel that may roll or slide.
@@ -105,6 +126,10 @@ pub struct Phase {
 pub struct SlidingWheel {
     equations: Equations<f64>,
     rolling: RollingWheel,
+    /// Whether the ground supplies whatever force rolling takes.
+    rolls_always: bool,
+    /// Whether small motions die out with dry friction about the king pin, in straight towing.
+    comes_to_rest: bool,
     while_rolling: Integrator,
     while_sliding: Integrator,
     maximum_phases: usize,
@@ -131,9 +156,26 @@ impl Wheel {
     /// # Errors
     /// `mu_d > mu_s`, a load that lifts the wheel, or `k_u = inf`.
     pub fn sliding(&self) -> Result<SlidingWheel, SimulationError> {
+        Ok(self.follower(Equations::new(self)?, false)?)
+    }
+
+    /// The wheel as one that rolls whatever force that takes, with dry friction about its king pin.
+    ///
+    /// # Errors
+    /// `k_u = inf`.
+    pub(crate) fn always_rolling(&self) -> Result<SlidingWheel, SimulationError> {
+        if self.has_lateral_elasticity_only() {
+            self.check_without_dry_friction("a motion with k_u = inf", "set a finite k_u or M_f = 0")?;
+        }
+        Ok(self.follower(Equations::with(|key| self.get(key)), true)?)
+    }
+
+    fn follower(&self, equations: Equations<f64>, rolls_always: bool) -> Result<SlidingWheel, KingpinError> {
         Ok(SlidingWheel {
-            equations: Equations::new(self)?,
+            equations,
             rolling: self.rolling(&[])?,
+            rolls_always,
+            comes_to_rest: self.swing_factor().is_some_and(|factor| factor.abs() < 1.0),
             while_rolling: rolling_integrator(SLIDING_TOLERANCE),
             while_sliding: sliding_integrator(SLIDING_TOLERANCE),
             maximum_phases: MAXIMUM_PHASES,
@@ -162,63 +204,20 @@ impl SlidingWheel {
         self
     }
 
-    /// Follows the motion for `duration`, calling `visit` with each piece of it, whether it resumes the phase of
-    /// the piece before, and its solution, whose states are [`SlipState`]s. `times` are sampled. Ends early when
-    /// `visit` returns false.
-    pub(crate) fn follow(
-        &self,
-        initial: HybridState,
-        duration: f64,
-        times: &[f64],
-        control: &Control<'_>,
-        mut visit: impl FnMut(Phase, bool, &Solution) -> bool,
-    ) -> Result<HybridState, SimulationError> {
-        let mut now = 0.0;
-        let mut present = initial;
-        let mut sampled = 0;
-        if self.equations.static_limit == 0.0 {
-            present.contact = Contact::Sliding;
-        }
-        for _ in 0..self.maximum_phases {
-            let due = &times[sampled..];
-            let rest = control.part(now / duration..1.0);
-            let (contact, solution, next) = match present.contact {
-                Contact::Rolling if !self.holds(&present.state) => {
-                    let (solution, next) = self.start_slip(now, &present.state, duration, due, &rest)?;
-                    (Contact::Sliding, solution, next)
-                }
-                Contact::Rolling => {
-                    let (solution, next) = self.roll(now, &present.state, duration, due, &rest)?;
-                    (Contact::Rolling, solution, next)
-                }
-                Contact::Sliding => {
-                    let (solution, next) = self.slide(now, &present.state, duration, due, &rest)?;
-                    (Contact::Sliding, solution, next)
-                }
-            };
-            sampled += solution.times.len();
-            let resumes = present.contact == Contact::Sliding && now > 0.0;
-            let keep_on = visit(Phase { contact, start: now, end: solution.time }, resumes, &solution);
-            now = solution.time;
-            control.done(now / duration);
-            present = next;
-            if now >= duration || !keep_on {
-                return Ok(present);
-            }
-        }
-        Err(SimulationError::out_of_range("number of phases", self.maximum_phases as f64, "fewer phases"))
-    }
-
     /// Derivative of the state.
     pub(crate) fn rate(&self, state: &HybridState) -> SlipState {
-        let equations = &self.equations;
-        let friction = match state.contact {
-            Contact::Rolling => equations.holding_force(&state.state),
-            Contact::Sliding => equations.sliding_force(&state.state),
+        let regime = match state.contact {
+            Contact::Rolling => Regime::Rolling,
+            Contact::Sliding => Regime::Sliding,
         };
         let mut rate = [0.0; 7];
-        equations.derivative(&state.state, friction, &mut rate);
+        regime.field(&self.equations, &state.state, &mut rate);
         rate
+    }
+
+    /// The equations that hold in a mode.
+    pub(crate) fn equations_in(&self, mode: Mode) -> Equations<f64> {
+        self.equations.under(mode.friction_moment)
     }
 
     /// A state without slip.
@@ -229,148 +228,9 @@ impl SlidingWheel {
     /// The states [`SLIDING_STATE_NAMES`]: the wheel slides where they have slip.
     pub(crate) fn slipping_state(&self, &[u, q, psi, forward, lateral, yaw, rim]: &[f64; 7]) -> HybridState {
         let state = [u, q, psi, forward, lateral, yaw, forward - rim];
-        let slips = state[S1] != 0.0 || state[S2] != 0.0;
-        let contact = if slips { Contact::Sliding } else { Contact::Rolling };
+        let contact = if slips(&state) { Contact::Sliding } else { Contact::Rolling };
         HybridState { contact, state }
     }
-
-    /// The wheel.
-    pub(crate) fn wheel(&self) -> &Wheel {
-        self.rolling.wheel()
-    }
-
-    /// Whether the static friction holds the wheel at a state without slip.
-    fn holds(&self, state: &[f64]) -> bool {
-        // The two are the same expression, so that equal limits give equal answers to the last bit.
-        self.equations.static_reserve(state) >= 0.0 || self.equations.sliding_reserve(state) >= 0.0
-    }
-
-    /// Rolls until the static friction is exhausted. The solution has the seven states.
-    fn roll(
-        &self,
-        start: f64,
-        state: &SlipState,
-        end: f64,
-        times: &[f64],
-        control: &Control<'_>,
-    ) -> Result<(Solution, HybridState), SimulationError> {
-        let widen = |x: &[f64]| [x[0], x[1], x[2], x[3], 0.0, x[4], 0.0];
-        let initial = [state[0], state[1], state[2], state[3], state[5]];
-        let mut events = [Event::new(|_, x| self.equations.static_reserve(&widen(x))).falling().terminal()];
-        let times = &times[..times.partition_point(|&time| time <= end)];
-        let mut solution = self.while_rolling.under(control).with_events(
-            autonomous(&self.rolling, &[]),
-            start,
-            &initial,
-            end,
-            times,
-            &mut events,
-        )?;
-        solution.states = solution.states.chunks_exact(5).flat_map(widen).collect();
-        let state = widen(&solution.state);
-        solution.state = state.to_vec();
-        Ok((solution, HybridState { contact: Contact::Rolling, state }))
-    }
-
-    /// Slides out of `s = 0` along the limit direction.
-    fn start_slip(
-        &self,
-        start: f64,
-        state: &SlipState,
-        end: f64,
-        times: &[f64],
-        control: &Control<'_>,
-    ) -> Result<(Solution, HybridState), SimulationError> {
-        let equations = &self.equations;
-        let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
-            equations.derivative(state, equations.incipient_force(state), derivative);
-        });
-        let mut events = [
-            Event::new(|_, x| slip_squared(x) - ONSET_SLIP * ONSET_SLIP).rising().terminal(),
-            Event::new(|_, x| equations.slip_along_limit_direction(x)).falling().terminal(),
-        ];
-        let integrator = self.while_sliding.under(control);
-        let mut solution = integrator.with_events(system, start, state, end, times, &mut events)?;
-        let state = as_slip_state(&solution.state);
-        if solution.ended_by != Some(1) {
-            let slips = state[S1] != 0.0 || state[S2] != 0.0;
-            let contact = if slips { Contact::Sliding } else { Contact::Rolling };
-            return Ok((solution, HybridState { contact, state }));
-        }
-        let state = stuck(state);
-        solution.state = state.to_vec();
-        Ok((solution, HybridState { contact: Contact::Rolling, state }))
-    }
-
-    /// Slides until the slip vanishes; the crossing is where its straight way to zero begins.
-    fn slide(
-        &self,
-        start: f64,
-        state: &SlipState,
-        end: f64,
-        times: &[f64],
-        control: &Control<'_>,
-    ) -> Result<(Solution, HybridState), SimulationError> {
-        let equations = &self.equations;
-        let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
-            equations.derivative(state, equations.sliding_force(state), derivative);
-        });
-        // Without friction there is nothing special about zero slip.
-        let vanishing = if equations.static_limit == 0.0 { 0.0 } else { VANISHING_SLIP * VANISHING_SLIP };
-        // The direction of vanishing slip turns ever faster, so the steps shrink with the slip and cannot jump over zero:
-        // looking at the end of each step is enough.
-        let mut stepper = Stepper::new(system, &self.while_sliding, start, state, end)?;
-        let mut solution = Solution::default();
-        let mut vanished = false;
-        loop {
-            let reached = stepper.time();
-            for &time in times[solution.times.len()..].iter().take_while(|&&time| time <= reached) {
-                let from = solution.states.len();
-                solution.states.resize(from + state.len(), 0.0);
-                stepper.prepare_dense_output();
-                stepper.interpolate(time, &mut solution.states[from..]);
-                solution.times.push(time);
-            }
-            if stepper.is_finished() || vanished {
-                break;
-            }
-            control.check()?;
-            stepper.advance()?;
-            vanished = slip_squared(stepper.state()) < vanishing;
-        }
-        solution.time = stepper.time();
-        solution.state = stepper.state().to_vec();
-        let mut state = as_slip_state(&solution.state);
-        if !vanished {
-            return Ok((solution, HybridState { contact: Contact::Sliding, state }));
-        }
-        solution.crossings.push(Crossing {
-            event: 0,
-            time: solution.time,
-            state: solution.state.clone(),
-            direction: Direction::Falling,
-        });
-        // The rest of the way to zero slip is a straight line.
-        let mut rate = [0.0; 7];
-        equations.derivative(&state, equations.sliding_force(&state), &mut rate);
-        let shrinking = -(state[S1] * rate[S1] + state[S2] * rate[S2]);
-        let rest = if shrinking > 0.0 { slip_squared(&state) / shrinking } else { 0.0 };
-        let rest = rest.min(end - solution.time);
-        for (component, rate) in state.iter_mut().zip(rate) {
-            *component += rest * rate;
-        }
-        let state = stuck(state);
-        solution.time += rest;
-        solution.state = state.to_vec();
-        Ok((solution, HybridState { contact: Contact::Rolling, state }))
-    }
-}
-
-/// The state with what is left of the slip removed.
-fn stuck(mut state: SlipState) -> SlipState {
-    state[S1] = 0.0;
-    state[S2] = 0.0;
-    state
 }
 
 pub(crate) fn as_slip_state(state: &[f64]) -> SlipState {

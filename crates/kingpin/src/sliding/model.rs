@@ -1,4 +1,8 @@
 //! The equations of the wheel that slides, and the limit directions of its slip.
+//!
+//! They hold in one mode of the king pin: without dry friction about it, while it swings under the moment of that, or while it
+//! sticks. A caster that sticks turns with the towing frame, `Omega' = 0`: across itself its mass alone resists the ground, so
+//! that the mobility of the contact point, and with it the limit directions, are others.
 
 use crate::body::Body;
 use crate::parameters::Key;
@@ -27,6 +31,17 @@ pub(crate) struct LimitDirection<T> {
     pub growth: f64,
 }
 
+/// The moment of dry friction about the king pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum FrictionMoment<T> {
+    /// There is none.
+    Absent,
+    /// That of a caster that swings, in N m.
+    Swinging(T),
+    /// Whatever keeps the yaw rate as it is.
+    Sticking,
+}
+
 /// Coefficients of the equations; with dual numbers they carry derivatives with respect to a parameter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Equations<T> {
@@ -39,6 +54,10 @@ pub(crate) struct Equations<T> {
     rim_mass: T,
     /// `(m_w + m_c) J - m^2`.
     determinant: T,
+    /// The moment of dry friction about the king pin that acts.
+    friction_moment: FrictionMoment<T>,
+    /// `M_f` in N m.
+    pub largest_friction_moment: T,
     /// Mobility of the contact point, along and across the caster: the acceleration of the slip is its value without
     /// friction plus the mobility times the friction force.
     mobility: [T; 2],
@@ -77,11 +96,40 @@ impl<T: Scalar> Equations<T> {
             mass,
             rim_mass,
             determinant,
+            friction_moment: FrictionMoment::Absent,
+            largest_friction_moment: get(Key::MF),
             mobility: [mass.recip() + rim_mass.recip(), body.yaw_inertia / determinant],
             static_limit: get(Key::MuS) * normal,
             sliding_friction: get(Key::MuD) * normal,
             body,
         }
+    }
+
+    /// The equations under another moment of dry friction about the king pin.
+    pub(crate) fn under(mut self, friction_moment: FrictionMoment<T>) -> Self {
+        self.friction_moment = friction_moment;
+        let across = match friction_moment {
+            FrictionMoment::Sticking => self.mass.recip(),
+            _ => self.body.yaw_inertia / self.determinant,
+        };
+        self.mobility[1] = across;
+        self
+    }
+
+    /// Rate of the caster angle.
+    #[inline]
+    pub(crate) fn swing_rate(&self, state: &[T]) -> T {
+        self.omega - state[5]
+    }
+
+    /// Yaw acceleration that a moment about the king pin gives to the rolling wheel.
+    pub(crate) fn yaw_acceleration(&self, moment: T) -> T {
+        moment * self.body.inverse_yaw_inertia
+    }
+
+    /// Yaw rate of the towing frame: that of a caster that sticks.
+    pub(crate) fn towing_yaw_rate(&self) -> T {
+        self.omega
     }
 
     /// Derivative of the state under a friction force `[T1, T2]`.
@@ -97,7 +145,7 @@ impl<T: Scalar> Equations<T> {
         let force_y = -(body.lateral_stiffness * q) - body.lateral_damping * q_rate;
         let force_along = force_x * cosine - force_y * sine;
         let force_across = force_x * sine + force_y * cosine;
-        let moment = body.caster_length * force_across - body.rotational_damping * (yaw - self.omega)
+        let mut moment = body.caster_length * force_across - body.rotational_damping * (yaw - self.omega)
             + body.rotational_stiffness * psi;
         let lateral_force = force_across + friction[1];
         let forward_rate =
@@ -106,10 +154,19 @@ impl<T: Scalar> Equations<T> {
         derivative[1] = q_rate;
         derivative[2] = self.omega - yaw;
         derivative[3] = forward_rate;
+        derivative[S1] = forward_rate + friction[0] / self.rim_mass;
+        match self.friction_moment {
+            FrictionMoment::Absent => {}
+            FrictionMoment::Swinging(friction) => moment += friction,
+            FrictionMoment::Sticking => {
+                derivative[S2] = lateral_force / self.mass - forward * yaw;
+                derivative[5] = T::zero();
+                return;
+            }
+        }
         derivative[S2] = (body.yaw_inertia * lateral_force - body.static_moment * moment) / self.determinant
             - forward * yaw;
         derivative[5] = (self.mass * moment - body.static_moment * lateral_force) / self.determinant;
-        derivative[S1] = forward_rate + friction[0] / self.rim_mass;
     }
 
     /// Friction force `-mu_d N s/|s|` at a state with slip.
@@ -191,6 +248,12 @@ impl<T: Scalar> Equations<T> {
     }
 }
 
+/// Whether there is slip.
+#[inline]
+pub(crate) fn slips(state: &[f64]) -> bool {
+    state[S1] != 0.0 || state[S2] != 0.0
+}
+
 /// Square of the slip speed.
 #[inline]
 pub(crate) fn slip_squared<T: Scalar>(state: &[T]) -> T {
@@ -218,6 +281,20 @@ fn reserve<T: Scalar>(limit: T, force: [T; 2]) -> T {
 }
 
 impl Equations<f64> {
+    /// The moment of dry friction in N m that acts under a friction force of the ground: of a caster that sticks, the one that it takes.
+    pub(crate) fn friction_moment(&self, state: &[f64], friction: [f64; 2]) -> f64 {
+        match self.friction_moment {
+            FrictionMoment::Absent => 0.0,
+            FrictionMoment::Swinging(moment) => moment,
+            FrictionMoment::Sticking => {
+                let mut rate = [0.0; 7];
+                self.under(FrictionMoment::Absent).derivative(state, friction, &mut rate);
+                // What takes the yaw acceleration away, the force of the ground being the same.
+                -rate[5] * self.determinant / self.mass
+            }
+        }
+    }
+
     /// Kinetic energy and energy of the springs in J.
     pub(crate) fn energy(&self, state: &SlipState) -> f64 {
         let [u, q, psi, forward, lateral, yaw, slip] = *state;
@@ -232,7 +309,7 @@ impl Equations<f64> {
             + 0.5 * body.rotational_stiffness * psi * psi
     }
 
-    /// Power in W of the towing frame, and the power that the dampers and a friction force dissipate.
+    /// Power in W of the towing frame, and the power that the dampers, dry friction about the king pin and a friction force dissipate.
     pub(crate) fn power(&self, state: &SlipState, friction: [f64; 2]) -> (f64, f64) {
         let mut rate = [0.0; 7];
         self.derivative(state, friction, &mut rate);
@@ -240,11 +317,14 @@ impl Equations<f64> {
         let [u, q, psi, _, lateral, yaw, slip] = *state;
         let damping = [-body.longitudinal_damping * rate[0], -body.lateral_damping * rate[1]];
         let force = [damping[0] - body.longitudinal_stiffness * u, damping[1] - body.lateral_stiffness * q];
-        let about_king_pin = body.rotational_stiffness * psi - body.rotational_damping * (yaw - self.omega);
+        let dry = self.friction_moment(state, friction);
+        let about_king_pin =
+            body.rotational_stiffness * psi - body.rotational_damping * (yaw - self.omega) + dry;
         let towing =
             force[0] * (self.v - self.omega * q) + force[1] * self.omega * u + about_king_pin * self.omega;
         let dissipated = -damping[0] * rate[0] - damping[1] * rate[1]
             + body.rotational_damping * (yaw - self.omega).powi(2)
+            + dry * (self.omega - yaw)
             - friction[0] * slip
             - friction[1] * lateral;
         (towing, dissipated)

@@ -49,6 +49,10 @@ impl Wheel {
             let allowed = "positive and finite, in m/s";
             return Err(SimulationError::out_of_range("smoothing_speed", smoothing_speed, allowed));
         }
+        self.check_without_dry_friction(
+            "smoothed sliding",
+            "set M_f = 0: smoothed, friction about the king pin would act as a damper at rest",
+        )?;
         self.rolling(active)?;
         Equations::new(self)?;
         Ok(SmoothedSlidingWheel { wheel: *self, active: active.to_vec(), smoothing_speed })

@@ -1,0 +1,53 @@
+//! What results of the wheel without dry friction about the king pin say of one that has it.
+//!
+//! Where the caster sticks there is nothing to linearise, so that uniform motions, eigenvalues, Hopf points and cycles are those at
+//! `M_f = 0`. What dry friction makes of small motions in straight towing is known beside: they die out up to a speed that does not
+//! depend on its moment.
+
+use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// Dry friction about the king pin that a result takes no account of.
+#[derive(Clone, Debug, Serialize)]
+pub struct NeglectedDryFriction {
+    /// Its moment `M_f` in N m.
+    pub moment: f64,
+    /// Towed straight, the speed in m/s up to which small motions die out with it; nothing where there is none, or where it varies
+    /// over the result.
+    pub critical_speed_with_friction: Option<f64>,
+    /// Whether that speed can be told.
+    #[serde(skip)]
+    is_told: bool,
+}
+
+impl NeglectedDryFriction {
+    /// That of a wheel, in a result over which some parameters vary; nothing where the wheel has none.
+    pub(crate) fn of(wheel: &Wheel, varying: &[Key]) -> Option<Self> {
+        let moment = wheel.get(Key::MF);
+        let same_speed = [Key::V, Key::KU, Key::CU, Key::G, Key::MuS, Key::MuD, Key::FAz];
+        let is_told = wheel.get(Key::TurningRadius).is_infinite()
+            && varying.iter().flat_map(|key| key.sets()).all(|key| same_speed.contains(key));
+        let speed = is_told.then(|| wheel.critical_speed_with_friction()).flatten();
+        (moment > 0.0).then_some(Self { moment, critical_speed_with_friction: speed, is_told })
+    }
+
+    /// Tells of it, where there is any.
+    pub(crate) fn tell(neglected: Option<&Self>, out: &mut dyn Write) -> io::Result<()> {
+        let Some(Self { moment, critical_speed_with_friction, is_told }) = neglected else { return Ok(()) };
+        writeln!(
+            out,
+            "\nthis is the wheel without dry friction about the king pin: M_f = {} N m was left out",
+            readable(*moment)
+        )?;
+        match critical_speed_with_friction {
+            _ if !is_told => {
+                writeln!(out, "`simulate`, `basin`, `safe-kick` and `margin` take it into account")
+            }
+            Some(0.0) => writeln!(out, "with it small motions grow at every speed all the same"),
+            Some(speed) => writeln!(out, "with it small motions die out up to {} m/s", readable(*speed)),
+            None => writeln!(out, "with it small motions die out at every speed"),
+        }
+    }
+}

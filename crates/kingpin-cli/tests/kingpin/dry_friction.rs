@@ -1,0 +1,125 @@
+//! Dry friction about the king pin, as people and scripts see it.
+
+use crate::Folder;
+
+const WHEELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+
+fn trolley(command: &str) -> String {
+    command.replace("TROLLEY", &format!("--wheel {WHEELS}/trolley.toml"))
+}
+
+#[test]
+fn tables() {
+    let folder = Folder::new();
+    for (name, command) in [
+        ("steady", "steady TROLLEY -s M_f=0.3"),
+        ("stability", "stability TROLLEY -s M_f=5"),
+        ("hopf", "hopf TROLLEY -s M_f=0.3 -s c_psi=0.05 --along v=0.5:9"),
+        ("rolls", "simulate TROLLEY -s M_f=0.3 --duration 2 --perturb psi=0.3"),
+        (
+            "slides",
+            "simulate TROLLEY -s M_f=3 --duration 0.5 --perturb psi=0.3 --perturb Omega=30 --contact sliding",
+        ),
+        (
+            "safe_kick",
+            "safe-kick TROLLEY -s M_f=0.3 --kind release-angle --largest 0.4 --contact sliding --duration 2 -q",
+        ),
+    ] {
+        insta::assert_snapshot!(name, folder.succeed(&trolley(command)).output);
+    }
+}
+
+#[test]
+fn histories_tell_what_the_caster_does() {
+    let folder = Folder::new();
+    for contact in ["rolling", "sliding"] {
+        let simulate =
+            format!("simulate TROLLEY --duration 1 --points 11 --perturb psi=0.3 --contact {contact}");
+        let with = folder.json(&trolley(&format!("{simulate} -s M_f=0.3")));
+        assert_eq!(with["parameters"]["M_f"], 0.3);
+        assert_eq!(with["king_pin"].as_array().unwrap().len(), 11);
+        assert_eq!(with["king_pin"][0], "sticking");
+        assert_eq!(with["phases"][1]["king_pin"], "swinging");
+        assert!(with["dry_friction_work"].as_f64().unwrap() > 0.0);
+        let without = folder.json(&trolley(&simulate));
+        assert!(without.get("king_pin").is_none() && without.get("friction_moment").is_none());
+        let table = folder.succeed(&trolley(&format!("{simulate} -s M_f=0.3 --format csv"))).output;
+        let heading = table.lines().next().unwrap();
+        assert!(heading.ends_with(",friction_moment,king_pin"), "{heading}");
+    }
+}
+
+#[test]
+fn what_takes_no_account_of_it_says_so() {
+    let folder = Folder::new();
+    for command in [
+        "hopf TROLLEY -s c_psi=0.05 --along v=0.5:9",
+        "cycles TROLLEY -s c_psi=0.05 --along v=0.5:9 -q",
+        "chart TROLLEY --x v=1:9:5 --y c_psi=0:1:5",
+        "damper TROLLEY --up-to v=3 -q",
+    ] {
+        let run = folder.succeed(&trolley(&format!("{command} -s M_f=0.3")));
+        assert!(run.output.contains("M_f = 0.3 N m was left out"), "{command}: {}", run.output);
+        let result = folder.json(&trolley(&format!("{command} -s M_f=0.3")));
+        assert_eq!(result["dry_friction"]["moment"], 0.3, "{command}");
+        assert!(folder.json(&trolley(command)).get("dry_friction").is_none(), "{command}");
+    }
+    // The critical speed beside is that of `stability`.
+    let hopf = folder.json(&trolley("hopf TROLLEY -s c_psi=0.05 --along v=0.5:9 -s M_f=0.3"));
+    let stability = folder.json(&trolley("stability TROLLEY -s c_psi=0.05"));
+    let speed = |result: &serde_json::Value| result["critical_speed_with_friction"].as_f64().unwrap();
+    assert_eq!(speed(&hopf["dry_friction"]), speed(&stability));
+}
+
+#[test]
+fn what_cannot_be_asked_for_is_refused() {
+    let folder = Folder::new();
+    for (command, reason) in [
+        ("steady -s M_f=-1", "M_f = -1: out of range"),
+        ("hopf --along M_f=0:1", "`M_f` cannot vary here"),
+        ("chart --x v=1:9:5 --y M_f=0:1:5", "`M_f` cannot vary here"),
+        ("simulate --duration 1 -s M_f=0.1 -s k_u=inf", "set a finite k_u"),
+        ("safe-kick -s M_f=0.1 -s v=9", "tow it straight"),
+        ("basin -s M_f=0.1 -s v=9", "tow it straight"),
+    ] {
+        let run = folder.run(command);
+        assert_eq!(run.exit_code, 2, "{command}: {}", run.messages);
+        assert!(run.messages.contains(reason), "{command}: {}", run.messages);
+    }
+}
+
+#[test]
+fn small_motions_of_the_real_wheels_end_as_the_factor_of_a_swing_says() {
+    let folder = Folder::new();
+    for (wheel, safe) in
+        [("dolly", true), ("nosegear", false), ("office", true), ("trolley", true), ("wheelchair", true)]
+    {
+        let wheel = format!("--wheel {WHEELS}/{wheel}.toml -s M_f=0.1");
+        let stability = folder.json(&format!("stability {wheel}"));
+        assert_eq!(stability["stable"], false);
+        assert_eq!(stability["swing_factor"].as_f64().unwrap().abs() < 1.0, safe, "{wheel}");
+        let kick = "safe-kick --kind release-angle --largest 1.5e-4 --contact sliding --duration 1 -q";
+        let kick = folder.json(&format!("{kick} {wheel}"));
+        for direction in ["positive", "negative"] {
+            // All that were tried return, or none.
+            assert_eq!(kick[direction].is_null(), safe, "{wheel}: {}", kick[direction]);
+            assert!(safe || kick[direction]["fails"] == 0.0, "{wheel}: {}", kick[direction]);
+        }
+    }
+}
+
+#[test]
+fn margins_follow_the_moment_and_vanish_where_swings_grow() {
+    let folder = Folder::new();
+    let margin = "margin TROLLEY --kind release-angle --contact sliding --duration 1 --largest 0.004 -q";
+    let along_moment = folder.succeed(&trolley(&format!("{margin} --along M_f=0:0.005:2"))).output;
+    let lines: Vec<&str> = along_moment.lines().collect();
+    assert!(lines[4].ends_with("the uniform motion is unstable"), "{along_moment}");
+    assert!(lines[5].ends_with("all that were tried return"), "{along_moment}");
+    assert!(along_moment.contains("whatever M_f"), "{along_moment}");
+    // The critical speed with friction is 8.33 m/s.
+    let along_speed = folder.succeed(&trolley(&format!("{margin} --along v=8:9:2 -s M_f=0.3"))).output;
+    let lines: Vec<&str> = along_speed.lines().collect();
+    assert!(lines[4].ends_with("all that were tried return"), "{along_speed}");
+    assert!(lines[5].ends_with("small motions grow in spite of dry friction"), "{along_speed}");
+}
