@@ -63,6 +63,7 @@ impl Wheel {
         up_to: f64,
         control: &Control<'_>,
     ) -> Result<Option<SmallestDamper>, KingpinError> {
+        self.check_rigid()?;
         let speeds = Axis::new(Key::V, SLOWEST * up_to..=up_to)?;
         let search = Search { wheel: self, key, up_to };
         if search.is_enough(0.0) {

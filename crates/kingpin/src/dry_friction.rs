@@ -25,7 +25,7 @@
 use crate::characteristic::roots;
 use crate::critical_speed::bisect;
 use crate::linear_stability::lateral_cubic;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
 use std::f64::consts::PI;
 
@@ -35,7 +35,7 @@ const SPEEDS: usize = 2000;
 
 impl Wheel {
     /// The factor by which each swing of the caster multiplies its angle where dry friction, however small, acts about the king pin;
-    /// zero where it creeps back to rest. `None` unless the wheel is towed straight and moves.
+    /// zero where it creeps back to rest. `None` unless the wheel is towed straight and moves, and with a tyre.
     ///
     /// ```
     /// use kingpin::Wheel;
@@ -50,15 +50,15 @@ impl Wheel {
     /// ```
     pub fn swing_factor(&self) -> Option<f64> {
         let speed = self.get(Key::V);
-        (self.get(Key::TurningRadius).is_infinite() && speed > 0.0).then(|| self.swing_factor_at(speed))
+        (self.rolls_straight() && speed > 0.0).then(|| self.swing_factor_at(speed))
     }
 
     /// The smallest speed in m/s beyond which small motions in rectilinear towing grow in spite of dry friction about the king pin;
-    /// it does not depend on the moment of that. `None` where they die out at all speeds, and on a circle.
+    /// it does not depend on the moment of that. `None` where they die out at all speeds, on a circle and with a tyre.
     ///
     /// 2000 speeds from 1 mm/s on are looked at; the first change between two of them is found by bisection.
     pub fn critical_speed_with_friction(&self) -> Option<f64> {
-        self.get(Key::TurningRadius).is_infinite().then_some(())?;
+        self.rolls_straight().then_some(())?;
         let ratio = (Key::V.allowed().highest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
         let speed = |index: usize| SLOWEST * ratio.powi(index as i32);
         let excess = |speed: f64| self.swing_factor_at(speed).abs() - 1.0;
@@ -66,6 +66,10 @@ impl Wheel {
         let Some(before) = first.checked_sub(1) else { return Some(0.0) };
         let slower = speed(before);
         bisect(slower, excess(slower), speed(first), |speed| Some(excess(speed)))
+    }
+
+    fn rolls_straight(&self) -> bool {
+        self.get(Key::TurningRadius).is_infinite() && self.tyre() == Tyre::Rigid
     }
 
     fn swing_factor_at(&self, speed: f64) -> f64 {

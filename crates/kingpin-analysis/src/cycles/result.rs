@@ -7,17 +7,16 @@ use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
 use crate::parameters::{parameters_of, wheel_of};
-use crate::states::STATE_UNITS;
+use crate::states;
 use arclength::branch::LabelCounter;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::Along;
-use kingpin::rolling::STATE_NAMES;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -75,7 +74,7 @@ pub struct CyclesResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredCycles {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     along: VaryingParameter,
     branches: Vec<BranchResult>,
     points: Vec<CyclePointResult>,
@@ -87,7 +86,7 @@ impl TryFrom<StoredCycles> for CyclesResult {
     fn try_from(stored: StoredCycles) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
         Ok(Self {
-            wheel: wheel_of(&stored.parameters.0)?,
+            wheel: wheel_of(&stored.parameters)?,
             interval: along(&Interval::new(key, *start, *end))?,
             along: stored.along,
             branches: stored.branches,
@@ -187,7 +186,7 @@ impl Report for CyclesResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[self.interval.key()])
     }
 
@@ -236,9 +235,14 @@ impl Report for CyclesResult {
             .booleans("stable", cycles().map(|cycle| cycle.stable))
             .numbers("error_estimate", cycles().map(|cycle| cycle.error_estimate))
             .numbers("trivial_multiplier_error", cycles().map(|cycle| cycle.trivial_multiplier_error))
-            .complex_numbers("multiplier", STATE_NAMES.len(), cycles().map(|cycle| &cycle.multipliers))
+            .complex_numbers(
+                "multiplier",
+                self.wheel.states().len(),
+                cycles().map(|cycle| &cycle.multipliers),
+            )
             .counts("intervals", cycles().map(|cycle| cycle.intervals as u64));
-        for (name, unit) in STATE_NAMES.into_iter().zip(STATE_UNITS) {
+        for &name in self.wheel.states() {
+            let unit = states::unit(name);
             columns = columns
                 .optional_numbers(format!("max_{name}"), cycles().map(move |cycle| cycle.max.named(name)))
                 .unit(unit)

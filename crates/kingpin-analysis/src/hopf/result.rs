@@ -5,7 +5,7 @@ use super::search::label;
 use crate::along::{along, varying};
 use crate::description;
 use crate::parameters::{parameters_of, wheel_of};
-use crate::states::{STATE_UNITS, named_state};
+use crate::states::{self, named_state};
 use arclength::branch::Criticality;
 use arclength::equilibrium::SpecialPoint;
 use arclength_analysis::branch::pairs;
@@ -13,10 +13,9 @@ use arclength_analysis::course::{self, ToldPoint};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::{Along, HopfPoint, MotionBranch};
-use kingpin::rolling::STATE_NAMES;
 use kingpin::{KingpinError, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -84,7 +83,7 @@ pub struct HopfResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredHopfPoints {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     along: VaryingParameter,
     #[serde(with = "kingpin_report::number")]
     searched: [f64; 2],
@@ -104,7 +103,7 @@ impl TryFrom<StoredHopfPoints> for HopfResult {
     fn try_from(stored: StoredHopfPoints) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
         Ok(Self {
-            wheel: wheel_of(&stored.parameters.0)?,
+            wheel: wheel_of(&stored.parameters)?,
             interval: along(&Interval::new(key, *start, *end))?,
             along: stored.along,
             searched: stored.searched,
@@ -183,7 +182,7 @@ impl Report for HopfResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[self.interval.key()])
     }
 
@@ -221,16 +220,20 @@ impl Report for HopfResult {
             .unit("rad/s")
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov))
             .texts("criticality", points().map(|point| Some(criticality(point.criticality).to_owned())));
-        let columns = STATE_NAMES.into_iter().enumerate().fold(columns, |columns, (index, name)| {
+        let columns = self.wheel.states().iter().enumerate().fold(columns, |columns, (index, &name)| {
             columns
                 .optional_numbers(name, points().map(move |point| point.state.get(index)))
-                .unit(STATE_UNITS[index])
+                .unit(states::unit(name))
         });
         columns
             .optional_numbers("c1_real", points().map(|point| point.c1_real))
             .optional_numbers("location_error", points().map(|point| point.location_error))
             .unit(self.interval.key().unit())
-            .complex_numbers("eigenvalue", STATE_NAMES.len(), points().map(|point| &point.eigenvalues))
+            .complex_numbers(
+                "eigenvalue",
+                self.wheel.states().len(),
+                points().map(|point| &point.eigenvalues),
+            )
             .named_numbers("test", points().map(|point| &point.tests))
     }
 

@@ -8,7 +8,7 @@ use arclength_analysis::Origin;
 use arclength_analysis::locus::CycleCurve;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use kingpin_report::{Columns, Parameters, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -30,7 +30,7 @@ pub struct CycleLocusResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredCurve {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     #[serde(flatten)]
     curve: CycleCurve,
 }
@@ -39,7 +39,7 @@ impl TryFrom<StoredCurve> for CycleLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        Ok(Self { wheel: wheel_of(&parameters.0)?, plane: ParameterPlane::of(&curve.plane)?, curve })
+        Ok(Self { wheel: wheel_of(&parameters)?, plane: ParameterPlane::of(&curve.plane)?, curve })
     }
 }
 
@@ -66,7 +66,7 @@ impl Report for CycleLocusResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &self.plane.keys())
     }
 

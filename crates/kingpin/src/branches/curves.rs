@@ -24,7 +24,7 @@ pub struct CurveOptions {
 /// A curve of Hopf points of the uniform motion.
 #[derive(Debug)]
 pub struct HopfCurve {
-    /// The points: values are those of the two keys, states are `u q psi V Omega`.
+    /// The points: values are those of the two keys, states are [all](Wheel::states).
     pub points: Vec<LocusPoint>,
     /// Why the curve ends, at its first and at its last point, in values of the keys.
     pub stops: [Option<Stop<Infallible>>; 2],
@@ -87,7 +87,7 @@ impl HopfPoint {
             .run()?;
         let mut points = branch.points;
         for point in &mut points {
-            point.state = model.full_state(&point.state, &point.values).to_vec();
+            point.state = model.full_state(&point.state, &point.values);
             point.values = convert(&plane, point.values);
             if let Some(special) = &mut point.special {
                 special.state.clone_from(&point.state);

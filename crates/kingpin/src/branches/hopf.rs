@@ -25,8 +25,8 @@ pub struct HopfPoint {
     pub first_lyapunov: Option<f64>,
     /// Whether the cycles that are born are unstable (subcritical) or stable (supercritical).
     pub criticality: Criticality,
-    /// State `u q psi V Omega` of the uniform motion.
-    pub state: [f64; 5],
+    /// The uniform motion, in [all states](Wheel::states).
+    pub state: Vec<f64>,
     /// The wheel at this point.
     pub wheel: Wheel,
     /// The point as the continuation engine knows it, to start cycles from.
@@ -37,7 +37,7 @@ pub struct HopfPoint {
 #[derive(Debug)]
 pub struct MotionBranch {
     /// The motions, from the lower end of the interval to the upper one where the branch does not turn; `value` is a value of
-    /// the key and `state` the states `u q psi V Omega`; the stability is that of [`UniformMotion::stability`], which does not count
+    /// the key and `state` is in [all states](Wheel::states); the stability is that of [`UniformMotion::stability`], which does not count
     /// a longitudinal motion without damping. What is known of special points is as the continuation found it, which
     /// follows `1/r` in place of `r`.
     pub motions: Vec<EquilibriumPoint>,
@@ -124,7 +124,7 @@ impl Wheel {
             };
             let model = wheel.rolling_model(&[key])?;
             let branch = Equilibria::of(&model)
-                .start(&model.free_state(&motion.state()))
+                .start(&model.free_state(&motion.states()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
                 .settings(settings)
@@ -152,8 +152,8 @@ impl Wheel {
             }
             for motion in &mut motions {
                 let state = model.full_state(&motion.state, &[motion.value]);
-                motion.stability = wheel.with(key, motion.value)?.motion_at(state).stability();
-                motion.state = state.to_vec();
+                motion.stability = wheel.with(key, motion.value)?.motion_in(&state).stability();
+                motion.state = state;
                 motion.value = along.convert(motion.value);
                 if let Some(SpecialPoint::Degenerate { value, location_error, .. }) =
                     motion.special.as_deref_mut()
