@@ -256,6 +256,14 @@ pub enum KingpinError {
         /// The key.
         key: Key,
     },
+    /// A cycle on which a wheel with a tyre does not roll forwards all the time.
+    #[error(
+        "on this cycle the smallest V1 is {ratio} v: with a tyre the wheel has to roll forwards; start from a smaller cycle"
+    )]
+    RollsBackwards {
+        /// The smallest `V1/v`.
+        ratio: f64,
+    },
     /// The model with a tyre needs one.
     #[error("tyre = rigid: the model with a tyre needs tyre = linear or tyre = brush")]
     NeedsTyre,

@@ -9,9 +9,10 @@ use crate::error::KingpinError;
 use crate::lateral::{LATERAL_STATE_NAMES, LateralWheel};
 use crate::parameters::{Key, Tyre};
 use crate::rolling::{RollingWheel, STATE_NAMES};
-use crate::tyre::{TYRE_STATE_NAMES, TyreWheel};
+use crate::tyre::{Onset, TYRE_STATE_NAMES, TyreWheel};
 use crate::wheel::Wheel;
 use arclength::cycle::Orbit;
+use arclength::equilibrium::HopfPoint;
 use arclength::{Dual, Scalar, Threshold, VectorField};
 
 /// Where the caster of a wheel with lateral elasticity only comes nearer than this to `psi = pi/2`, the errors of the other
@@ -105,6 +106,39 @@ impl RollingModel {
                 vec![0.0, free[0], free[1], lateral.forward_speed_at(free, parameters), free[2]]
             }
             Self::Tyre(wheel) => wheel.full_state(free, parameters).into(),
+        }
+    }
+
+    /// The smallest forward speed of a wheel with a tyre on a cycle of this vector field, as a part of the towing speed; `None`
+    /// without a tyre, where the wheel may roll backwards.
+    pub(crate) fn smallest_speed_ratio(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => None,
+            Self::Tyre(wheel) => Some(wheel.smallest_speed_ratio(orbit, parameters)),
+        }
+    }
+
+    /// That the wheel rolls forwards all along a cycle of this vector field, if it has a tyre.
+    pub(crate) fn check_forwards(&self, orbit: &Orbit, parameters: &[f64]) -> Result<(), KingpinError> {
+        match self.smallest_speed_ratio(orbit, parameters) {
+            Some(ratio) if ratio <= 0.0 => Err(KingpinError::RollsBackwards { ratio }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether Hopf points have no first Lyapunov coefficient at these parameters: straight, under the brush law of the tyre.
+    pub(crate) fn has_no_first_lyapunov(&self, parameters: &[f64]) -> bool {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => false,
+            Self::Tyre(wheel) => wheel.is_brush_towed_straight(parameters),
+        }
+    }
+
+    /// How cycles grow at a Hopf point of this vector field where no first Lyapunov coefficient exists.
+    pub(crate) fn onset(&self, point: &HopfPoint) -> Option<Onset> {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => None,
+            Self::Tyre(wheel) => wheel.onset(point),
         }
     }
 

@@ -4,12 +4,15 @@
 
 use approx::assert_relative_eq;
 use arclength::VectorField;
+use arclength::branch::Criticality;
+use arclength::continuation::Stop;
 use arclength::control::Control;
 use arclength::integration::{Event, Integrator, from_fn};
-use kingpin::branches::Along;
+use kingpin::branches::{Along, CycleOptions, SLOWEST_ON_CYCLES};
 use kingpin::tyre::TYRE_STATE_NAMES;
 use kingpin::{Key, KingpinError, Tyre, Wheel};
 use proptest::prelude::*;
+use std::ops::ControlFlow;
 
 fn wheel(tyre: Tyre, settings: &[(Key, f64)]) -> Wheel {
     let mut wheel = Wheel::default();
@@ -444,6 +447,61 @@ proptest! {
             prop_assert_eq!(motion.is_stable(), Some(expected[0].re < 0.0));
         }
     }
+}
+
+/// Under the brush law no first Lyapunov coefficient exists at a straight Hopf point: the amplitude grows in proportion to the distance
+/// from it, as fast as the slope says.
+#[test]
+fn straight_brushes_have_a_slope_in_place_of_a_first_lyapunov_coefficient() {
+    let brush = |gear: Wheel| {
+        let mut brush = gear.with(Key::FAz, -9000.0).unwrap();
+        brush.set_tyre(Tyre::Brush);
+        brush
+    };
+    let elastic = nose_gear(10.0).with(Key::KU, 3e5).and_then(|gear| gear.with(Key::KQ, 1e7)).unwrap();
+    for gear in [nose_gear(0.0), nose_gear(10.0), elastic] {
+        let along = Along::new(Key::V, 5.0, 60.0).unwrap();
+        let smooth = gear.hopf_points(along, &Control::none()).unwrap().points;
+        let found = brush(gear).hopf_points(along, &Control::none()).unwrap().points;
+        assert!(!found.is_empty() && smooth.len() == found.len());
+        for (smooth, hopf) in smooth.iter().zip(&found) {
+            // The linear parts of both laws are one.
+            assert_relative_eq!(smooth.value, hopf.value, max_relative = 1e-9);
+            assert!(smooth.first_lyapunov.is_some() && hopf.first_lyapunov.is_none());
+            let slope = hopf.psi_max_slope.unwrap();
+            // Cycles on the side on which the slope says they are.
+            let near = [5e-3, 1e-2].map(|part| hopf.value * (1.0 + part * slope.signum()));
+            let options = CycleOptions { at: near.to_vec(), ..CycleOptions::default() };
+            let cycles = hopf.cycles(along, &options, |_| ControlFlow::Continue(())).unwrap();
+            let amplitude = |value: f64| {
+                let cycle = cycles.points.iter().find(|cycle| (cycle.value - value).abs() < 1e-12 * value);
+                cycle.unwrap_or_else(|| panic!("no cycle at {value}")).max[2]
+            };
+            // The next term of the amplitude is of second order.
+            let [first, second] = near.map(|value| amplitude(value) / (value - hopf.value));
+            let extrapolated = 2.0 * first - second;
+            assert_relative_eq!(extrapolated, slope, max_relative = 1e-3);
+            let stable =
+                cycles.points.iter().find(|cycle| cycle.value == near[0]).and_then(|cycle| cycle.stable);
+            assert_eq!(stable, Some(hopf.criticality == Criticality::Supercritical));
+        }
+    }
+    // On a circle there is slip, and the coefficient exists.
+    let turning = brush(elastic).with(Key::TurningRadius, 30.0).unwrap();
+    let found = turning.hopf_points(Along::new(Key::V, 5.0, 40.0).unwrap(), &Control::none()).unwrap().points;
+    assert!(!found.is_empty() && found.iter().all(|point| point.first_lyapunov.is_some()));
+}
+
+/// Cycles are followed as far as the wheel rolls forwards.
+#[test]
+fn branches_end_where_the_wheel_stops() {
+    let along = Along::new(Key::V, 5.0, 60.0).unwrap();
+    let hopf = nose_gear(0.0).hopf_points(along, &Control::none()).unwrap().points.remove(0);
+    let cycles = hopf.cycles(along, &CycleOptions::default(), |_| ControlFlow::Continue(())).unwrap();
+    assert!(matches!(cycles.stops[1], Some(Stop::Monitor { .. })), "{:?}", cycles.stops[1]);
+    let last = cycles.points.last().unwrap();
+    assert_relative_eq!(last.min[3] / last.value, SLOWEST_ON_CYCLES, max_relative = 1e-6);
+    assert!(cycles.points.iter().all(|cycle| cycle.min[3] > 0.0));
 }
 
 /// A stable caster comes back; one whose king pin decelerates the wheel to a stop ends there.

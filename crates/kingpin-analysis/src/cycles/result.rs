@@ -12,7 +12,7 @@ use arclength::branch::LabelCounter;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::Along;
+use kingpin::branches::{Along, SPEED_MONITOR};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::readable;
@@ -135,8 +135,9 @@ impl CyclesResult {
             };
             let [first, second] = &branch.cycles.stops;
             let varying = std::slice::from_ref(&along);
+            let monitors = [SPEED_MONITOR.to_owned()];
             let first = match (first, &branch.hopf) {
-                (Some(stop), _) => End::of(stop, varying, last(points.first())),
+                (Some(stop), _) => End::monitored(Some(stop), varying, &monitors, last(points.first())),
                 (None, Some(hopf)) => End {
                     cause: format!(
                         "starts at the {} Hopf point {}",
@@ -149,7 +150,7 @@ impl CyclesResult {
                     End { cause: format!("starts at {}", branch.origin), ..End::start(last(points.first())) }
                 }
             };
-            let ends = [first, End::of_either(second.as_ref(), varying, last(points.last()))];
+            let ends = [first, End::monitored(second.as_ref(), varying, &monitors, last(points.last()))];
             branches.push(BranchResult {
                 branch: number,
                 from: branch.origin,

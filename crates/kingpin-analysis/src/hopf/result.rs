@@ -13,7 +13,7 @@ use arclength_analysis::course::{self, ToldPoint};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::{Along, HopfPoint, MotionBranch};
-use kingpin::{KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
@@ -41,6 +41,12 @@ pub struct HopfPointResult {
     /// Error of the first Lyapunov coefficient.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_lyapunov_error: Option<f64>,
+    /// Where there is none: slope of the largest caster angle of the cycles in the parameter, negative where they lie below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub psi_max_slope: Option<f64>,
+    /// Why there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remark: Option<String>,
     /// Error estimate of the value.
     #[serde(default)]
     pub location_error: Option<f64>,
@@ -145,7 +151,7 @@ impl HopfResult {
             unlocated: branch.motions.iter().filter_map(BracketedResult::at).collect(),
             points: (0..)
                 .zip(&branch.hopf_points)
-                .map(|(index, point)| hopf_point(index, point, branch))
+                .map(|(index, point)| hopf_point(index, point, interval.key(), branch))
                 .collect(),
             motions,
             along,
@@ -158,7 +164,23 @@ impl HopfResult {
     }
 }
 
-fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPointResult {
+/// Why a Hopf point has no first Lyapunov coefficient, and what it has instead.
+fn remark(point: &HopfPoint, key: Key) -> Option<String> {
+    let straight = point.wheel.towing_yaw_rate() == 0.0;
+    if point.first_lyapunov.is_some() || !straight || point.wheel.tyre() != Tyre::Brush {
+        return None;
+    }
+    let reason =
+        "no first Lyapunov coefficient exists, for the curvature of the brush law jumps at zero slip";
+    let slope = point.psi_max_slope.map(|slope| {
+        let side = if slope < 0.0 { "below" } else { "above" };
+        let unit = if key.unit() == "1" { String::new() } else { format!(" per {}", key.unit()) };
+        format!("; psi_max grows by {} rad{unit} {side} it", readable(slope.abs()))
+    });
+    Some(reason.to_owned() + &slope.unwrap_or_default())
+}
+
+fn hopf_point(index: usize, point: &HopfPoint, key: Key, branch: &MotionBranch) -> HopfPointResult {
     let motion = branch.motions.iter().find(|motion| {
         motion.value == point.value && matches!(motion.special.as_deref(), Some(SpecialPoint::Hopf(_)))
     });
@@ -170,6 +192,8 @@ fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPoi
         state: named_state(&point.state),
         label: label(index),
         c1_real: point.detail.c1_real,
+        psi_max_slope: point.psi_max_slope,
+        remark: remark(point, key),
         first_lyapunov_error: point.detail.first_lyapunov_error,
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
@@ -207,7 +231,13 @@ impl Report for HopfResult {
                 criticality(point.criticality).into(),
             ]);
         }
-        table.write(out)
+        table.write(out)?;
+        for (label, remark) in
+            self.points.iter().filter_map(|point| Some((&point.label, point.remark.as_ref()?)))
+        {
+            writeln!(out, "{label}: {remark}")?;
+        }
+        Ok(())
     }
 
     fn columns(&self) -> Columns {

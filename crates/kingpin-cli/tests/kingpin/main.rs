@@ -12,6 +12,7 @@ mod lateral;
 mod long_values;
 mod studies;
 mod tables;
+mod tyre;
 mod verdicts;
 
 use std::path::{Path, PathBuf};

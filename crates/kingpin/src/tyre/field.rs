@@ -7,7 +7,8 @@ use crate::contact::ContactForce;
 use crate::error::KingpinError;
 use crate::parameters::{Key, Tyre};
 use crate::wheel::{HALF_LENGTHS_PER_TRAIL, Wheel};
-use arclength::{Scalar, Threshold, VectorField};
+use arclength::cycle::Orbit;
+use arclength::{Dual, Scalar, Threshold, VectorField};
 use std::ops::Mul;
 
 /// Names of the states: longitudinal and lateral displacement of the king pin in m, caster angle in rad, forward and lateral speed of
@@ -106,6 +107,21 @@ impl TyreWheel {
     /// The values of the active keys in [`wheel`](Self::wheel): the parameters to start from.
     pub fn parameters(&self) -> Vec<f64> {
         self.active.values()
+    }
+
+    /// The wheel at other values of the active keys.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](KingpinError::OutOfRange).
+    pub fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+        self.active.wheel_at(parameters)
+    }
+
+    /// The smallest forward speed of the wheel on a cycle, as a part of the towing speed.
+    pub(crate) fn smallest_speed_ratio(&self, orbit: &Orbit, parameters: &[f64]) -> f64 {
+        let constants: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        let [slowest, _] = orbit.range_of(|state| self.full_state(state, &constants)[3]);
+        slowest / self.active.towing(parameters).0
     }
 
     /// Indices of the free states among [`TYRE_STATE_NAMES`].

@@ -9,8 +9,10 @@ mod equations;
 mod field;
 mod history;
 mod law;
+mod onset;
 mod uniform;
 
 pub use field::{TYRE_STATE_NAMES, TyreWheel};
 pub use history::TyreHistory;
+pub(crate) use onset::Onset;
 pub(crate) use uniform::TyreLinearisation;
