@@ -4,9 +4,8 @@ use crate::Folder;
 use crate::branches::{close, labelled, number};
 use serde_json::Value;
 
-/// Somieski's nose gear (1997), 1 kg m^2 about a rigid king pin.
-const NOSE_GEAR: &str = "l = 0.1\nl_c = 0.05\nm_w = 1\nm_c = 1\nJ_wzeta = 0.9\nJ_Cz = 0.0875\nR = 0.2\nk = \"inf\"\nk_psi = 1e5\nr = \"inf\"
-tyre = \"linear\"\nsigma = 0.3\na = 0.1\nC_alpha = 180000\nt_p = 0.1\nkappa = 270\nF_Az = -9000\n";
+/// Somieski's nose gear (1997).
+const NOSE_GEAR: &str = include_str!("../../../kingpin/examples/nose_gear.toml");
 
 /// The paper's wheel with a load and a tyre.
 const SOFT: &str = "-s tyre=linear -s sigma=0.03 -s a=0.01 -s C_alpha=400 -s kappa=0.003 -s F_Az=-20";
