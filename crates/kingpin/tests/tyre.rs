@@ -504,6 +504,46 @@ fn branches_end_where_the_wheel_stops() {
     assert!(cycles.points.iter().all(|cycle| cycle.min[3] > 0.0));
 }
 
+/// A nose gear with seven states, whose cycles need ever finer meshes, under both laws: every branch is told to its end, and on no cycle
+/// does the wheel stop.
+#[test]
+fn branches_of_seven_states_are_followed_to_their_ends() {
+    for tyre in [Tyre::Linear, Tyre::Brush] {
+        let gear = wheel(
+            tyre,
+            &[
+                (Key::L, 0.09),
+                (Key::TurningRadius, f64::INFINITY),
+                (Key::MW, 5.0),
+                (Key::MC, 3.0),
+                (Key::JWxi, 0.08),
+                (Key::JWzeta, 0.045),
+                (Key::JCz, 0.02),
+                (Key::WheelRadius, 0.17),
+                (Key::LC, 0.03),
+                (Key::K, 6e4),
+                (Key::CPsi, 3.0),
+                (Key::FAz, -1200.0),
+                (Key::MuS, 0.8),
+                (Key::Sigma, 0.1),
+                (Key::HalfContactLength, 0.06),
+                (Key::CAlpha, 2e4),
+                (Key::Kappa, 5.0),
+            ],
+        );
+        let along = Along::new(Key::V, 0.05, 40.0).unwrap();
+        let found = gear.hopf_points(along, &Control::none()).unwrap().points;
+        assert_eq!(found.len(), 2);
+        for hopf in found {
+            let cycles = hopf.cycles(along, &CycleOptions::default(), |_| ControlFlow::Continue(())).unwrap();
+            assert!(cycles.points.len() > 3, "{:?}", cycles.stops);
+            for cycle in &cycles.points {
+                assert!(cycle.min[3] > 0.9 * SLOWEST_ON_CYCLES * cycle.value, "{}", cycle.min[3]);
+            }
+        }
+    }
+}
+
 /// A stable caster comes back; one whose king pin decelerates the wheel to a stop ends there.
 #[test]
 fn a_motion_that_stops_ends_there() {
