@@ -5,8 +5,7 @@ use kingpin_report::{NamedNumbers, Parameters};
 
 /// Every parameter that a wheel uses, without those that vary; the tyre where it is none that is rigid.
 pub(crate) fn parameters_of(wheel: &Wheel, varying: &[Key]) -> Parameters {
-    let fixed =
-        wheel.parameters().filter(|(key, _)| !varying.iter().any(|active| active.sets().contains(key)));
+    let fixed = wheel.parameters().filter(|(key, _)| !wheel.varies_with(*key, varying));
     let numbers = NamedNumbers(fixed.map(|(key, value)| (key.name().to_owned(), value)).collect());
     let tyre = Some(wheel.tyre()).filter(|tyre| *tyre != Tyre::Rigid);
     let words = tyre.map(|tyre| (Tyre::KEY.to_owned(), tyre.name().to_owned()));
@@ -23,7 +22,11 @@ pub(crate) fn wheel_of(parameters: &Parameters) -> Result<Wheel, KingpinError> {
         wheel.set(name, word)?;
     }
     for (name, value) in &parameters.numbers.0 {
-        wheel.set_value(name.parse()?, *value)?;
+        let key: Key = name.parse()?;
+        // What follows from others goes on to follow them.
+        if wheel.get(key) != *value {
+            wheel.set_value(key, *value)?;
+        }
     }
     Ok(wheel)
 }

@@ -185,6 +185,13 @@ impl Wheel {
         }
     }
 
+    /// Whether a stored parameter varies with those that do: it is set by one of them, or it is `t_p`, was not set and follows `a`.
+    pub fn varies_with(&self, key: Key, active: &[Key]) -> bool {
+        let follows =
+            key == Key::TP && self.pneumatic_trail_follows() && active.contains(&Key::HalfContactLength);
+        follows || active.iter().any(|active| active.sets().contains(&key))
+    }
+
     /// Whether `t_p` is `a/3` because it was not set.
     pub(crate) fn pneumatic_trail_follows(&self) -> bool {
         !self.pneumatic_trail_is_set

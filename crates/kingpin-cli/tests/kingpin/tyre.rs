@@ -79,6 +79,24 @@ fn branches_start_from_files_and_keep_their_tyre() {
     assert!(published > 5 && points.iter().all(|point| point["first_lyapunov"].is_null()));
 }
 
+/// A pneumatic trail that was not set follows the contact length, from files too.
+#[test]
+fn the_pneumatic_trail_follows_the_contact_length_from_files() {
+    let folder = Folder::new();
+    folder.succeed(&format!("hopf {SOFT} -s v=12 --along a=0.001:0.05 -q -o hopf.json"));
+    let hopf: Value = serde_json::from_slice(&crate::read(&folder.path("hopf.json"))).unwrap();
+    assert!(hopf["parameters"]["t_p"].is_null(), "{}", hopf["parameters"]);
+    let a = number(&hopf["points"][0]["value"]);
+    // At that contact length the same point is found along the speed, from the file or directly.
+    let direct = folder.json(&format!("hopf {SOFT} -s a={a:e} --along v=10:14"));
+    close(&direct["points"][0]["value"], 12.0, 1e-9);
+    close(&direct["parameters"]["t_p"], a / 3.0, 1e-12);
+    let curve = folder.json("locus --from hopf.json:HB1 --in a=0.001:0.05,v=8:16 --steps 5");
+    assert!(curve["points"].as_array().unwrap().len() > 3);
+    let cycles = folder.json("cycles --from hopf.json:HB1 --along a=0.001:0.05 --steps 3");
+    close(&cycles["points"][0]["value"], a, 1e-9);
+}
+
 #[test]
 fn branches_end_where_the_wheel_stops() {
     let folder = nose_gear();
