@@ -155,3 +155,47 @@ fn a_quantity_without_a_value_is_refused() {
         .unwrap_err();
     assert!(matches!(error, Error::Invalid { .. }), "{error}");
 }
+
+/// A monitor of the whole orbit sees every cycle on its own mesh, also where the next one needs a finer mesh.
+#[test]
+fn a_monitor_of_the_orbit_is_right_where_meshes_change() {
+    use arclength::branch::Monitor;
+    use arclength::cycle::CyclePoint;
+    /// Van der Pol's equation: the slope reaches 1.6 beside mu = 0 and grows with mu.
+    struct VanDerPol;
+    impl VectorField for VanDerPol {
+        fn state_names(&self) -> Vec<String> {
+            ["x", "y"].map(String::from).to_vec()
+        }
+        fn parameter_names(&self) -> Vec<String> {
+            vec!["mu".to_owned()]
+        }
+        fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+            d[0] = s[1];
+            d[1] = p[0] * (-(s[0] * s[0]) + 1.0) * s[1] - s[0];
+        }
+    }
+    let times: Vec<f64> = (0..=100).map(|index| TAU * f64::from(index) / 100.0).collect();
+    let states: Vec<Vec<f64>> = times.iter().map(|time| vec![2.0 * time.cos(), -2.0 * time.sin()]).collect();
+    let circle = Orbit::from_samples(&times, &states).unwrap();
+    let largest = |cycle: &CyclePoint| Some(cycle.orbit.range_of(|state| state[1])[1]);
+    let follow = |orbit: &Orbit, mu: f64, until: f64| {
+        let branch = Cycles::of(&VanDerPol, CycleStart::Orbit(orbit.clone()))
+            .parameters(&[mu])
+            .along("mu", 0.1..=50.0)
+            .monitor(Monitor::new("largest slope", largest).until(&[until]))
+            .run()
+            .unwrap();
+        let meshes: Vec<usize> = branch.points.iter().map(|cycle| cycle.orbit.mesh.len()).collect();
+        assert!(meshes.iter().max() > meshes.iter().min(), "{meshes:?}");
+        for cycle in &branch.points {
+            assert!((cycle.monitors[0] - cycle.max[1]).abs() < 1e-9 * cycle.max[1]);
+        }
+        branch
+    };
+    // To finer meshes, and back to coarser ones.
+    let there = follow(&circle, 0.1, 15.0).points.last().unwrap().clone();
+    assert!((there.max[1] - 15.0).abs() < 1e-7);
+    let back = follow(&there.orbit, there.value, 3.0).points.first().unwrap().clone();
+    assert!((back.max[1] - 3.0).abs() < 1e-7);
+}

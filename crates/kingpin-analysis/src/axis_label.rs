@@ -11,7 +11,7 @@ pub(crate) fn of(key: Key) -> String {
             let index = if index.contains('\\') { index } else { format!("\\mathrm{{{index}}}") };
             format!("{}_{{{index}}}", letter.chars().map(command).collect::<String>())
         }
-        None => key.symbol().to_owned(),
+        None => key.symbol().chars().map(command).collect(),
     };
     match key.unit() {
         "1" => format!("${symbol}$"),
@@ -26,6 +26,9 @@ fn command(character: char) -> String {
         'ζ' => "\\zeta ".to_owned(),
         'μ' => "\\mu ".to_owned(),
         'ψ' => "\\psi ".to_owned(),
+        'σ' => "\\sigma ".to_owned(),
+        'α' => "\\alpha ".to_owned(),
+        'κ' => "\\kappa ".to_owned(),
         other => other.to_string(),
     }
 }

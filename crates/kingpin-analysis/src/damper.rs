@@ -8,7 +8,7 @@ use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
 use kingpin::{Key, SmallestDamper, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -121,7 +121,7 @@ impl Report for DamperResult {
         Schema::first("kingpin.damper")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi])
     }
 

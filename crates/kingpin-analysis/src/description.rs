@@ -1,17 +1,18 @@
 //! Wheels in words.
 
-use kingpin::{Key, Wheel};
+use kingpin::{Key, Tyre, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Speed, caster length and radius, and every other parameter that is not the paper's; without those that vary.
 pub(crate) fn of(wheel: &Wheel, varying: &[Key]) -> String {
     let always = [Key::V, Key::L, Key::TurningRadius];
-    let varies = |key: Key| varying.iter().any(|active| active.sets().contains(&key));
+    let varies = |key: Key| wheel.varies_with(key, varying);
     let worth_saying =
         |&(key, value): &(Key, f64)| !varies(key) && (always.contains(&key) || value != key.default_value());
-    let texts: Vec<String> =
-        wheel.parameters().filter(worth_saying).map(|(key, value)| quantity(key, value)).collect();
-    texts.join(", ")
+    let tyre = Some(wheel.tyre()).filter(|tyre| *tyre != Tyre::Rigid);
+    let tyre = tyre.map(|tyre| format!("{} = {tyre}", Tyre::KEY));
+    let numbers = wheel.parameters().filter(worth_saying).map(|(key, value)| quantity(key, value));
+    numbers.chain(tyre).collect::<Vec<_>>().join(", ")
 }
 
 /// `v = 4 m/s`.

@@ -7,7 +7,7 @@ use crate::wheel_request::WheelRequest;
 use arclength_analysis::branch::stability;
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -83,7 +83,7 @@ impl Report for StabilityResult {
         Schema::first("kingpin.stability")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[])
     }
 

@@ -3,10 +3,11 @@
 use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
+use crate::states::{self, named_state};
 use crate::wheel_request::WheelRequest;
 use kingpin::{Key, UniformMotion, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -39,18 +40,9 @@ pub struct SteadyResult {
     /// The wheel.
     #[serde(skip)]
     pub wheel: Wheel,
-    /// Longitudinal displacement of the king pin in m.
-    pub u: f64,
-    /// Lateral displacement of the king pin in m.
-    pub q: f64,
-    /// Caster angle in rad.
-    pub psi: f64,
-    /// Forward speed of the wheel in m/s.
-    #[serde(rename = "V")]
-    pub forward_speed: f64,
-    /// Yaw rate in rad/s.
-    #[serde(rename = "Omega")]
-    pub yaw_rate: f64,
+    /// The states: `u q psi V Omega`, with a tyre `u q psi V1 V2 Omega y_t`.
+    #[serde(flatten)]
+    pub state: NamedNumbers,
     /// What is left of the equations of motion.
     pub residual: f64,
     /// Force of friction between wheel and ground in N.
@@ -70,11 +62,7 @@ impl SteadyResult {
         let contact = motion.contact_force();
         Self {
             wheel: *motion.wheel(),
-            u: motion.u(),
-            q: motion.q(),
-            psi: motion.psi(),
-            forward_speed: motion.forward_speed(),
-            yaw_rate: motion.yaw_rate(),
+            state: named_state(&motion.states()),
             residual: motion.residual(),
             friction_force: contact.friction(),
             normal_force: contact.normal,
@@ -89,7 +77,7 @@ impl Report for SteadyResult {
         Schema::first("kingpin.steady")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[])
     }
 
@@ -105,11 +93,9 @@ impl Report for SteadyResult {
         let mut row = |name: &str, value: f64, unit: &str, meaning: &str| {
             table.row([name.into(), value.into(), unit.into(), meaning.into()]);
         };
-        row("u", self.u, "m", "longitudinal displacement of the king pin");
-        row("q", self.q, "m", "lateral displacement of the king pin");
-        row("psi", self.psi, "rad", "caster angle");
-        row("V", self.forward_speed, "m/s", "forward speed of the wheel");
-        row("Omega", self.yaw_rate, "rad/s", "yaw rate");
+        for (name, value) in &self.state.0 {
+            row(name, *value, states::unit(name), states::meaning(name));
+        }
         row("residual", self.residual, "", "of the equations of motion");
         row("friction_force", self.friction_force, "N", "between wheel and ground");
         row("normal_force", self.normal_force, "N", "between wheel and ground");
@@ -134,17 +120,10 @@ impl Report for SteadyResult {
     }
 
     fn columns(&self) -> Columns {
-        Columns::new()
-            .numbers("u", [self.u])
-            .unit("m")
-            .numbers("q", [self.q])
-            .unit("m")
-            .numbers("psi", [self.psi])
-            .unit("rad")
-            .numbers("V", [self.forward_speed])
-            .unit("m/s")
-            .numbers("Omega", [self.yaw_rate])
-            .unit("rad/s")
+        let states = self.state.0.iter().fold(Columns::new(), |columns, (name, value)| {
+            columns.numbers(name.as_str(), [*value]).unit(states::unit(name))
+        });
+        states
             .numbers("residual", [self.residual])
             .numbers("friction_force", [self.friction_force])
             .unit("N")

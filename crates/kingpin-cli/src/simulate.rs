@@ -18,7 +18,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: f64,
 
-    /// Change a state (u, q, psi, V, Omega; with k_u = inf q, psi, Omega) at the start; repeatable
+    /// Change a state (u, q, psi, V, Omega; with k_u = inf q, psi, Omega; with a tyre u, q, psi, V1, V2, Omega, y_t) at the
+    /// start; repeatable
     #[arg(long, value_name = "KEY=DELTA", allow_hyphen_values = true)]
     perturb: Vec<Assignment>,
 

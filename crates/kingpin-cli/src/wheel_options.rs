@@ -2,7 +2,7 @@
 
 use arclength_analysis::Assignment;
 use clap::Args;
-use kingpin::Key;
+use kingpin::{Key, Tyre};
 use kingpin_analysis::WheelRequest;
 use kingpin_report::Table;
 use kingpin_report::numbers::readable;
@@ -36,13 +36,26 @@ pub(crate) fn parameter_help(example: &str) -> String {
             key.name().into(),
             key.symbol().into(),
             key.unit().into(),
-            readable(key.default_value()).into(),
+            if has_default(key) { readable(key.default_value()) } else { "none".to_owned() }.into(),
             key.allowed().to_string().into(),
             key.meaning().into(),
         ]);
     }
+    table.row([
+        Tyre::KEY.into(),
+        "".into(),
+        "".into(),
+        Tyre::default().name().into(),
+        Tyre::ALL.map(Tyre::name).join(", ").into(),
+        "law of the tyre: none, linear, or limited by friction".into(),
+    ]);
     let mut text = Vec::new();
     // Writing to memory does not fail.
     let _ = table.write(&mut text);
     format!("Example: {example}\n\nParameters, in SI units and radians:\n{}", String::from_utf8_lossy(&text))
+}
+
+/// Whether a key need not be set, with a tyre either.
+fn has_default(key: Key) -> bool {
+    key.allowed().contains(key.default_value())
 }

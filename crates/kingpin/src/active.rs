@@ -11,6 +11,8 @@ use arclength::Scalar;
 /// Parameters that act on the towing or on the ground, not on the body.
 const BESIDE_THE_BODY: [Key; 7] =
     [Key::V, Key::TurningRadius, Key::Curvature, Key::G, Key::MuS, Key::MuD, Key::FAz];
+/// Those of them that act on the towing.
+const OF_THE_TOWING: [Key; 3] = [Key::V, Key::TurningRadius, Key::Curvature];
 
 /// Where the curvature of the towing path comes from.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +44,7 @@ impl ActiveParameters {
         if keys.contains(&Key::MF) {
             return Err(KingpinError::DryFrictionVaries);
         }
+        wheel.check_varies(keys)?;
         let (longitudinal, lateral) = (wheel.get(Key::KU), wheel.get(Key::KQ));
         if keys.contains(&Key::K) && longitudinal != lateral {
             return Err(KingpinError::AmbiguousStiffness { longitudinal, lateral });
@@ -107,21 +110,30 @@ impl ActiveParameters {
         (v, omega)
     }
 
+    /// Whether no active parameter changes anything but the towing.
+    pub(crate) fn change_only_the_towing(&self) -> bool {
+        self.keys.iter().all(|key| OF_THE_TOWING.contains(key))
+    }
+
     /// The body, where no active parameter changes it.
     #[inline(always)]
     pub(crate) fn fixed_body(&self) -> Option<&Body<f64>> {
         self.fixed_body.as_ref()
     }
 
+    /// A stored parameter at these values of the active ones.
+    #[inline]
+    pub(crate) fn value<T: Scalar>(&self, key: Key, parameters: &[T]) -> T {
+        let sets = |active: &Key| *active == key || active.sets().contains(&key);
+        match self.keys.iter().position(sets) {
+            Some(index) => parameters[index],
+            None => T::from(self.wheel.get(key)),
+        }
+    }
+
     /// The body at these values of the active parameters.
     #[inline]
     pub(crate) fn body<T: Scalar>(&self, parameters: &[T]) -> Body<T> {
-        Body::new(|key| {
-            let sets = |active: &Key| *active == key || active.sets().contains(&key);
-            match self.keys.iter().position(sets) {
-                Some(index) => parameters[index],
-                None => T::from(self.wheel.get(key)),
-            }
-        })
+        Body::new(|key| self.value(key, parameters))
     }
 }

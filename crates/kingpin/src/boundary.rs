@@ -53,7 +53,7 @@ impl Wheel {
     /// [`Interrupted`].
     pub fn rolling_limit(&self, plane: &Plane, control: &Control<'_>) -> Result<Vec<Curve>, Interrupted> {
         let reserve = |wheel: &Wheel| {
-            let force = wheel.contact_force(&wheel.uniform_state().ok()?);
+            let force = wheel.uniform_motion().ok()?.contact_force();
             Some(force.friction() - force.limit)
         };
         self.zero_set(plane, reserve, control)

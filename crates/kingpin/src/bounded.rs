@@ -14,7 +14,7 @@ const ROUNDING: f64 = 0.6 * f64::EPSILON;
 const FUNCTION_ROUNDING: f64 = 2.0 * f64::EPSILON;
 
 /// Order of the largest matrices.
-const LARGEST_ORDER: usize = 5;
+const LARGEST_ORDER: usize = 7;
 
 /// A number and a bound on its error, to first order in the errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -202,45 +202,37 @@ impl Scalar for Bounded {
     }
 }
 
-/// The coefficients `c1 ... cn` of `det(s I - A)`: sums of the principal minors of the matrix, each expanded along its rows, so
-/// that what they bring of the errors of the entries is that of every term.
+/// The coefficients `c1 ... cn` of `det(s I - A)`, which is expanded along its rows, so that what they bring of the errors of the
+/// entries is that of every term.
 pub(crate) fn characteristic_polynomial<const N: usize>(matrix: &[[Bounded; N]; N]) -> [Bounded; N] {
     const { assert!(N <= LARGEST_ORDER) };
-    let mut coefficients = [Bounded::from(0.0); N];
-    for subset in 1_usize..1 << N {
-        let order = subset.count_ones() as usize;
-        let minor = principal_minor(matrix, subset);
-        let sum = &mut coefficients[order - 1];
-        *sum = if order % 2 == 1 { *sum - minor } else { *sum + minor };
-    }
-    coefficients
-}
-
-/// The determinant of the rows and columns in a set, given by its bits.
-fn principal_minor<const N: usize>(matrix: &[[Bounded; N]; N], subset: usize) -> Bounded {
-    let members = (0..N).filter(|index| subset >> index & 1 == 1);
-    // For every subset of the columns the minor of the first rows.
-    let mut minors = [None; 1 << LARGEST_ORDER];
-    minors[0] = Some(Bounded::from(1.0));
-    for row in members.clone() {
-        let mut next = [None; 1 << LARGEST_ORDER];
-        for (columns, minor) in minors[..1 << N].iter().enumerate() {
-            let Some(minor) = *minor else { continue };
-            for column in members.clone().filter(|column| columns >> column & 1 == 0) {
-                let entry: Bounded = matrix[row][column];
-                if entry == Bounded::from(0.0) {
+    // For every set of columns the minor of as many first rows, a polynomial in s, lowest power first.
+    let mut minors = vec![[Bounded::from(0.0); LARGEST_ORDER + 1]; 1 << N];
+    minors[0][0] = Bounded::from(1.0);
+    for columns in 0_usize..(1 << N) - 1 {
+        let row = columns.count_ones() as usize;
+        let minor = minors[columns];
+        for column in (0..N).filter(|column| columns >> column & 1 == 0) {
+            // The sign counts the columns already taken that lie to the right.
+            let passed = (columns >> column).count_ones();
+            let signed = |term: Bounded| if passed % 2 == 0 { term } else { -term };
+            let next = &mut minors[columns | 1 << column];
+            let entry = -matrix[row][column];
+            for (power, &coefficient) in minor.iter().enumerate().take(row + 1) {
+                if coefficient == Bounded::from(0.0) {
                     continue;
                 }
-                // The sign counts the columns already taken that lie to the right.
-                let passed = (columns >> column).count_ones();
-                let term = if passed % 2 == 0 { minor * entry } else { -(minor * entry) };
-                let sum: &mut Option<Bounded> = &mut next[columns | 1 << column];
-                *sum = Some(sum.map_or(term, |sum| sum + term));
+                if entry != Bounded::from(0.0) {
+                    next[power] += signed(coefficient * entry);
+                }
+                if row == column {
+                    next[power + 1] += signed(coefficient);
+                }
             }
         }
-        minors = next;
     }
-    minors[subset].unwrap_or(Bounded::from(0.0))
+    let determinant = minors[(1 << N) - 1];
+    std::array::from_fn(|index| determinant[N - 1 - index])
 }
 
 #[cfg(test)]

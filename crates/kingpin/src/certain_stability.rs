@@ -6,23 +6,24 @@
 
 use crate::body::Body;
 use crate::bounded::{Bounded, characteristic_polynomial};
+use crate::certain_jacobian::certain_jacobian;
 use crate::hurwitz::{
     determinants, hopf_condition, is_surely_stable, plain_characteristic_polynomial, surely,
 };
 use crate::lateral;
 use crate::linear_stability::lateral_cubic;
 use crate::parameters::Key;
-use crate::uniform_motion::{UniformMotion, jacobian_over, solve};
+use crate::uniform_motion::{UniformMotion, jacobian_over};
 use crate::wheel::Wheel;
-
-/// The error of a state is that of a step of Newton's method times this, since the Jacobian has errors too.
-const STEP_SAFETY: f64 = 2.0;
 
 impl UniformMotion {
     /// Whether the conditions for stability hold or fail beyond doubt; those of the lateral motion in rectilinear towing, where the
     /// longitudinal one is damped by `c_u` or does not count.
     pub(crate) fn is_surely_stable(&self) -> Option<bool> {
         let wheel = self.wheel();
+        if let Some(state) = self.tyre_state() {
+            return wheel.tyre_is_surely_stable(&state);
+        }
         let parameter = |key| Bounded::read(wheel.get(key));
         let [_, q, psi, forward_speed, yaw_rate] = self.state();
         if wheel.towing_yaw_rate() == 0.0 && forward_speed > 0.0 {
@@ -39,25 +40,6 @@ impl UniformMotion {
         let jacobian = certain_jacobian(self.state(), |state| jacobian_over(parameter, state))?;
         is_surely_stable(&characteristic_polynomial(&jacobian))
     }
-}
-
-/// The Jacobian at an equilibrium that is known up to rounding; `None` where it is singular.
-fn certain_jacobian<const N: usize>(
-    state: [f64; N],
-    linearise: impl Fn(&[Bounded; N]) -> ([Bounded; N], [[Bounded; N]; N]),
-) -> Option<[[Bounded; N]; N]> {
-    let (residual, jacobian) = linearise(&state.map(Bounded::from));
-    let values = jacobian.map(|row| row.map(|entry| entry.value));
-    let mut errors = [0.0; N];
-    for (component, residual) in residual.iter().enumerate() {
-        let mut unit = [0.0; N];
-        unit[component] = residual.value.abs() + residual.error;
-        for (error, step) in errors.iter_mut().zip(solve(values, unit)?) {
-            *error += STEP_SAFETY * step.abs();
-        }
-    }
-    let known = std::array::from_fn(|index| Bounded { value: state[index], error: errors[index] });
-    Some(linearise(&known).1)
 }
 
 /// The same for the plain wheel on a circle, from the closed forms.

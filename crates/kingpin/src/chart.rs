@@ -77,6 +77,7 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<GrowthRateChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
+        self.check_varies(&[plane.x().key(), plane.y().key()])?;
         let mut growth_rate = vec![None; x.len() * y.len()];
         let mut stable = vec![Some(false); x.len() * y.len()];
         let mut rolls = vec![false; x.len() * y.len()];

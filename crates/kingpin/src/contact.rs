@@ -39,7 +39,7 @@ impl ContactForce {
 }
 
 impl Wheel {
-    /// The force of the ground on the rolling wheel at a state `(u, q, psi, V, Omega)`; where `k_u = inf`, `u` and `V` do not
+    /// The force of the ground on the rolling wheel, without a tyre, at a state `(u, q, psi, V, Omega)`; where `k_u = inf`, `u` and `V` do not
     /// count, for they follow from the others.
     pub fn contact_force(&self, state: &[f64; 5]) -> ContactForce {
         if self.has_lateral_elasticity_only() {

@@ -6,7 +6,7 @@
 
 use crate::arithmetic::Arithmetic;
 use crate::body::Body;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
 
 /// Smallest speed in m/s at which a change of stability is looked for.
@@ -39,11 +39,11 @@ pub struct CriticalSpeed {
 impl Wheel {
     /// The smallest towing speed at which the uniform motion changes its stability; `None` where no such speed is found.
     ///
-    /// On a circle, but for the plain wheel, the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
+    /// On a circle, but for the plain wheel, and with a tyre the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
     /// exists, and at its extrema between them; its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
         let radius = self.get(Key::TurningRadius);
-        let speed = if radius.is_infinite() {
+        let speed = if radius.is_infinite() && self.tyre() == Tyre::Rigid {
             // The stability of a plain wheel does not depend on the speed there.
             self.critical_speeds_straight().into_iter().find(|&speed| self.changes_stability_at(speed))
         } else if self.is_plain() {

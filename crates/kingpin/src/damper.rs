@@ -10,7 +10,7 @@
 use crate::boundary::Curve;
 use crate::critical_speed::{SECTION, bisect};
 use crate::error::KingpinError;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::plane::{Axis, Plane};
 use crate::wheel::Wheel;
 use arclength::control::Control;
@@ -63,10 +63,16 @@ impl Wheel {
         up_to: f64,
         control: &Control<'_>,
     ) -> Result<Option<SmallestDamper>, KingpinError> {
+        self.check_tyre()?;
         let speeds = Axis::new(Key::V, SLOWEST * up_to..=up_to)?;
         let search = Search { wheel: self, key, up_to };
+        let rigid = |stiffness: Key| self.get(stiffness).is_infinite();
         if search.is_enough(0.0) {
             return Ok(Some(SmallestDamper { damping: 0.0, speed: None }));
+        }
+        // Where nothing gives way nothing is damped.
+        if (key == Key::CQ && rigid(Key::KQ)) || (key == Key::CU && rigid(Key::KU)) {
+            return Ok(None);
         }
         let Some(enough) = search.some_that_is_enough(control)? else { return Ok(None) };
         let plane = Plane::new(speeds, Axis::new(key, 0.0..=BEYOND * enough)?)?;
@@ -107,10 +113,8 @@ impl Search<'_> {
     }
 
     fn some_that_is_enough(&self, control: &Control<'_>) -> Result<Option<f64>, KingpinError> {
-        let body = self.wheel.body();
-        let arm = body.caster_length;
-        let frequency = (body.lateral_stiffness * arm * arm * body.inverse_yaw_inertia).sqrt();
-        let rotational = frequency / body.inverse_yaw_inertia;
+        let arm = self.wheel.get(Key::L);
+        let rotational = self.rotational_scale();
         let unit = if self.key == Key::CPsi { rotational } else { rotational / (arm * arm) };
         for doubling in 0..DOUBLINGS {
             control.check()?;
@@ -123,6 +127,21 @@ impl Search<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// A damper about the king pin, in N m s/rad, that would take the lateral motion about a period to die out.
+    fn rotational_scale(&self) -> f64 {
+        let body = self.wheel.body();
+        let inertia = body.inverse_yaw_inertia.recip();
+        if self.wheel.tyre() == Tyre::Rigid {
+            let arm = body.caster_length;
+            return (body.lateral_stiffness * arm * arm * inertia).sqrt();
+        }
+        let fastest = self.wheel.with(Key::V, self.up_to).and_then(|wheel| wheel.uniform_motion());
+        let eigenvalues = fastest.map(|motion| motion.eigenvalues()).unwrap_or_default();
+        let frequency = eigenvalues.iter().map(|eigenvalue| eigenvalue.norm()).fold(0.0, f64::max);
+        // Without a motion at the largest speed no damper is enough.
+        if frequency > 0.0 { frequency * inertia } else { f64::INFINITY }
     }
 
     /// Speeds and dampings of the peaks of a boundary, and of its ends.

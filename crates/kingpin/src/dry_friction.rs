@@ -26,7 +26,7 @@ use crate::characteristic::roots;
 use crate::critical_speed::bisect;
 use crate::error::KingpinError;
 use crate::linear_stability::lateral_cubic;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
 use std::f64::consts::PI;
 
@@ -36,7 +36,7 @@ const SPEEDS: usize = 2000;
 
 impl Wheel {
     /// The factor by which each swing of the caster multiplies its angle where dry friction, however small, acts about the king pin;
-    /// zero where it creeps back to rest. `None` unless the wheel is towed straight and moves.
+    /// zero where it creeps back to rest. `None` unless the wheel is towed straight and moves, and with a tyre.
     ///
     /// ```
     /// use kingpin::Wheel;
@@ -51,7 +51,7 @@ impl Wheel {
     /// ```
     pub fn swing_factor(&self) -> Option<f64> {
         let speed = self.get(Key::V);
-        (self.get(Key::TurningRadius).is_infinite() && speed > 0.0).then(|| self.swing_at(speed).factor)
+        (self.rolls_straight() && speed > 0.0).then(|| self.swing_at(speed).factor)
     }
 
     /// The largest caster angle in rad, if that is small, from which the next swing of the rolling wheel ends at rest about the king pin
@@ -64,11 +64,11 @@ impl Wheel {
     }
 
     /// The smallest speed in m/s beyond which small motions in rectilinear towing grow in spite of dry friction about the king pin;
-    /// it does not depend on the moment of that. `None` where they die out at all speeds, and on a circle.
+    /// it does not depend on the moment of that. `None` where they die out at all speeds, on a circle and with a tyre.
     ///
     /// 2000 speeds from 1 mm/s on are looked at; the first change between two of them is found by bisection.
     pub fn critical_speed_with_friction(&self) -> Option<f64> {
-        self.get(Key::TurningRadius).is_infinite().then_some(())?;
+        self.rolls_straight().then_some(())?;
         let ratio = (Key::V.allowed().highest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
         let speed = |index: usize| SLOWEST * ratio.powi(index as i32);
         let excess = |speed: f64| self.swing_at(speed).factor.abs() - 1.0;
@@ -111,10 +111,14 @@ impl Wheel {
     /// the king pin takes the moment of that of the ground, `mu_d N l + k_psi psi <= M_f`. `None` where it takes none of them, and
     /// on a circle; without `k_psi` it is any angle, up to a quarter turn and beyond.
     pub fn largest_resting_angle_while_sliding(&self) -> Option<f64> {
-        self.get(Key::TurningRadius).is_infinite().then_some(())?;
+        self.rolls_straight().then_some(())?;
         let spare = self.get(Key::MF) - self.get(Key::MuD) * self.normal_force() * self.get(Key::L);
         let stiffness = self.get(Key::KPsi);
         (spare > 0.0).then(|| if stiffness > 0.0 { (spare / stiffness).min(PI) } else { PI })
+    }
+
+    fn rolls_straight(&self) -> bool {
+        self.get(Key::TurningRadius).is_infinite() && self.tyre() == Tyre::Rigid
     }
 
     fn swing_at(&self, speed: f64) -> Swing {

@@ -1,6 +1,6 @@
 //! Everything that can go wrong, said so that it can be put right.
 
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use arclength::control::Interrupted;
 use std::fmt;
 use std::path::PathBuf;
@@ -32,6 +32,9 @@ impl fmt::Display for Position {
     }
 }
 
+/// What there is of a wheel with a tyre.
+const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters and simulations";
+
 /// Why a wheel has no uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -49,6 +52,16 @@ pub enum NoUniformMotion {
         inertial: f64,
         /// `k l` in N.
         elastic: f64,
+    },
+    /// The motion of a wheel with a tyre was followed from the straight path to its circle and lost.
+    #[error(
+        "it was followed from the straight path to 1/r = {curvature} 1/m and lost there (residual {residual:e}); lower v or raise r"
+    )]
+    LostOnTheCircle {
+        /// The last curvature in 1/m at which the motion was found.
+        curvature: f64,
+        /// Largest component of the vector field where Newton's method gave up.
+        residual: f64,
     },
     /// The caster cannot lie along the circle of the wheel.
     #[error(
@@ -115,6 +128,54 @@ pub enum KingpinError {
         value: f64,
         /// Where in a file.
         position: Option<Position>,
+    },
+    /// A word that is no law of the tyre.
+    #[error("{}tyre = {given}: no such tyre; allowed: rigid, linear, brush", prefix(.position))]
+    UnknownTyre {
+        /// What was given.
+        given: String,
+        /// Where in a file.
+        position: Option<Position>,
+    },
+    /// The law of the tyre where a parameter is asked for that varies.
+    #[error("`tyre` is a word (rigid, linear, brush) and cannot vary; set it with `tyre = linear`")]
+    TyreVaries,
+    /// A tyre without what its law needs.
+    #[error("tyre = {tyre} needs {key} ({}, in {}): allowed: {}", .key.meaning(), .key.unit(), .key.allowed())]
+    MissingOfTyre {
+        /// The tyre.
+        tyre: Tyre,
+        /// What is missing.
+        key: Key,
+    },
+    /// A brush that no friction holds.
+    #[error(
+        "tyre = brush needs friction: mu_s N = {limit} N, where N = -F_Az + (m_w + m_c) g; raise mu_s, or lower F_Az, which \
+         is negative where a load presses down"
+    )]
+    NoFrictionLimit {
+        /// `mu_s N` in N.
+        limit: f64,
+    },
+    /// A parameter of the tyre where there is none.
+    #[error("`{key}` belongs to a tyre ({}), and the wheel has none: set tyre = linear or tyre = brush", .key.meaning())]
+    NoTyre {
+        /// The key.
+        key: Key,
+    },
+    /// A king pin that cannot give way, with a wheel that cannot either.
+    #[error(
+        "k_q = inf: without a tyre the wheel needs a finite k_q, or nothing gives way; set tyre = linear or tyre = brush for a \
+         rigid king pin"
+    )]
+    RigidKingPin,
+    /// What does not take a tyre.
+    #[error(
+        "tyre = {tyre}: this takes rigid wheels only; with a tyre there are {TAKES_TYRE}; see the wheel without it by tyre = rigid"
+    )]
+    TyreNotTaken {
+        /// The tyre.
+        tyre: Tyre,
     },
     /// A text that is no TOML.
     #[error("not valid TOML: {0}")]
@@ -202,6 +263,25 @@ pub enum KingpinError {
         /// The key.
         key: Key,
     },
+    /// A rigid king pin does not move sideways.
+    #[error(
+        "`{key}` cannot vary while k_q = inf: the king pin does not move sideways; vary another key or set a finite k_q"
+    )]
+    NoLateralMotion {
+        /// The key.
+        key: Key,
+    },
+    /// A cycle on which a wheel with a tyre does not roll forwards all the time.
+    #[error(
+        "on this cycle the smallest V1 is {ratio} v: with a tyre the wheel has to roll forwards; start from a smaller cycle"
+    )]
+    RollsBackwards {
+        /// The smallest `V1/v`.
+        ratio: f64,
+    },
+    /// The model with a tyre needs one.
+    #[error("tyre = rigid: the model with a tyre needs tyre = linear or tyre = brush")]
+    NeedsTyre,
     /// An interval that reaches a limit in which the model has fewer states.
     #[error(
         "{key} = inf cannot be an end of the interval: the wheel has fewer states there; allowed: a finite end"
@@ -271,6 +351,7 @@ impl KingpinError {
             Self::UnknownKey { given, nearest, .. } => Self::UnknownKey { given, nearest, position },
             Self::NotANumber { key, given, .. } => Self::NotANumber { key, given, position },
             Self::OutOfRange { key, value, .. } => Self::OutOfRange { key, value, position },
+            Self::UnknownTyre { given, .. } => Self::UnknownTyre { given, position },
             other => other,
         }
     }

@@ -24,8 +24,8 @@ pub(crate) fn determinants<T: Arithmetic>([c1, c2, c3, c4, c5]: Quintic<T>) -> [
     [second, second * (c3 * c4 - c2 * c5) - mixed * mixed]
 }
 
-/// Whether all roots lie in the open left half-plane of a quintic or cubic whose coefficients carry bounds on their errors; `None`
-/// where these could decide it either way.
+/// Whether all roots lie in the open left half-plane of a polynomial whose coefficients carry bounds on their errors; `None` where
+/// these could decide it either way.
 ///
 /// Every coefficient and every Hurwitz determinant of a stable polynomial is positive, so that one of them that is surely negative
 /// suffices to refute it.
@@ -36,8 +36,33 @@ pub(crate) fn is_surely_stable(coefficients: &[Bounded]) -> Option<bool> {
             let [second, fourth] = determinants([c1, c2, c3, c4, c5]);
             surely([c1, c3, c5, second, fourth], [c2, c4])
         }
-        _ => None,
+        _ => is_surely_stable_by_routh(coefficients),
     }
+}
+
+/// The same by Routh's array (1877), whose first column is positive exactly where all roots lie in the open left half-plane.
+fn is_surely_stable_by_routh(coefficients: &[Bounded]) -> Option<bool> {
+    if coefficients.iter().any(|coefficient| coefficient.is_negative()) {
+        return Some(false);
+    }
+    let all: Vec<Bounded> = std::iter::once(Bounded::from(1.0)).chain(coefficients.iter().copied()).collect();
+    let every_second = |first: usize| all.iter().copied().skip(first).step_by(2).collect::<Vec<_>>();
+    let (mut above, mut row) = (every_second(0), every_second(1));
+    for _ in coefficients {
+        let pivot = *row.first()?;
+        if pivot.is_negative() {
+            return Some(false);
+        }
+        if !pivot.is_positive() {
+            return None;
+        }
+        let entry = |row: &[Bounded], index: usize| row.get(index).copied().unwrap_or(Bounded::from(0.0));
+        let quotient = above[0] / pivot;
+        let next =
+            (1..above.len()).map(|index| entry(&above, index) - quotient * entry(&row, index)).collect();
+        above = std::mem::replace(&mut row, next);
+    }
+    Some(true)
 }
 
 /// Whether conditions hold that are sufficient and necessary together; beside them others may fail, each of which is necessary.

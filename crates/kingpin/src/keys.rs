@@ -2,7 +2,7 @@
 //! independently of each other.
 
 use crate::error::KingpinError;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use std::str::FromStr;
 
 impl Key {
@@ -51,11 +51,25 @@ impl FromStr for Key {
     type Err = KingpinError;
 
     fn from_str(given: &str) -> Result<Self, KingpinError> {
+        if given == Tyre::KEY {
+            return Err(KingpinError::TyreVaries);
+        }
         Self::ALL.into_iter().find(|key| key.name() == given).ok_or_else(|| KingpinError::UnknownKey {
             given: given.to_owned(),
             nearest: Self::nearest(given),
             position: None,
         })
+    }
+}
+
+impl FromStr for Tyre {
+    type Err = KingpinError;
+
+    fn from_str(given: &str) -> Result<Self, KingpinError> {
+        Self::ALL
+            .into_iter()
+            .find(|tyre| tyre.name() == given)
+            .ok_or_else(|| KingpinError::UnknownTyre { given: given.to_owned(), position: None })
     }
 }
 

@@ -98,6 +98,7 @@ impl Wheel {
     /// [`NoLongitudinalMotion`](KingpinError::NoLongitudinalMotion) for `k`, `k_u` and `c_u`, and those of
     /// [`rolling`](Self::rolling) for other keys that cannot vary.
     pub fn lateral(&self, active: &[Key]) -> Result<LateralWheel, KingpinError> {
+        self.check_rigid()?;
         if !self.has_lateral_elasticity_only() {
             return Err(KingpinError::LongitudinalElasticity { longitudinal: self.get(Key::KU) });
         }

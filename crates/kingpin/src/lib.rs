@@ -24,6 +24,7 @@ mod body;
 pub mod boundary;
 mod bounded;
 pub mod branches;
+mod certain_jacobian;
 mod certain_stability;
 pub mod characteristic;
 pub mod chart;
@@ -45,6 +46,7 @@ pub mod shimmy;
 pub mod simulation;
 pub mod sliding;
 mod tracing;
+pub mod tyre;
 pub mod uniform_motion;
 pub mod wheel;
 
@@ -55,10 +57,11 @@ pub use critical_speed::CriticalSpeed;
 pub use damper::SmallestDamper;
 pub use error::{KingpinError, NoUniformMotion, Position};
 pub use lateral::LateralWheel;
-pub use parameters::Key;
+pub use parameters::{Key, Tyre};
 pub use plane::{Axis, Plane};
 pub use rolling::RollingWheel;
 pub use rolling_model::RollingModel;
+pub use tyre::TyreWheel;
 pub use uniform_motion::UniformMotion;
 pub use wheel::Wheel;
 

@@ -17,7 +17,8 @@ use crate::body::Body;
 use crate::characteristic::{characteristic_polynomial, largest_real_part_first, roots};
 use crate::hurwitz::{determinants, hopf_condition, plain_characteristic_polynomial};
 use crate::lateral::characteristic_cubic;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
+use crate::tyre::TyreLinearisation;
 use crate::uniform_motion::{UniformMotion, jacobian};
 use crate::wheel::Wheel;
 use arclength::branch::Stability;
@@ -31,6 +32,8 @@ enum Characteristic {
     Straight { longitudinal: [f64; 2], lateral: [f64; 3] },
     /// With lateral elasticity only, on a circle or straight.
     Lateral([f64; 3]),
+    /// With a tyre.
+    Tyre(Box<TyreLinearisation>),
 }
 
 impl Characteristic {
@@ -63,6 +66,7 @@ impl Characteristic {
             Self::Circle(coefficients) => coefficients.into(),
             Self::Straight { longitudinal, lateral } => product(longitudinal, lateral).into(),
             Self::Lateral(cubic) => cubic.into(),
+            Self::Tyre(ref linearisation) => polynomial_of(&linearisation.eigenvalues()),
         }
     }
 
@@ -75,6 +79,7 @@ impl Characteristic {
                 eigenvalues
             }
             Self::Lateral(cubic) => roots(cubic).into(),
+            Self::Tyre(linearisation) => linearisation.eigenvalues(),
         }
     }
 
@@ -86,6 +91,7 @@ impl Characteristic {
                 roots(lateral)[0].re
             }
             Self::Straight { .. } => self.eigenvalues()[0].re,
+            Self::Tyre(linearisation) => linearisation.eigenvalues_that_count()[0].re,
         }
     }
 
@@ -93,6 +99,7 @@ impl Characteristic {
     fn unstable(&self) -> usize {
         let eigenvalues = match self {
             Self::Straight { longitudinal: [0.0, _], lateral } => roots(lateral).into(),
+            Self::Tyre(linearisation) => linearisation.eigenvalues_that_count(),
             characteristic => characteristic.eigenvalues(),
         };
         eigenvalues.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count()
@@ -113,8 +120,24 @@ fn product([a1, a2]: [f64; 2], [b1, b2, b3]: [f64; 3]) -> [f64; 5] {
     [a1 + b1, a2 + a1 * b1 + b2, a2 * b1 + a1 * b2 + b3, a2 * b2 + a1 * b3, a2 * b3]
 }
 
+/// The coefficients `c1 ... cn` of the polynomial with these roots, complex ones in pairs.
+fn polynomial_of(roots: &[Complex64]) -> Vec<f64> {
+    let mut coefficients = vec![Complex64::ONE];
+    for root in roots {
+        coefficients.push(Complex64::ZERO);
+        for index in (1..coefficients.len()).rev() {
+            let below = coefficients[index - 1];
+            coefficients[index] -= root * below;
+        }
+    }
+    coefficients[1..].iter().map(|coefficient| coefficient.re).collect()
+}
+
 impl UniformMotion {
     fn characteristic(&self) -> Characteristic {
+        if let Some(state) = self.tyre_state() {
+            return Characteristic::Tyre(Box::new(self.wheel().tyre_linearisation(&state)));
+        }
         Characteristic::at(self.wheel(), &self.state())
     }
 
@@ -188,6 +211,10 @@ impl Wheel {
     /// A smooth function of the parameters, positive where the uniform motion is stable and zero at a Hopf point on the
     /// boundary of stability; `None` where there is no motion or another of the conditions for stability fails.
     pub(crate) fn flutter_margin(&self) -> Option<f64> {
+        if self.tyre() != Tyre::Rigid {
+            // Both boundaries are zeros of the growth rate.
+            return Some(-self.uniform_motion().ok()?.growth_rate());
+        }
         let state = self.uniform_state().ok()?;
         // In rectilinear towing `N` has a second factor, the sense in which turning will damp the longitudinal motion, which does not
         // count there.
@@ -208,6 +235,7 @@ impl Wheel {
                 let others = [c1, c3, c5, second].into_iter().all(|condition| condition > 0.0);
                 others.then_some(fourth / (scale * vanishing))
             }
+            Characteristic::Tyre(_) => None,
             Characteristic::Straight { lateral: [c1, c2, c3], .. }
             | Characteristic::Lateral([c1, c2, c3]) => {
                 (c1 > 0.0 && c3 > 0.0).then_some((c1 * c2 - c3) / (c1 * c2 + c3))
@@ -217,10 +245,14 @@ impl Wheel {
 
     /// As [`flutter_margin`](Self::flutter_margin), but zero where a real eigenvalue is.
     pub(crate) fn divergence_margin(&self) -> Option<f64> {
+        if self.tyre() != Tyre::Rigid {
+            return None;
+        }
         let state = self.uniform_state().ok()?;
         let coefficients = match Characteristic::at(self, &state) {
             Characteristic::Circle(coefficients) => coefficients,
             Characteristic::Straight { longitudinal, lateral } => product(longitudinal, lateral),
+            Characteristic::Tyre(_) => return None,
             Characteristic::Lateral([c1, c2, c3]) => {
                 return (c1 > 0.0 && c1 * c2 > c3).then_some(c3 / (c1 * c2).abs());
             }

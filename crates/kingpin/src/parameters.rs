@@ -1,6 +1,6 @@
 //! The table of parameter keys: name, symbol, unit, meaning and allowed range of each.
 //!
-//! The keys are those of the paper, in ASCII, and the same everywhere: flags, TOML, columns. Help texts and error
+//! One parameter is a word, the law of the tyre. The keys are those of the paper, in ASCII, and the same everywhere: flags, TOML, columns. Help texts and error
 //! messages are made from this table, so that they cannot differ from what is checked.
 
 use std::fmt;
@@ -39,6 +39,11 @@ pub enum Key {
     CPsi,
     KPsi,
     MF,
+    Sigma,
+    HalfContactLength,
+    CAlpha,
+    TP,
+    Kappa,
     /// Both stiffnesses at once; reads as `k_q`.
     K,
     /// `1/r`, zero in rectilinear towing: the continuation passes through `r = inf` with it.
@@ -99,7 +104,6 @@ struct Entry {
 const LENGTH: Allowed = Allowed::between(1e-6, 1e3);
 const MASS: Allowed = Allowed::between(1e-9, 1e6);
 const INERTIA: Allowed = Allowed::between(1e-12, 1e6);
-const STIFFNESS: Allowed = Allowed::between(1e-3, 1e9);
 const DAMPING: Allowed = Allowed::between(0.0, 1e6);
 const FRICTION: Allowed = Allowed::between(0.0, 100.0);
 
@@ -135,13 +139,19 @@ const TABLE: [Entry; STORED + 2] = [
     entry("F_Az", "F_Az", "N", "vertical force on the king pin, negative presses down", Allowed::between(-1e6, 1e6), 0.0),
     entry("k_u", "k_u", "N/m", "longitudinal stiffness at the king pin; inf is lateral elasticity only",
         Allowed::or_infinite(1e-3, 1e9), 100.0),
-    entry("k_q", "k_q", "N/m", "lateral stiffness at the king pin", STIFFNESS, 100.0),
+    entry("k_q", "k_q", "N/m", "lateral stiffness at the king pin; inf only with a tyre",
+        Allowed::or_infinite(1e-3, 1e9), 100.0),
     entry("c_u", "c_u", "N s/m", "longitudinal damping at the king pin", DAMPING, 0.0),
     entry("c_q", "c_q", "N s/m", "lateral damping at the king pin", DAMPING, 0.0),
     entry("c_psi", "c_ψ", "N m s/rad", "rotational damping about the king pin", DAMPING, 0.0),
     entry("k_psi", "k_ψ", "N m/rad", "rotational stiffness about the king pin", DAMPING, 0.0),
     entry("M_f", "M_f", "N m", "moment of dry friction about the king pin", DAMPING, 0.0),
-    entry("k", "k", "N/m", "stiffness at the king pin, sets k_u and k_q", STIFFNESS, 100.0),
+    entry("sigma", "σ", "m", "relaxation length of the tyre, must be set with one", LENGTH, 0.0),
+    entry("a", "a", "m", "half contact length of the tyre", Allowed::between(0.0, 1e3), 0.0),
+    entry("C_alpha", "C_α", "N/rad", "cornering stiffness of the tyre, must be set with one", Allowed::between(1e-3, 1e12), 0.0),
+    entry("t_p", "t_p", "m", "pneumatic trail of the tyre at small slip; if not set, a/3", Allowed::between(-1e3, 1e3), 0.0),
+    entry("kappa", "κ", "N m^2", "tread width coefficient of the tyre", DAMPING, 0.0),
+    entry("k", "k", "N/m", "stiffness at the king pin, sets k_u and k_q", Allowed::or_infinite(1e-3, 1e9), 100.0),
     entry("curvature", "1/r", "1/m", "curvature of the towing path, sets r", Allowed::between(0.0, 1e3), 1.0),
 ];
 
@@ -169,6 +179,11 @@ impl Key {
         Key::CPsi,
         Key::KPsi,
         Key::MF,
+        Key::Sigma,
+        Key::HalfContactLength,
+        Key::CAlpha,
+        Key::TP,
+        Key::Kappa,
         Key::K,
         Key::Curvature,
     ];
@@ -196,7 +211,14 @@ impl Key {
     pub const fn allowed(self) -> Allowed {
         self.entry().allowed
     }
-    /// The value in [`Wheel::default`](crate::Wheel).
+    /// The keys of the tyre: relaxation length, half contact length, cornering stiffness, pneumatic trail, tread width.
+    pub const TYRE: [Key; 5] = [Key::Sigma, Key::HalfContactLength, Key::CAlpha, Key::TP, Key::Kappa];
+
+    /// Whether the key says something of the tyre, which a rigid one does not have.
+    pub fn is_of_the_tyre(self) -> bool {
+        Self::TYRE.contains(&self)
+    }
+    /// The value in [`Wheel::default`](crate::Wheel); not an allowed one where a tyre has to be given its own.
     pub const fn default_value(self) -> f64 {
         self.entry().default
     }
@@ -229,6 +251,41 @@ impl fmt::Display for Key {
     }
 }
 
+/// The law of the tyre.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Tyre {
+    /// None: the wheel rolls on a point and does not slip.
+    #[default]
+    Rigid,
+    /// Force and moment are proportional to the slip.
+    Linear,
+    /// A row of bristles: force and moment are limited by the friction.
+    Brush,
+}
+
+impl Tyre {
+    /// The key by which it is set.
+    pub const KEY: &'static str = "tyre";
+
+    /// All of them.
+    pub const ALL: [Tyre; 3] = [Tyre::Rigid, Tyre::Linear, Tyre::Brush];
+
+    /// The word for it in files and flags.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Linear => "linear",
+            Self::Brush => "brush",
+        }
+    }
+}
+
+impl fmt::Display for Tyre {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.name())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,7 +295,8 @@ mod tests {
         for (index, key) in Key::ALL.into_iter().enumerate() {
             assert_eq!(key as usize, index);
             assert_eq!(key.name().parse::<Key>().unwrap(), key);
-            assert!(key.allowed().contains(key.default_value()));
+            let has_no_default = [Key::Sigma, Key::CAlpha].contains(&key);
+            assert_eq!(key.allowed().contains(key.default_value()), !has_no_default);
         }
     }
 }

@@ -94,8 +94,8 @@ impl Wheel {
     ///
     /// # Errors
     /// [`DependentKeys`](KingpinError::DependentKeys), [`InfiniteRadius`](KingpinError::InfiniteRadius),
-    /// [`AmbiguousStiffness`](KingpinError::AmbiguousStiffness) and, where `k_u = inf`,
-    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly).
+    /// [`AmbiguousStiffness`](KingpinError::AmbiguousStiffness), where `k_u = inf`
+    /// [`LateralElasticityOnly`](KingpinError::LateralElasticityOnly), with a tyre [`TyreNotTaken`](KingpinError::TyreNotTaken).
     pub fn rolling(&self, active: &[Key]) -> Result<RollingWheel, KingpinError> {
         self.check_elastic()?;
         let active = ActiveParameters::new(self, active)?;

@@ -1,16 +1,19 @@
 //! Which states a rolling wheel has.
 //!
 //! With longitudinal elasticity there are five, `(u, q, psi, V, Omega)`. With lateral elasticity only, `k_u = inf`, three
-//! of them are left, `(q, psi, Omega)`, for `u = 0` and `V` follows from the others. [`Wheel::rolling_model`] is the vector
-//! field of the one or the other; results are given in all five states either way.
+//! of them are left, `(q, psi, Omega)`, for `u = 0` and `V` follows from the others. With a tyre there are seven, or as many as
+//! the king pin leaves free ([`TyreWheel`]). [`Wheel::rolling_model`] is the vector field of the one or the other; results are
+//! given in all five or seven states either way.
 
 use crate::error::KingpinError;
 use crate::lateral::{LATERAL_STATE_NAMES, LateralWheel};
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::rolling::{RollingWheel, STATE_NAMES};
+use crate::tyre::{Onset, TYRE_STATE_NAMES, TyreWheel};
 use crate::wheel::Wheel;
 use arclength::cycle::Orbit;
-use arclength::{Dual, Scalar, VectorField};
+use arclength::equilibrium::HopfPoint;
+use arclength::{Dual, Scalar, Threshold, VectorField};
 
 /// Where the caster of a wheel with lateral elasticity only comes nearer than this to `psi = pi/2`, the errors of the other
 /// states, divided by it, are too large for a `V` that follows from them.
@@ -23,6 +26,8 @@ pub enum RollingModel {
     Elastic(RollingWheel),
     /// With lateral elasticity only: three states.
     Lateral(LateralWheel),
+    /// With a tyre: seven states, or as many as the king pin leaves free.
+    Tyre(TyreWheel),
 }
 
 impl Wheel {
@@ -32,13 +37,22 @@ impl Wheel {
         self.get(Key::KU).is_infinite()
     }
 
-    /// That the wheel has longitudinal elasticity too.
+    /// That the wheel has longitudinal elasticity too, and no tyre.
     pub(crate) fn check_elastic(&self) -> Result<(), KingpinError> {
+        self.check_rigid()?;
         if self.has_lateral_elasticity_only() { Err(KingpinError::LateralElasticityOnly) } else { Ok(()) }
+    }
+
+    /// Names of all states in which results are given.
+    pub fn states(&self) -> &'static [&'static str] {
+        if self.tyre() == Tyre::Rigid { &STATE_NAMES } else { &TYRE_STATE_NAMES }
     }
 
     /// Names of the states that the rolling wheel can take independently of each other.
     pub fn free_states(&self) -> &'static [&'static str] {
+        if self.tyre() != Tyre::Rigid {
+            return self.tyre_free_states();
+        }
         if self.has_lateral_elasticity_only() { &LATERAL_STATE_NAMES } else { &STATE_NAMES }
     }
 
@@ -49,7 +63,7 @@ impl Wheel {
     /// use kingpin::{Key, Wheel};
     /// let wheel = Wheel::from_toml("k_u = inf")?;
     /// let model = wheel.rolling_model(&[Key::V])?;
-    /// let uniform = wheel.uniform_motion()?.state();
+    /// let uniform = wheel.uniform_motion()?.states();
     /// let free = model.free_state(&uniform);
     /// assert_eq!(free.len(), 3);
     /// assert_eq!(model.full_state(&free, &[4.0]), uniform);
@@ -57,8 +71,11 @@ impl Wheel {
     /// ```
     ///
     /// # Errors
-    /// Those of [`rolling`](Self::rolling) and [`lateral`](Self::lateral) for keys that cannot vary.
+    /// Those of [`rolling`](Self::rolling), [`lateral`](Self::lateral) and [`with_tyre`](Self::with_tyre) for keys that cannot vary.
     pub fn rolling_model(&self, active: &[Key]) -> Result<RollingModel, KingpinError> {
+        if self.tyre() != Tyre::Rigid {
+            return Ok(RollingModel::Tyre(self.with_tyre(active)?));
+        }
         if self.has_lateral_elasticity_only() {
             Ok(RollingModel::Lateral(self.lateral(active)?))
         } else {
@@ -68,27 +85,66 @@ impl Wheel {
 }
 
 impl RollingModel {
-    /// The state of the vector field at the states `(u, q, psi, V, Omega)`: those of them that are free.
-    pub fn free_state(&self, &[u, q, psi, forward_speed, yaw_rate]: &[f64; 5]) -> Vec<f64> {
-        match self {
-            Self::Elastic(_) => vec![u, q, psi, forward_speed, yaw_rate],
-            Self::Lateral(_) => vec![q, psi, yaw_rate],
-        }
+    /// The state of the vector field at [all states](Wheel::states): those of them that are free.
+    ///
+    /// # Panics
+    /// Where there are fewer states than the wheel has.
+    pub fn free_state(&self, full: &[f64]) -> Vec<f64> {
+        let free: &[usize] = match self {
+            Self::Elastic(_) => &[0, 1, 2, 3, 4],
+            Self::Lateral(_) => &[1, 2, 4],
+            Self::Tyre(wheel) => wheel.free(),
+        };
+        free.iter().map(|&index| full[index]).collect()
     }
 
-    /// The states `(u, q, psi, V, Omega)` at a state of the vector field, which must have its dimension.
-    pub fn full_state(&self, free: &[f64], parameters: &[f64]) -> [f64; 5] {
+    /// [All states](Wheel::states) at a state of the vector field, which must have its dimension.
+    pub fn full_state(&self, free: &[f64], parameters: &[f64]) -> Vec<f64> {
         match self {
-            Self::Elastic(_) => std::array::from_fn(|index| free[index]),
+            Self::Elastic(_) => free.to_vec(),
             Self::Lateral(lateral) => {
-                [0.0, free[0], free[1], lateral.forward_speed_at(free, parameters), free[2]]
+                vec![0.0, free[0], free[1], lateral.forward_speed_at(free, parameters), free[2]]
             }
+            Self::Tyre(wheel) => wheel.full_state(free, parameters).into(),
         }
     }
 
-    /// Gives the extrema of a cycle of this vector field in the states `(u, q, psi, V, Omega)`. Those of a `V` that follows
-    /// from the other states are its extrema along their interpolating polynomials; where the cycle comes near
-    /// `psi = pi/2` these do not determine it, and it is not a number.
+    /// The smallest forward speed of a wheel with a tyre on a cycle of this vector field, as a part of the towing speed; `None`
+    /// without a tyre, where the wheel may roll backwards.
+    pub(crate) fn smallest_speed_ratio(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => None,
+            Self::Tyre(wheel) => Some(wheel.smallest_speed_ratio(orbit, parameters)),
+        }
+    }
+
+    /// That the wheel rolls forwards all along a cycle of this vector field, if it has a tyre.
+    pub(crate) fn check_forwards(&self, orbit: &Orbit, parameters: &[f64]) -> Result<(), KingpinError> {
+        match self.smallest_speed_ratio(orbit, parameters) {
+            Some(ratio) if ratio <= 0.0 => Err(KingpinError::RollsBackwards { ratio }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether Hopf points have no first Lyapunov coefficient at these parameters: straight, under the brush law of the tyre.
+    pub(crate) fn has_no_first_lyapunov(&self, parameters: &[f64]) -> bool {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => false,
+            Self::Tyre(wheel) => wheel.is_brush_towed_straight(parameters),
+        }
+    }
+
+    /// How cycles grow at a Hopf point of this vector field where no first Lyapunov coefficient exists.
+    pub(crate) fn onset(&self, point: &HopfPoint) -> Option<Onset> {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => None,
+            Self::Tyre(wheel) => wheel.onset(point),
+        }
+    }
+
+    /// Gives the extrema of a cycle of this vector field in [all states](Wheel::states). Those of states that follow from the others
+    /// are their extrema along the interpolating polynomials; where the cycle comes near `psi = pi/2` these do not determine a speed,
+    /// and it is not a number.
     pub(crate) fn complete_extrema(
         &self,
         orbit: &Orbit,
@@ -96,8 +152,21 @@ impl RollingModel {
         smallest: &mut Vec<f64>,
         parameters: &[f64],
     ) {
-        let Self::Lateral(lateral) = self else { return };
         let parameters: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        let lateral = match self {
+            Self::Elastic(_) => return,
+            Self::Lateral(lateral) => lateral,
+            Self::Tyre(wheel) => {
+                let range = |index: usize| match wheel.free().iter().position(|&free| free == index) {
+                    Some(position) => [smallest[position], largest[position]],
+                    None => orbit.range_of(|state| wheel.full_state(state, &parameters)[index]),
+                };
+                let ranges: Vec<[f64; 2]> = (0..TYRE_STATE_NAMES.len()).map(range).collect();
+                *smallest = ranges.iter().map(|[low, _]| *low).collect();
+                *largest = ranges.iter().map(|[_, high]| *high).collect();
+                return;
+            }
+        };
         let [lowest, highest] = orbit.range_of(|state| state[1].cos());
         let [slowest, fastest] = if lowest < SMALLEST_COSINE && highest > -SMALLEST_COSINE {
             [f64::NAN; 2]
@@ -115,6 +184,7 @@ impl VectorField for RollingModel {
         match self {
             Self::Elastic(wheel) => wheel.state_names(),
             Self::Lateral(wheel) => wheel.state_names(),
+            Self::Tyre(wheel) => wheel.state_names(),
         }
     }
 
@@ -122,6 +192,7 @@ impl VectorField for RollingModel {
         match self {
             Self::Elastic(wheel) => wheel.parameter_names(),
             Self::Lateral(wheel) => wheel.parameter_names(),
+            Self::Tyre(wheel) => wheel.parameter_names(),
         }
     }
 
@@ -129,6 +200,7 @@ impl VectorField for RollingModel {
         match self {
             Self::Elastic(wheel) => wheel.dimension(),
             Self::Lateral(wheel) => wheel.dimension(),
+            Self::Tyre(wheel) => wheel.dimension(),
         }
     }
 
@@ -137,6 +209,15 @@ impl VectorField for RollingModel {
         match self {
             Self::Elastic(wheel) => wheel.evaluate(state, parameters, derivative),
             Self::Lateral(wheel) => wheel.evaluate(state, parameters, derivative),
+            Self::Tyre(wheel) => wheel.evaluate(state, parameters, derivative),
+        }
+    }
+
+    fn thresholds(&self) -> Vec<Threshold> {
+        match self {
+            Self::Elastic(wheel) => wheel.thresholds(),
+            Self::Lateral(wheel) => wheel.thresholds(),
+            Self::Tyre(wheel) => wheel.thresholds(),
         }
     }
 }

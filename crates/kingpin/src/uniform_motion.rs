@@ -17,7 +17,7 @@
 use crate::body::Body;
 use crate::contact::ContactForce;
 use crate::error::{KingpinError, NoUniformMotion};
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::rolling::right_hand_side;
 use crate::wheel::Wheel;
 use arclength::{Dual, Scalar};
@@ -45,6 +45,8 @@ const LARGEST_TURN: f64 = 0.2;
 pub struct UniformMotion {
     wheel: Wheel,
     state: [f64; 5],
+    /// With a tyre: lateral speed of the wheel centre in m/s and deflection of the tyre in m.
+    tyre: Option<[f64; 2]>,
     residual: f64,
 }
 
@@ -53,9 +55,26 @@ impl UniformMotion {
     pub fn wheel(&self) -> &Wheel {
         &self.wheel
     }
-    /// The state `(u, q, psi, V, Omega)`.
+    /// The state `(u, q, psi, V, Omega)`; with a tyre `V` is `V1`, and there are [more](Self::states).
     pub fn state(&self) -> [f64; 5] {
         self.state
+    }
+    /// All states, in the order of [`Wheel::states`].
+    pub fn states(&self) -> Vec<f64> {
+        self.tyre_state().map_or_else(|| self.state.to_vec(), |state| state.to_vec())
+    }
+    /// The state `(u, q, psi, V1, V2, Omega, y_t)` of a wheel with a tyre.
+    pub(crate) fn tyre_state(&self) -> Option<[f64; 7]> {
+        let [u, q, psi, forward, yaw_rate] = self.state;
+        self.tyre.map(|[lateral, deflection]| [u, q, psi, forward, lateral, yaw_rate, deflection])
+    }
+    /// Lateral speed of the wheel centre in m/s, zero without a tyre.
+    pub fn lateral_speed(&self) -> f64 {
+        self.tyre.map_or(0.0, |[lateral, _]| lateral)
+    }
+    /// Lateral deflection of the leading contact point of the tyre in m, `None` without a tyre.
+    pub fn tyre_deflection(&self) -> Option<f64> {
+        self.tyre.map(|[_, deflection]| deflection)
     }
     /// Longitudinal displacement of the king pin in m.
     pub fn u(&self) -> f64 {
@@ -87,7 +106,10 @@ impl UniformMotion {
     }
     /// The force of the ground on the wheel.
     pub fn contact_force(&self) -> ContactForce {
-        self.wheel.contact_force(&self.state)
+        match self.tyre_state() {
+            Some(state) => self.wheel.tyre_contact_force(&state),
+            None => self.wheel.contact_force(&self.state),
+        }
     }
     /// Whether the ground can hold the wheel in this motion.
     pub fn rolls(&self) -> bool {
@@ -95,6 +117,9 @@ impl UniformMotion {
     }
     /// The Jacobian of the vector field over the [free states](Wheel::free_states), row by row.
     pub fn jacobian(&self) -> Vec<Vec<f64>> {
+        if let Some(state) = self.tyre_state() {
+            return self.wheel.tyre_linearisation(&state).jacobian();
+        }
         if self.wheel.has_lateral_elasticity_only() {
             let [_, q, psi, _, yaw_rate] = self.state;
             return self.wheel.lateral_linearisation(&[q, psi, yaw_rate]).1.map(Vec::from).into();
@@ -107,28 +132,54 @@ impl Wheel {
     /// The uniform motion.
     ///
     /// # Errors
-    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails.
+    /// [`NoUniformMotion`](KingpinError::NoUniformMotion) with the condition that fails; those of
+    /// [`check_tyre`](Self::check_tyre).
     pub fn uniform_motion(&self) -> Result<UniformMotion, KingpinError> {
+        self.check_tyre()?;
+        if self.tyre() != Tyre::Rigid {
+            let state = self.tyre_uniform_state().map_err(|reason| self.no_uniform_motion(reason))?;
+            return Ok(self.tyre_motion_at(state));
+        }
         let state = self.uniform_state().map_err(|reason| self.no_uniform_motion(reason))?;
         Ok(self.motion_at(state))
     }
 
-    /// The uniform motion by Newton's method from a state near it; `None` where the method does not converge, and where
-    /// `k_u = inf`.
+    /// The uniform motion by Newton's method from a state near it; `None` where the method does not converge, where
+    /// `k_u = inf` and with a tyre.
     pub fn uniform_motion_near(&self, start: &[f64; 5]) -> Option<UniformMotion> {
         self.check_elastic().ok()?;
         newton(self, start).ok().map(|state| self.motion_at(state))
     }
 
+    /// The motion at [all states](Self::states), of which nothing changes.
+    pub(crate) fn motion_in(&self, states: &[f64]) -> UniformMotion {
+        if self.tyre() == Tyre::Rigid {
+            self.motion_at(std::array::from_fn(|index| states[index]))
+        } else {
+            self.tyre_motion_at(std::array::from_fn(|index| states[index]))
+        }
+    }
+
     /// The motion at a state in which nothing changes.
-    pub(crate) fn motion_at(&self, state: [f64; 5]) -> UniformMotion {
+    fn motion_at(&self, state: [f64; 5]) -> UniformMotion {
         let residual = if self.has_lateral_elasticity_only() {
             let [_, q, psi, _, yaw_rate] = state;
             largest(&self.lateral_linearisation(&[q, psi, yaw_rate]).0)
         } else {
             largest(&derivative(self, &state))
         };
-        UniformMotion { wheel: *self, state, residual }
+        UniformMotion { wheel: *self, state, tyre: None, residual }
+    }
+
+    /// The motion of a wheel with a tyre at a state `(u, q, psi, V1, V2, Omega, y_t)` in which nothing changes.
+    fn tyre_motion_at(&self, state: [f64; 7]) -> UniformMotion {
+        let [u, q, psi, forward, lateral, yaw_rate, deflection] = state;
+        UniformMotion {
+            wheel: *self,
+            state: [u, q, psi, forward, yaw_rate],
+            tyre: Some([lateral, deflection]),
+            residual: self.tyre_residual(&state),
+        }
     }
 
     pub(crate) fn no_uniform_motion(&self, reason: NoUniformMotion) -> KingpinError {

@@ -1,9 +1,12 @@
 //! A wheel: named, validated parameters, read from TOML and overridden one by one.
 
 use crate::error::{KingpinError, Position};
-use crate::parameters::{Key, STORED};
+use crate::parameters::{Key, STORED, Tyre};
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
+
+/// Half contact lengths per pneumatic trail, if none is set: as for a brush whose bristles have one stiffness.
+pub(crate) const HALF_LENGTHS_PER_TRAIL: f64 = 3.0;
 
 /// The parameters of a towed wheel, each within its allowed range ([`Key::allowed`]).
 ///
@@ -23,12 +26,16 @@ pub struct Wheel {
     values: [f64; STORED],
     /// Whether `mu_d` was given; otherwise it is kept at or below `mu_s`.
     sliding_friction_is_set: bool,
+    /// What was said of the tyre; nothing is a rigid one.
+    tyre: Option<Tyre>,
+    /// Whether `t_p` was given; otherwise it is `a/3`.
+    pneumatic_trail_is_set: bool,
 }
 
 impl PartialEq for Wheel {
     /// Wheels with the same values are the same, whether these were set or not.
     fn eq(&self, other: &Self) -> bool {
-        self.values == other.values
+        self.values == other.values && self.tyre() == other.tyre()
     }
 }
 
@@ -38,7 +45,7 @@ impl Default for Wheel {
         for (value, key) in values.iter_mut().zip(Key::ALL) {
             *value = key.default_value();
         }
-        Self { values, sliding_friction_is_set: false }
+        Self { values, sliding_friction_is_set: false, tyre: None, pneumatic_trail_is_set: false }
     }
 }
 
@@ -53,17 +60,34 @@ impl Wheel {
         }
     }
 
-    /// Every stored parameter with its value, in the order of the table; `k` and `curvature` are not among them.
-    pub fn parameters(&self) -> impl Iterator<Item = (Key, f64)> {
-        Key::ALL.into_iter().zip(self.values)
+    /// The law of the tyre.
+    #[inline]
+    pub fn tyre(&self) -> Tyre {
+        self.tyre.unwrap_or_default()
     }
 
-    /// Sets a parameter from text, as in `-s key=value`; `inf` is infinity.
+    /// Sets the law of the tyre.
+    pub fn set_tyre(&mut self, tyre: Tyre) {
+        self.tyre = Some(tyre);
+    }
+
+    /// Every stored parameter with its value, in the order of the table; `k` and `curvature` are not among them, those of the
+    /// tyre only where there is one.
+    pub fn parameters(&self) -> impl Iterator<Item = (Key, f64)> {
+        let has_tyre = self.tyre() != Tyre::Rigid;
+        Key::ALL.into_iter().zip(self.values).filter(move |(key, _)| has_tyre || !key.is_of_the_tyre())
+    }
+
+    /// Sets a parameter from text, as in `-s key=value`; `inf` is infinity. The value of `tyre` is a word.
     ///
     /// # Errors
-    /// [`UnknownKey`](KingpinError::UnknownKey), [`NotANumber`](KingpinError::NotANumber) and
-    /// [`OutOfRange`](KingpinError::OutOfRange); the wheel is left as it was.
+    /// [`UnknownKey`](KingpinError::UnknownKey), [`NotANumber`](KingpinError::NotANumber),
+    /// [`OutOfRange`](KingpinError::OutOfRange) and [`UnknownTyre`](KingpinError::UnknownTyre); the wheel is left as it was.
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), KingpinError> {
+        if key.trim() == Tyre::KEY {
+            self.set_tyre(value.trim().parse()?);
+            return Ok(());
+        }
         let key: Key = key.trim().parse()?;
         self.set_value(key, parse_number(key, value)?)
     }
@@ -89,6 +113,10 @@ impl Wheel {
         if !self.sliding_friction_is_set {
             self.values[Key::MuD as usize] = Key::MuD.default_value().min(self.get(Key::MuS));
         }
+        self.pneumatic_trail_is_set |= key == Key::TP;
+        if !self.pneumatic_trail_is_set {
+            self.values[Key::TP as usize] = self.get(Key::HalfContactLength) / HALF_LENGTHS_PER_TRAIL;
+        }
         Ok(())
     }
 
@@ -101,16 +129,74 @@ impl Wheel {
         Ok(self)
     }
 
-    /// That the parameters fit together: sliding friction is at most static friction.
+    /// That the parameters fit together: sliding friction is at most static friction, a tyre has what its law needs, and without
+    /// a tyre there is nothing that only a tyre has.
     ///
     /// # Errors
-    /// [`SlidingFriction`](KingpinError::SlidingFriction).
+    /// [`SlidingFriction`](KingpinError::SlidingFriction) and those of [`check_tyre`](Self::check_tyre).
     pub fn check(&self) -> Result<(), KingpinError> {
         let (sticking, sliding) = (self.get(Key::MuS), self.get(Key::MuD));
         if sliding > sticking {
             return Err(KingpinError::SlidingFriction { sliding, sticking });
         }
+        self.check_tyre()
+    }
+
+    /// That a tyre has what its law needs, and that without one nothing is set that only a tyre has.
+    ///
+    /// # Errors
+    /// [`MissingOfTyre`](KingpinError::MissingOfTyre), [`NoFrictionLimit`](KingpinError::NoFrictionLimit),
+    /// [`NoTyre`](KingpinError::NoTyre), [`RigidKingPin`](KingpinError::RigidKingPin), and [`DryFriction`](KingpinError::DryFriction), with
+    /// which it is not computed.
+    pub fn check_tyre(&self) -> Result<(), KingpinError> {
+        let tyre = self.tyre();
+        if tyre == Tyre::Rigid {
+            let set = |key: &Key| self.get(*key) != key.default_value();
+            return match Key::TYRE.into_iter().find(set) {
+                // Said to be rigid, a wheel may have been one with a tyre before.
+                Some(key) if self.tyre.is_none() => Err(KingpinError::NoTyre { key }),
+                _ if self.get(Key::KQ).is_infinite() => Err(KingpinError::RigidKingPin),
+                _ => Ok(()),
+            };
+        }
+        self.check_without_dry_friction("a wheel with a tyre", "set M_f = 0, or tyre = rigid")?;
+        let missing = [Key::Sigma, Key::CAlpha].into_iter().find(|key| self.get(*key) == key.default_value());
+        if let Some(key) = missing {
+            return Err(KingpinError::MissingOfTyre { tyre, key });
+        }
+        let limit = self.get(Key::MuS) * self.normal_force();
+        if tyre == Tyre::Brush && limit <= 0.0 {
+            return Err(KingpinError::NoFrictionLimit { limit });
+        }
         Ok(())
+    }
+
+    /// That the wheel is rigid, for what takes no tyre.
+    pub(crate) fn check_rigid(&self) -> Result<(), KingpinError> {
+        match self.tyre() {
+            Tyre::Rigid => self.check_tyre(),
+            tyre => Err(KingpinError::TyreNotTaken { tyre }),
+        }
+    }
+
+    /// That parameters which are to vary are not those of a tyre where there is none.
+    pub(crate) fn check_varies(&self, keys: &[Key]) -> Result<(), KingpinError> {
+        match keys.iter().find(|key| key.is_of_the_tyre()) {
+            Some(&key) if self.tyre() == Tyre::Rigid => Err(KingpinError::NoTyre { key }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a stored parameter varies with those that do: it is set by one of them, or it is `t_p`, was not set and follows `a`.
+    pub fn varies_with(&self, key: Key, active: &[Key]) -> bool {
+        let follows =
+            key == Key::TP && self.pneumatic_trail_follows() && active.contains(&Key::HalfContactLength);
+        follows || active.iter().any(|active| active.sets().contains(&key))
+    }
+
+    /// Whether `t_p` is `a/3` because it was not set.
+    pub(crate) fn pneumatic_trail_follows(&self) -> bool {
+        !self.pneumatic_trail_is_set
     }
 
     /// Reads a wheel from TOML: `key = value` lines. Keys that are absent keep the value of the default wheel; `k` and
@@ -130,8 +216,14 @@ impl Wheel {
     pub fn from_toml(text: &str) -> Result<Self, KingpinError> {
         let table = DeTable::parse(text)?;
         let mut settings = Vec::new();
+        let mut wheel = Self::default();
         for (name, value) in table.get_ref() {
             let place = |span: std::ops::Range<usize>| Position::of(span.start, text);
+            if name.get_ref() == Tyre::KEY {
+                let word = value.get_ref().as_str().unwrap_or(&text[value.span()]);
+                wheel.set_tyre(word.parse().map_err(|error: KingpinError| error.at(place(value.span())))?);
+                continue;
+            }
             let key: Key =
                 name.get_ref().parse().map_err(|error: KingpinError| error.at(place(name.span())))?;
             let number = match value.get_ref() {
@@ -150,7 +242,6 @@ impl Wheel {
             settings.push((key, number.map_err(|error| error.at(position))?, position));
         }
         settings.sort_by_key(|(key, ..)| key.is_stored());
-        let mut wheel = Self::default();
         for (key, number, position) in settings {
             wheel.set_value(key, number).map_err(|error| error.at(position))?;
         }
@@ -202,10 +293,13 @@ impl Wheel {
         [Key::CU, Key::CQ, Key::CPsi].into_iter().any(|key| self.get(key) != 0.0)
     }
 
-    /// Whether the wheel is of the paper's kind: equal stiffnesses, no dampers, no spring about the king pin.
+    /// Whether the wheel is of the paper's kind: equal stiffnesses, no dampers, no spring about the king pin, no tyre.
     #[inline]
     pub fn is_plain(&self) -> bool {
-        !self.is_damped() && self.get(Key::KPsi) == 0.0 && self.get(Key::KU) == self.get(Key::KQ)
+        self.tyre() == Tyre::Rigid
+            && !self.is_damped()
+            && self.get(Key::KPsi) == 0.0
+            && self.get(Key::KU) == self.get(Key::KQ)
     }
 }
 

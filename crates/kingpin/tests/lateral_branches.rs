@@ -132,7 +132,7 @@ fn a_cycle_returns_and_its_extrema_are_those_of_the_motion() {
         for cycle in found {
             let wheel = branch.wheel.with(interval.key(), cycle.value).unwrap();
             let model = wheel.rolling_model(&[]).unwrap();
-            let initial = model.full_state(&cycle.orbit.state_at(0.0), &[]);
+            let initial = model.full_state(&cycle.orbit.state_at(0.0), &[]).try_into().unwrap();
             let history = wheel.simulate_from(&initial, cycle.period, 20_001, &Control::none()).unwrap();
             // The estimate is that of the extremes; the state elsewhere is known to the tolerance, and returns multiplied.
             let allowed = f64::max(10.0 * cycle.error_estimate, 1e-7);

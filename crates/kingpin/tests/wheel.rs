@@ -62,7 +62,7 @@ fn every_parameter_refuses_what_is_not_allowed() {
         }
         let zero_and_negative = [key.allowed().contains(0.0), key.allowed().contains(-1.0)];
         let expected = match key {
-            Key::FAz | Key::LC => [true, true],
+            Key::FAz | Key::LC | Key::TP => [true, true],
             Key::V
             | Key::G
             | Key::MuS
@@ -72,6 +72,8 @@ fn every_parameter_refuses_what_is_not_allowed() {
             | Key::CPsi
             | Key::KPsi
             | Key::MF
+            | Key::HalfContactLength
+            | Key::Kappa
             | Key::Curvature => [true, false],
             _ => [false, false],
         };

@@ -3,7 +3,7 @@
 //! One line holds one field, or one object of a list, so that files can be read, searched and compared.
 
 use crate::error::ReportError;
-use crate::named_numbers::NamedNumbers;
+use crate::parameters::Parameters;
 use crate::report::Report;
 use crate::schema::Schema;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use std::io::{self, Write};
 #[derive(Serialize)]
 struct Document<'a, R: ?Sized> {
     schema: Schema,
-    parameters: NamedNumbers,
+    parameters: Parameters,
     #[serde(flatten)]
     result: &'a R,
 }

@@ -1,7 +1,7 @@
 //! What every result can be shown as.
 
 use crate::columns::Columns;
-use crate::named_numbers::NamedNumbers;
+use crate::parameters::Parameters;
 use crate::schema::Schema;
 use crate::story::Story;
 use kingpin_figure::{Figure, FigureError};
@@ -14,7 +14,7 @@ pub trait Report: Serialize {
     fn schema(&self) -> Schema;
 
     /// Every parameter that was used.
-    fn parameters(&self) -> NamedNumbers;
+    fn parameters(&self) -> Parameters;
 
     /// Writes it for people.
     ///

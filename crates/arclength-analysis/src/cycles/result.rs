@@ -14,7 +14,7 @@ use crate::unlocated::{UnlocatedResult, warnings};
 use crate::varying_parameter::VaryingParameter;
 use arclength::cycle::CycleBranch;
 use kingpin_figure::{Figure, FigureError, palette};
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Cell, Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -123,8 +123,8 @@ impl Report for CyclesResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
-        self.parameters.clone()
+    fn parameters(&self) -> Parameters {
+        self.parameters.clone().into()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -15,7 +15,7 @@ use crate::varying_parameter::VaryingParameter;
 use arclength::equilibrium::{EquilibriumBranch, EquilibriumPoint, SpecialPoint};
 use kingpin_figure::{Figure, FigureError, palette};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Cell, Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -167,8 +167,8 @@ impl Report for EquilibriaResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
-        self.parameters.clone()
+    fn parameters(&self) -> Parameters {
+        self.parameters.clone().into()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

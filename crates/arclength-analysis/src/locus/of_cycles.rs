@@ -9,7 +9,7 @@ use crate::stored_model::StoredModel;
 use crate::varying_parameter::VaryingParameter;
 use arclength::locus::CycleLocusBranch;
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -66,8 +66,8 @@ impl Report for CycleLocusResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
-        self.parameters.clone()
+    fn parameters(&self) -> Parameters {
+        self.parameters.clone().into()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

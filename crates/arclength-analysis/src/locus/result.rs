@@ -3,7 +3,7 @@
 use super::of_cycles::CycleLocusResult;
 use super::of_equilibria::EquilibriumLocusResult;
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use kingpin_report::{Columns, Parameters, Report, Schema, Story};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -35,7 +35,7 @@ impl Report for LocusResult {
         }
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         match self {
             Self::Equilibria(result) => result.parameters(),
             Self::Cycles(result) => result.parameters(),

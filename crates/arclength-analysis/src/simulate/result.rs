@@ -9,7 +9,7 @@ use crate::stored_model::StoredModel;
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::extremes;
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Table};
 use serde::de::{MapAccess, Visitor};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Deserializer, Serialize};
@@ -169,12 +169,12 @@ impl Report for HistoryResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
-        self.parameters.clone()
+    fn parameters(&self) -> Parameters {
+        self.parameters.clone().into()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "motion of {} at {}", self.model.name, parameters(&self.parameters().0))?;
+        writeln!(out, "motion of {} at {}", self.model.name, parameters(&self.parameters.0))?;
         match &self.section {
             Some(SectionResult { expression, direction }) => {
                 let direction = match direction {

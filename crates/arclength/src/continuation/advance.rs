@@ -109,6 +109,7 @@ pub(super) fn advance<C: Curve>(
         let settled = settle(curve, unknown, &mut carried, settings);
         current.unknown = unknown_now;
         current.tangent = tangent_now;
+        curve.carry_over(&mut current.point);
         // Both ends of a step have one normalisation.
         let settled = settled.and_then(|(solution, adaptation)| {
             if adaptation == Adaptation::Renormalised {
@@ -172,6 +173,7 @@ pub(super) fn return_to<C: Curve>(
     let mut carried = vec![&mut solution.tangent];
     carried.extend(previous.as_mut().map(|(tangent, _)| tangent));
     curve.adapt(&mut solution.unknown, &mut carried)?;
+    curve.carry_over(&mut solution.point);
     renormalise(curve, solution, settings)
 }
 

@@ -79,6 +79,9 @@ pub trait Curve: Equations {
     /// When the solution cannot be resolved within the limits of the discretisation.
     fn adapt(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> Result<Adaptation, Error>;
 
+    /// Takes over what belongs to the discretisation into what is known about a solution whose unknowns were carried over to it.
+    fn carry_over(&self, _point: &mut Self::Point) {}
+
     /// Whether a solution loses what it is when it is carried over to the discretisation of the next: then it is kept, and
     /// [taken back](Self::take_back) where the step from it does not hold.
     fn keeps_solutions(&self) -> bool {

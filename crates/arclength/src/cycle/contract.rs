@@ -103,6 +103,10 @@ impl Curve for CycleCurve<'_> {
         Ok(adaptation)
     }
 
+    fn carry_over(&self, point: &mut CycleInspection) {
+        point.mesh = self.collocation.mesh().to_vec();
+    }
+
     fn keeps_solutions(&self) -> bool {
         self.collocation.problem.segments.is_some()
     }

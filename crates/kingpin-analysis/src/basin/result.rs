@@ -9,7 +9,7 @@ use kingpin_figure::{
     CategoryMap, Figure, FigureError, Grid, Legend, LegendEntry, Marker, MarkerShape, Markers, Panel,
 };
 use kingpin_report::numbers::{readable, significant};
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -190,7 +190,7 @@ impl Report for BasinResult {
         Schema::first("kingpin.basin")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(self.destinations.wheel(), &[])
     }
 

@@ -9,7 +9,7 @@ use arclength_analysis::Control;
 use kingpin::{Axis, Curve, GrowthRateChart, Plane, Wheel};
 use kingpin_figure::{ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette};
 use kingpin_report::numbers::{readable, significant};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -123,7 +123,7 @@ impl Report for ChartResult {
         Schema::first("kingpin.chart")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &self.keys())
     }
 

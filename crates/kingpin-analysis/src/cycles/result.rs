@@ -8,17 +8,16 @@ use crate::description;
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
-use crate::states::STATE_UNITS;
+use crate::states;
 use arclength::branch::LabelCounter;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::Along;
-use kingpin::rolling::STATE_NAMES;
+use kingpin::branches::{Along, SPEED_MONITOR};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -79,7 +78,7 @@ pub struct CyclesResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredCycles {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     along: VaryingParameter,
     branches: Vec<BranchResult>,
     points: Vec<CyclePointResult>,
@@ -90,7 +89,7 @@ impl TryFrom<StoredCycles> for CyclesResult {
 
     fn try_from(stored: StoredCycles) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
-        let wheel = wheel_of(&stored.parameters.0)?;
+        let wheel = wheel_of(&stored.parameters)?;
         let interval = along(&Interval::new(key, *start, *end))?;
         Ok(Self {
             wheel,
@@ -143,8 +142,9 @@ impl CyclesResult {
             };
             let [first, second] = &branch.cycles.stops;
             let varying = std::slice::from_ref(&along);
+            let monitors = [SPEED_MONITOR.to_owned()];
             let first = match (first, &branch.hopf) {
-                (Some(stop), _) => End::of(stop, varying, last(points.first())),
+                (Some(stop), _) => End::monitored(Some(stop), varying, &monitors, last(points.first())),
                 (None, Some(hopf)) => End {
                     cause: format!(
                         "starts at the {} Hopf point {}",
@@ -157,7 +157,7 @@ impl CyclesResult {
                     End { cause: format!("starts at {}", branch.origin), ..End::start(last(points.first())) }
                 }
             };
-            let ends = [first, End::of_either(second.as_ref(), varying, last(points.last()))];
+            let ends = [first, End::monitored(second.as_ref(), varying, &monitors, last(points.last()))];
             branches.push(BranchResult {
                 branch: number,
                 from: branch.origin,
@@ -195,7 +195,7 @@ impl Report for CyclesResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[self.interval.key()])
     }
 
@@ -244,9 +244,14 @@ impl Report for CyclesResult {
             .booleans("stable", cycles().map(|cycle| cycle.stable))
             .numbers("error_estimate", cycles().map(|cycle| cycle.error_estimate))
             .numbers("trivial_multiplier_error", cycles().map(|cycle| cycle.trivial_multiplier_error))
-            .complex_numbers("multiplier", STATE_NAMES.len(), cycles().map(|cycle| &cycle.multipliers))
+            .complex_numbers(
+                "multiplier",
+                self.wheel.states().len(),
+                cycles().map(|cycle| &cycle.multipliers),
+            )
             .counts("intervals", cycles().map(|cycle| cycle.intervals as u64));
-        for (name, unit) in STATE_NAMES.into_iter().zip(STATE_UNITS) {
+        for &name in self.wheel.states() {
+            let unit = states::unit(name);
             columns = columns
                 .optional_numbers(format!("max_{name}"), cycles().map(move |cycle| cycle.max.named(name)))
                 .unit(unit)

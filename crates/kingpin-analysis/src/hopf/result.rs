@@ -6,7 +6,7 @@ use crate::along::{along, varying};
 use crate::description;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
-use crate::states::{STATE_UNITS, named_state};
+use crate::states::{self, named_state};
 use arclength::branch::Criticality;
 use arclength::equilibrium::SpecialPoint;
 use arclength_analysis::branch::pairs;
@@ -14,10 +14,9 @@ use arclength_analysis::course::{self, ToldPoint};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::{Along, HopfPoint, MotionBranch};
-use kingpin::rolling::STATE_NAMES;
-use kingpin::{KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story, Table};
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -43,6 +42,12 @@ pub struct HopfPointResult {
     /// Error of the first Lyapunov coefficient.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_lyapunov_error: Option<f64>,
+    /// Where there is none: slope of the largest caster angle of the cycles in the parameter, negative where they lie below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub psi_max_slope: Option<f64>,
+    /// Why there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remark: Option<String>,
     /// Error estimate of the value.
     #[serde(default)]
     pub location_error: Option<f64>,
@@ -88,7 +93,7 @@ pub struct HopfResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredHopfPoints {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     along: VaryingParameter,
     #[serde(with = "kingpin_report::number")]
     searched: [f64; 2],
@@ -107,7 +112,7 @@ impl TryFrom<StoredHopfPoints> for HopfResult {
 
     fn try_from(stored: StoredHopfPoints) -> Result<Self, KingpinError> {
         let VaryingParameter { key, start, end, .. } = &stored.along;
-        let wheel = wheel_of(&stored.parameters.0)?;
+        let wheel = wheel_of(&stored.parameters)?;
         let interval = along(&Interval::new(key, *start, *end))?;
         let dry_friction = NeglectedDryFriction::of(&wheel, &[interval.key()]);
         Ok(Self {
@@ -154,7 +159,7 @@ impl HopfResult {
             unlocated: branch.motions.iter().filter_map(BracketedResult::at).collect(),
             points: (0..)
                 .zip(&branch.hopf_points)
-                .map(|(index, point)| hopf_point(index, point, branch))
+                .map(|(index, point)| hopf_point(index, point, interval.key(), branch))
                 .collect(),
             motions,
             along,
@@ -168,7 +173,23 @@ impl HopfResult {
     }
 }
 
-fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPointResult {
+/// Why a Hopf point has no first Lyapunov coefficient, and what it has instead.
+fn remark(point: &HopfPoint, key: Key) -> Option<String> {
+    let straight = point.wheel.towing_yaw_rate() == 0.0;
+    if point.first_lyapunov.is_some() || !straight || point.wheel.tyre() != Tyre::Brush {
+        return None;
+    }
+    let reason =
+        "no first Lyapunov coefficient exists, for the curvature of the brush law jumps at zero slip";
+    let slope = point.psi_max_slope.map(|slope| {
+        let side = if slope < 0.0 { "below" } else { "above" };
+        let unit = if key.unit() == "1" { String::new() } else { format!(" per {}", key.unit()) };
+        format!("; psi_max grows by {} rad{unit} {side} it", readable(slope.abs()))
+    });
+    Some(reason.to_owned() + &slope.unwrap_or_default())
+}
+
+fn hopf_point(index: usize, point: &HopfPoint, key: Key, branch: &MotionBranch) -> HopfPointResult {
     let motion = branch.motions.iter().find(|motion| {
         motion.value == point.value && matches!(motion.special.as_deref(), Some(SpecialPoint::Hopf(_)))
     });
@@ -180,6 +201,8 @@ fn hopf_point(index: usize, point: &HopfPoint, branch: &MotionBranch) -> HopfPoi
         state: named_state(&point.state),
         label: label(index),
         c1_real: point.detail.c1_real,
+        psi_max_slope: point.psi_max_slope,
+        remark: remark(point, key),
         first_lyapunov_error: point.detail.first_lyapunov_error,
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
@@ -192,7 +215,7 @@ impl Report for HopfResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[self.interval.key()])
     }
 
@@ -218,6 +241,11 @@ impl Report for HopfResult {
             ]);
         }
         table.write(out)?;
+        for (label, remark) in
+            self.points.iter().filter_map(|point| Some((&point.label, point.remark.as_ref()?)))
+        {
+            writeln!(out, "{label}: {remark}")?;
+        }
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
@@ -231,16 +259,20 @@ impl Report for HopfResult {
             .unit("rad/s")
             .optional_numbers("first_lyapunov", points().map(|point| point.first_lyapunov))
             .texts("criticality", points().map(|point| Some(criticality(point.criticality).to_owned())));
-        let columns = STATE_NAMES.into_iter().enumerate().fold(columns, |columns, (index, name)| {
+        let columns = self.wheel.states().iter().enumerate().fold(columns, |columns, (index, &name)| {
             columns
                 .optional_numbers(name, points().map(move |point| point.state.get(index)))
-                .unit(STATE_UNITS[index])
+                .unit(states::unit(name))
         });
         columns
             .optional_numbers("c1_real", points().map(|point| point.c1_real))
             .optional_numbers("location_error", points().map(|point| point.location_error))
             .unit(self.interval.key().unit())
-            .complex_numbers("eigenvalue", STATE_NAMES.len(), points().map(|point| &point.eigenvalues))
+            .complex_numbers(
+                "eigenvalue",
+                self.wheel.states().len(),
+                points().map(|point| &point.eigenvalues),
+            )
             .named_numbers("test", points().map(|point| &point.tests))
     }
 

@@ -9,7 +9,7 @@ use arclength_analysis::Origin;
 use arclength_analysis::locus::CycleCurve;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use kingpin_report::{Columns, Parameters, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -34,7 +34,7 @@ pub struct CycleLocusResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredCurve {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     #[serde(flatten)]
     curve: CycleCurve,
 }
@@ -43,7 +43,7 @@ impl TryFrom<StoredCurve> for CycleLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        let wheel = wheel_of(&parameters.0)?;
+        let wheel = wheel_of(&parameters)?;
         let plane = ParameterPlane::of(&curve.plane)?;
         let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
         Ok(Self { wheel, plane, curve, dry_friction })
@@ -74,7 +74,7 @@ impl Report for CycleLocusResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &self.plane.keys())
     }
 

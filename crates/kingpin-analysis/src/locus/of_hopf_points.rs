@@ -11,7 +11,7 @@ use arclength_analysis::locus::EquilibriumCurve;
 use kingpin::branches::HopfCurve;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Story};
+use kingpin_report::{Columns, Parameters, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -36,7 +36,7 @@ pub struct HopfLocusResult {
 /// The result as it is read back.
 #[derive(Deserialize)]
 struct StoredCurve {
-    parameters: NamedNumbers,
+    parameters: Parameters,
     #[serde(flatten)]
     curve: EquilibriumCurve,
 }
@@ -45,7 +45,7 @@ impl TryFrom<StoredCurve> for HopfLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
-        let wheel = wheel_of(&parameters.0)?;
+        let wheel = wheel_of(&parameters)?;
         let plane = ParameterPlane::of(&curve.plane)?;
         let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
         Ok(Self { wheel, plane, curve, dry_friction })
@@ -72,7 +72,7 @@ impl Report for HopfLocusResult {
         Schema::first(Self::SCHEMA)
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &self.plane.keys())
     }
 

@@ -12,7 +12,7 @@ use kingpin::branches::Along;
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -204,7 +204,7 @@ impl Report for MarginResult {
         Schema::first("kingpin.margin")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[self.interval.key()])
     }
 

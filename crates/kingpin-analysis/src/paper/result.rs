@@ -1,7 +1,7 @@
 //! What was written of the paper, as a result.
 
 use super::claims::Claim;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -21,9 +21,9 @@ impl Report for PaperResult {
         Schema::first("kingpin.paper")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         // The figures say with what they were computed.
-        NamedNumbers::default()
+        Parameters::default()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

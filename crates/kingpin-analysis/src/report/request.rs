@@ -279,7 +279,7 @@ impl ReportAnalysis {
 
     fn blow(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
         let speed = self.wheel.get(Key::V);
-        if stable == Some(false) {
+        if stable == Some(false) && self.wheel.get(Key::MF) == 0.0 {
             let text = format!(
                 "At {} m/s the uniform motion is unstable: without friction about the king pin no blow is small enough.",
                 readable(speed)

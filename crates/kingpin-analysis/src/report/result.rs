@@ -5,7 +5,7 @@ use crate::description;
 use crate::parameters::parameters_of;
 use kingpin::Wheel;
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ impl Report for ReportResult {
         Schema::first("kingpin.report")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[])
     }
 

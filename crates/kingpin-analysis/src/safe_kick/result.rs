@@ -8,7 +8,7 @@ use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::history::drawn;
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::{self, Write};
@@ -147,7 +147,7 @@ impl Report for SafeKickResult {
         Schema::first("kingpin.safe-kick")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, self.replaced())
     }
 

@@ -5,9 +5,11 @@ mod request;
 mod result;
 mod rolling_result;
 mod sliding_result;
+mod tyre_result;
 
 pub use phase::Phase;
 pub use request::{SimulateAnalysis, SimulateRequest};
 pub use result::HistoryResult;
 pub use rolling_result::RollingHistory;
 pub use sliding_result::SlidingHistory;
+pub use tyre_result::TyreHistoryResult;

@@ -3,11 +3,12 @@
 use super::result::HistoryResult;
 use super::rolling_result::RollingHistory;
 use super::sliding_result::SlidingHistory;
+use super::tyre_result::TyreHistoryResult;
 use crate::classification::Contact;
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::Control;
-use kingpin::Wheel;
+use kingpin::{Tyre, Wheel};
 use kingpin_report::NamedNumbers;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -20,7 +21,7 @@ pub struct SimulateRequest {
     pub wheel: WheelRequest,
     /// Time in s.
     pub duration: f64,
-    /// Changes of states (u, q, psi, V, Omega; with k_u = inf q, psi, Omega) at the start.
+    /// Changes of states (u, q, psi, V, Omega; with k_u = inf q, psi, Omega; with a tyre u, q, psi, V1, V2, Omega, y_t) at the start.
     #[serde(default)]
     pub perturb: NamedNumbers,
     /// Number of samples, at equal distances from 0 to the end.
@@ -95,6 +96,11 @@ impl SimulateAnalysis {
                 let start = wheel.perturbed_sliding_motion(&perturbations)?;
                 let history = wheel.sliding()?.simulate_from(&start, self.duration, self.points, control)?;
                 Ok(HistoryResult::Sliding(SlidingHistory::new(wheel, history)))
+            }
+            Contact::Rolling if wheel.tyre() != Tyre::Rigid => {
+                let history =
+                    wheel.simulate_with_tyre(self.duration, &perturbations, self.points, control)?;
+                Ok(HistoryResult::Tyre(TyreHistoryResult::new(wheel, self.duration, history)))
             }
             Contact::Rolling => {
                 let history = wheel.simulate(self.duration, &perturbations, self.points, control)?;

@@ -1,9 +1,10 @@
-//! A time history as a result, of a wheel that rolls or of one that may slide.
+//! A time history as a result, of a wheel that rolls, of one that may slide or of one with a tyre.
 
 use super::rolling_result::RollingHistory;
 use super::sliding_result::SlidingHistory;
+use super::tyre_result::TyreHistoryResult;
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -15,6 +16,8 @@ pub enum HistoryResult {
     Rolling(RollingHistory),
     /// Of a wheel that rolls or slides.
     Sliding(SlidingHistory),
+    /// Of a wheel with a tyre.
+    Tyre(TyreHistoryResult),
 }
 
 impl HistoryResult {
@@ -23,6 +26,7 @@ impl HistoryResult {
         match self {
             Self::Rolling(history) => history.warnings(),
             Self::Sliding(_) => Vec::new(),
+            Self::Tyre(history) => history.warnings(),
         }
     }
 }
@@ -32,13 +36,15 @@ impl Report for HistoryResult {
         match self {
             Self::Rolling(history) => history.schema(),
             Self::Sliding(history) => history.schema(),
+            Self::Tyre(history) => history.schema(),
         }
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         match self {
             Self::Rolling(history) => history.parameters(),
             Self::Sliding(history) => history.parameters(),
+            Self::Tyre(history) => history.parameters(),
         }
     }
 
@@ -46,6 +52,7 @@ impl Report for HistoryResult {
         match self {
             Self::Rolling(history) => history.write_table(out),
             Self::Sliding(history) => history.write_table(out),
+            Self::Tyre(history) => history.write_table(out),
         }
     }
 
@@ -53,6 +60,7 @@ impl Report for HistoryResult {
         match self {
             Self::Rolling(history) => history.columns(),
             Self::Sliding(history) => history.columns(),
+            Self::Tyre(history) => history.columns(),
         }
     }
 
@@ -60,6 +68,7 @@ impl Report for HistoryResult {
         match self {
             Self::Rolling(history) => history.figure(),
             Self::Sliding(history) => history.figure(),
+            Self::Tyre(history) => history.figure(),
         }
     }
 }

@@ -9,7 +9,7 @@ use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, extremes, summary};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -114,7 +114,7 @@ impl Report for RollingHistory {
         Schema::first("kingpin.simulate")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         parameters_of(&self.wheel, &[])
     }
 

@@ -2,7 +2,7 @@
 
 use super::name::StudyName;
 use super::study::Finding;
-use kingpin_report::{Cell, Columns, NamedNumbers, Report, Schema, Table};
+use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -50,9 +50,9 @@ impl Report for StudyResult {
         Schema::first("kingpin.study")
     }
 
-    fn parameters(&self) -> NamedNumbers {
+    fn parameters(&self) -> Parameters {
         // Every study has its own wheels; the quantities say which.
-        NamedNumbers::default()
+        Parameters::default()
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -13,6 +13,7 @@ mod lateral;
 mod long_values;
 mod studies;
 mod tables;
+mod tyre;
 mod verdicts;
 
 use std::path::{Path, PathBuf};

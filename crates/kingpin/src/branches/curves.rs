@@ -1,8 +1,8 @@
 //! Curves of Hopf points, and of folds, period doublings and torus bifurcations of cycles, in two parameters of the wheel.
 
-use super::{Along, HopfPoint};
+use super::{Along, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
 use crate::{KingpinError, RollingModel, Wheel};
-use arclength::branch::{SpecialKind, Unlocated, WithParameters};
+use arclength::branch::{Monitor, SpecialKind, Unlocated, WithParameters};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{Orbit, Resolution};
 use arclength::equilibrium::equilibrium_settings;
@@ -24,7 +24,7 @@ pub struct CurveOptions {
 /// A curve of Hopf points of the uniform motion.
 #[derive(Debug)]
 pub struct HopfCurve {
-    /// The points: values are those of the two keys, states are `u q psi V Omega`.
+    /// The points: values are those of the two keys, states are [all](Wheel::states).
     pub points: Vec<LocusPoint>,
     /// Why the curve ends, at its first and at its last point, in values of the keys.
     pub stops: [Option<Stop<Infallible>>; 2],
@@ -87,7 +87,13 @@ impl HopfPoint {
             .run()?;
         let mut points = branch.points;
         for point in &mut points {
-            point.state = model.full_state(&point.state, &point.values).to_vec();
+            if model.has_no_first_lyapunov(&point.values) {
+                point.first_lyapunov = None;
+                if point.label.is_some_and(|label| label.kind == SpecialKind::GeneralizedHopf) {
+                    (point.label, point.special) = (None, None);
+                }
+            }
+            point.state = model.full_state(&point.state, &point.values);
             point.values = convert(&plane, point.values);
             if let Some(special) = &mut point.special {
                 special.state.clone_from(&point.state);
@@ -117,7 +123,14 @@ impl Wheel {
         mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
     ) -> Result<CycleCurve, KingpinError> {
         let (model, values) = self.in_plane(plane)?;
-        let branch = CycleLocus::of(&model)
+        model.check_forwards(orbit, &values)?;
+        let slowest = Monitor::new(SPEED_MONITOR, |point: &CycleLocusPoint| {
+            model.smallest_speed_ratio(&point.orbit, &point.values)
+        })
+        .until(&[SLOWEST_ON_CYCLES]);
+        let curve = CycleLocus::of(&model);
+        let curve = if matches!(model, RollingModel::Tyre(_)) { curve.monitor(slowest) } else { curve };
+        let branch = curve
             .from_cycle(kind, orbit, &values)
             .along(plane[0].followed().name(), plane[0].range())
             .and(plane[1].followed().name(), plane[1].range())

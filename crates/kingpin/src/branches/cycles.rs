@@ -1,8 +1,8 @@
 //! Limit cycles of the rolling wheel along a parameter.
 
-use super::{Along, HopfPoint};
-use crate::{KingpinError, Wheel};
-use arclength::branch::Unlocated;
+use super::{Along, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
+use crate::{KingpinError, RollingModel, Wheel};
+use arclength::branch::{Monitor, Unlocated};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use std::ops::ControlFlow;
@@ -25,7 +25,7 @@ pub struct WheelCycles {
     pub wheel: Wheel,
     /// The parameter and its interval.
     pub along: Along,
-    /// The cycles, with `value` a value of the key; extrema are those of `u q psi V Omega`, the states of the orbits are the
+    /// The cycles, with `value` a value of the key; extrema are those of [all states](Wheel::states), the states of the orbits are the
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
@@ -61,7 +61,8 @@ impl HopfPoint {
         options: &CycleOptions,
         observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
-        self.wheel.cycles_from(CycleStart::from(&self.detail), along, options, observer)
+        let width = along.range().end() - along.range().start();
+        self.wheel.cycles_from(self.start(width), along, options, observer)
     }
 }
 
@@ -106,7 +107,16 @@ impl Wheel {
             model.complete_extrema(&point.orbit, &mut point.max, &mut point.min, &[point.value]);
             point.value = along.convert(point.value);
         };
-        let mut branch = Cycles::of(&model, start)
+        if let CycleStart::Orbit(orbit) = &start {
+            model.check_forwards(orbit, &[along.convert(value)])?;
+        }
+        let slowest = Monitor::new(SPEED_MONITOR, |point: &CyclePoint| {
+            model.smallest_speed_ratio(&point.orbit, &[point.value])
+        })
+        .until(&[SLOWEST_ON_CYCLES]);
+        let cycles = Cycles::of(&model, start);
+        let cycles = if matches!(model, RollingModel::Tyre(_)) { cycles.monitor(slowest) } else { cycles };
+        let mut branch = cycles
             .parameters(&[along.convert(value)])
             .along(key.name(), along.range())
             .at(&at)

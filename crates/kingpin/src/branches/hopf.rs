@@ -3,14 +3,19 @@
 use super::Along;
 #[cfg(doc)]
 use crate::UniformMotion;
+use crate::tyre::Onset;
 use crate::{KingpinError, Wheel};
 use arclength::branch::Criticality;
 use arclength::continuation::{Settings, Stop};
 use arclength::control::Control;
+use arclength::cycle::CycleStart;
 use arclength::equilibrium::{
     Equilibria, EquilibriumEnd, EquilibriumPoint, SpecialPoint, equilibrium_settings,
 };
 use std::ops::ControlFlow;
+
+/// Distance of the first cycle from a Hopf point where the amplitude grows in proportion to it, as a part of the interval.
+const FIRST_DISTANCE: f64 = 4e-4;
 
 /// A Hopf point of the uniform motion.
 #[derive(Clone, Debug)]
@@ -21,23 +26,42 @@ pub struct HopfPoint {
     pub location_error: f64,
     /// Angular frequency in rad/s.
     pub frequency: f64,
-    /// First Lyapunov coefficient in Kuznetsov's scaling, states in SI units.
+    /// First Lyapunov coefficient in Kuznetsov's scaling, states in SI units; straight under the brush law of the tyre there is none.
     pub first_lyapunov: Option<f64>,
+    /// Where there is none: slope of the largest caster angle of the cycles in the parameter, in rad over its unit, negative where they
+    /// lie below the Hopf point.
+    pub psi_max_slope: Option<f64>,
     /// Whether the cycles that are born are unstable (subcritical) or stable (supercritical).
     pub criticality: Criticality,
-    /// State `u q psi V Omega` of the uniform motion.
-    pub state: [f64; 5],
+    /// The uniform motion, in [all states](Wheel::states).
+    pub state: Vec<f64>,
     /// The wheel at this point.
     pub wheel: Wheel,
     /// The point as the continuation engine knows it, to start cycles from.
     pub detail: arclength::equilibrium::HopfPoint,
+    /// How cycles grow where there is no first Lyapunov coefficient.
+    onset: Option<Onset>,
+}
+
+impl HopfPoint {
+    /// The point as the start of cycles along an interval of some width.
+    pub(super) fn start(&self, width: f64) -> CycleStart {
+        let mut start = CycleStart::from(&self.detail);
+        if let (CycleStart::Hopf { crossing_speed, cubic_coefficient, .. }, Some(onset)) =
+            (&mut start, self.onset)
+        {
+            let equivalent = onset.cubic_coefficient(*crossing_speed, FIRST_DISTANCE * width);
+            *cubic_coefficient = if equivalent.is_finite() { equivalent } else { 0.0 };
+        }
+        start
+    }
 }
 
 /// The uniform motion followed along a parameter.
 #[derive(Debug)]
 pub struct MotionBranch {
     /// The motions, from the lower end of the interval to the upper one where the branch does not turn; `value` is a value of
-    /// the key and `state` the states `u q psi V Omega`; the stability is that of [`UniformMotion::stability`], which does not count
+    /// the key and `state` is in [all states](Wheel::states); the stability is that of [`UniformMotion::stability`], which does not count
     /// a longitudinal motion without damping. What is known of special points is as the continuation found it, which
     /// follows `1/r` in place of `r`.
     pub motions: Vec<EquilibriumPoint>,
@@ -124,36 +148,54 @@ impl Wheel {
             };
             let model = wheel.rolling_model(&[key])?;
             let branch = Equilibria::of(&model)
-                .start(&model.free_state(&motion.state()))
+                .start(&model.free_state(&motion.states()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
                 .settings(settings)
                 .observer(|point| observer(along.convert(point.value)))
                 .run()?;
-            let mut hopf_points = branch
-                .hopf_points()
+            let mut motions = branch.points;
+            let mut onsets: Vec<(f64, Onset)> = Vec::new();
+            for motion in &mut motions {
+                if let Some(SpecialPoint::Hopf(point)) = motion.special.as_deref_mut()
+                    && let Some(onset) = model.onset(point)
+                {
+                    (point.first_lyapunov, point.first_lyapunov_error, point.c1_real) = (None, None, None);
+                    point.criticality = onset.criticality;
+                    onsets.push((point.value, onset));
+                }
+            }
+            let onset_at =
+                |value: f64| onsets.iter().find(|(place, _)| *place == value).map(|(_, onset)| *onset);
+            let mut hopf_points = motions
+                .iter()
+                .filter_map(|motion| match motion.special.as_deref() {
+                    Some(SpecialPoint::Hopf(point)) => Some(point),
+                    _ => None,
+                })
                 .map(|point| {
                     Ok(HopfPoint {
                         value: along.convert(point.value),
                         location_error: along.convert_error(along.convert(point.value), point.location_error),
                         frequency: point.frequency,
                         first_lyapunov: point.first_lyapunov,
+                        psi_max_slope: onset_at(point.value).and_then(|onset| onset.psi_max_slope),
                         criticality: point.criticality,
                         state: model.full_state(&point.state, &[point.value]),
                         wheel: wheel.with(key, point.value)?,
                         detail: point.clone(),
+                        onset: onset_at(point.value),
                     })
                 })
                 .collect::<Result<Vec<_>, KingpinError>>()?;
             hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
-            let mut motions = branch.points;
             if motions.is_empty() {
                 continue;
             }
             for motion in &mut motions {
                 let state = model.full_state(&motion.state, &[motion.value]);
-                motion.stability = wheel.with(key, motion.value)?.motion_at(state).stability();
-                motion.state = state.to_vec();
+                motion.stability = wheel.with(key, motion.value)?.motion_in(&state).stability();
+                motion.state = state;
                 motion.value = along.convert(motion.value);
                 if let Some(SpecialPoint::Degenerate { value, location_error, .. }) =
                     motion.special.as_deref_mut()

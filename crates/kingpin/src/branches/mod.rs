@@ -15,6 +15,14 @@ use crate::{Key, KingpinError, Wheel};
 use arclength::branch::WithParameters;
 use arclength::continuation::Stop;
 
+/// What ends branches and curves of cycles of a wheel with a tyre, in words: they are followed as long as this is above
+/// [`SLOWEST_ON_CYCLES`].
+pub const SPEED_MONITOR: &str =
+    "the smallest V1/v on the cycles, which a tyre takes only while it is positive,";
+
+/// The smallest `V1/v` of cycles of a wheel with a tyre, at which their branches and curves end.
+pub const SLOWEST_ON_CYCLES: f64 = 0.01;
+
 /// A parameter and the interval in which it varies.
 ///
 /// ```

@@ -78,13 +78,23 @@ impl Wheel {
         &self,
         perturbations: &[(&str, f64)],
     ) -> Result<[f64; 5], SimulationError> {
+        self.check_rigid()?;
+        let state = self.perturbed_states(perturbations)?;
+        Ok(std::array::from_fn(|index| state[index]))
+    }
+
+    /// As [`perturbed_uniform_motion`](Self::perturbed_uniform_motion), in [all states](Self::states) of any wheel.
+    pub(crate) fn perturbed_states(
+        &self,
+        perturbations: &[(&str, f64)],
+    ) -> Result<Vec<f64>, SimulationError> {
         let model = self.rolling_model(&[])?;
         let names = self.free_states();
-        let mut state = model.free_state(&self.uniform_motion()?.state());
+        let mut state = model.free_state(&self.uniform_motion()?.states());
         for &(name, amount) in perturbations {
             let index = names.iter().position(|&candidate| candidate == name).ok_or_else(|| {
                 let (given, allowed) = (name.to_owned(), names.join(", "));
-                if STATE_NAMES.contains(&name) {
+                if self.states().contains(&name) {
                     SimulationError::DependentState { given, allowed }
                 } else {
                     SimulationError::UnknownState { given, allowed }
@@ -142,15 +152,17 @@ impl Wheel {
         if samples < 2 {
             return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
         }
+        self.check_rigid()?;
         let model = self.rolling_model(&[])?;
         let free = model.free_state(initial);
-        self.check_constraints(initial, &model.full_state(&free, &[]))?;
+        let full_state =
+            |state: &[f64]| -> [f64; 5] { std::array::from_fn(|index| model.full_state(state, &[])[index]) };
+        self.check_constraints(initial, &full_state(&free))?;
         let last = (samples - 1) as f64;
         let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
         if self.get(Key::MF) > 0.0 {
             return self.simulate_with_dry_friction(initial, &times, control);
         }
-        let full_state = |state: &[f64]| model.full_state(state, &[]);
         let reserve = |state: &[f64]| {
             let force = self.contact_force(&full_state(state));
             // Squares keep the function smooth where the force vanishes.

@@ -430,6 +430,10 @@ impl Curve for CycleLocusCurve<'_> {
         Ok(if rescaled { Adaptation::Renormalised } else { adaptation })
     }
 
+    fn carry_over(&self, point: &mut Inspection) {
+        point.mesh = self.system.collocation.mesh().to_vec();
+    }
+
     fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
         let kind = self.kind();
         self.base.problem.segments.clone_from(&self.system.collocation.problem.segments);
