@@ -27,17 +27,22 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
             format!("No damper is needed for the uniform motion to be stable up to {up_to} m/s.")
         }
         (lateral, rotational) => {
-            let one = |damping: Option<f64>, key: &str, unit: &str| {
-                damping.map_or_else(
-                    || format!("no {key} that was tried is enough alone"),
-                    |damping| format!("{key} = {} {unit}", significant(damping, 4)),
-                )
-            };
-            format!(
-                "For the uniform motion to be stable up to {up_to} m/s it takes {}, or {}.",
-                one(lateral, "c_q", "N s/m"),
-                one(rotational, "c_psi", "N m s/rad")
-            )
+            let one =
+                |damping: f64, key: &str, unit: &str| format!("{key} = {} {unit}", significant(damping, 4));
+            let enough: Vec<String> = [
+                lateral.map(|damping| one(damping, "c_q", "N s/m")),
+                rotational.map(|damping| one(damping, "c_psi", "N m s/rad")),
+            ]
+            .into_iter()
+            .flatten()
+            .collect();
+            match enough.as_slice() {
+                [] => format!("No damper that was tried makes the uniform motion stable up to {up_to} m/s."),
+                some => format!(
+                    "For the uniform motion to be stable up to {up_to} m/s it takes {}.",
+                    some.join(", or ")
+                ),
+            }
         }
     };
     let check = "Boundaries of stability, followed in the damper at every speed. Large cycles beside the uniform motion may take more; they \

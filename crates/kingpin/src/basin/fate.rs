@@ -1,6 +1,6 @@
 //! What becomes of a motion.
 
-use super::ContactModel;
+use super::contact_model::ContactModel;
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;

@@ -6,6 +6,7 @@
 //! [`BasinMap`] does so for grids and random samples of initial states in tiles that can be computed apart, stopped and
 //! resumed; [`SafeKick`] finds the smallest disturbance from which the wheel does not return.
 
+mod contact_model;
 mod course;
 #[cfg(test)]
 mod dry_friction_tests;
@@ -16,6 +17,7 @@ mod map;
 #[cfg(test)]
 mod tests;
 
+pub use contact_model::ContactModel;
 pub use fate::{ClassificationSettings, Fate};
 pub use kick::{Disturbance, DisturbedMotion, SafeKick};
 pub use map::{Axis, BasinMap, Fraction, Tile, wilson_interval};
@@ -35,25 +37,6 @@ use std::sync::{Mutex, PoisonError};
 
 /// Tolerance of the integration of motions that are only classified.
 const CLASSIFICATION_TOLERANCE: f64 = 1e-10;
-
-/// Whether the wheel is allowed to slide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactModel {
-    /// It rolls whatever force that takes.
-    Rolling,
-    /// Coulomb friction: it slides where rolling takes more than the static friction.
-    Sliding,
-}
-
-impl ContactModel {
-    /// Name as it is written in options and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            ContactModel::Rolling => "rolling",
-            ContactModel::Sliding => "sliding",
-        }
-    }
-}
 
 /// Tells where motions of one wheel end.
 ///

@@ -204,17 +204,6 @@ impl SlidingWheel {
         self
     }
 
-    /// Derivative of the state.
-    pub(crate) fn rate(&self, state: &HybridState) -> SlipState {
-        let regime = match state.contact {
-            Contact::Rolling => Regime::Rolling,
-            Contact::Sliding => Regime::Sliding,
-        };
-        let mut rate = [0.0; 7];
-        regime.field(&self.equations, &state.state, &mut rate);
-        rate
-    }
-
     /// The equations that hold in a mode.
     pub(crate) fn equations_in(&self, mode: Mode) -> Equations<f64> {
         self.equations.under(mode.friction_moment)

@@ -6,7 +6,7 @@
 //! a convex function (Gauss's principle), so that one mode fits, and one only where `mu_d = mu_s`; where static friction exceeds the
 //! sliding one, holding comes first.
 
-use super::model::{Equations, FrictionMoment};
+use super::model::{Equations, FrictionMoment, SlipState};
 use super::{Contact, HybridState, RESTING_ANGLE, RESTING_EXCESS, SlidingWheel};
 use arclength::Scalar;
 use std::f64::consts::TAU;
@@ -82,6 +82,17 @@ impl Mode {
 }
 
 impl SlidingWheel {
+    /// Derivative of the state.
+    pub(crate) fn rate(&self, state: &HybridState) -> SlipState {
+        let regime = match state.contact {
+            Contact::Rolling => Regime::Rolling,
+            Contact::Sliding => Regime::Sliding,
+        };
+        let mut rate = [0.0; 7];
+        regime.field(&self.equations, &state.state, &mut rate);
+        rate
+    }
+
     /// The mode in which the motion goes on from a state.
     pub(crate) fn mode(&self, present: &HybridState) -> Mode {
         let state = &present.state;
