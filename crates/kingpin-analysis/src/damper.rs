@@ -4,6 +4,7 @@ use crate::description;
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
+use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
 use kingpin::{Key, SmallestDamper, Wheel};
@@ -32,17 +33,7 @@ impl DamperRequest {
     /// What is wrong with the wheel or the speed; an interruption.
     pub fn run(&self, control: &Control<'_>) -> Result<DamperResult, Error> {
         let wheel = self.wheel.read()?.with(Key::CQ, 0.0)?.with(Key::CPsi, 0.0)?;
-        let Assignment { key, value } = &self.up_to;
-        let given = || format!("{key}={value}");
-        if !matches!(key.parse(), Ok(Key::V)) {
-            return Err(Error::invalid(&["up_to"], given(), "not a speed", "v=VALUE, in m/s"));
-        }
-        let mut fastest = wheel;
-        fastest.set(key, value).map_err(|source| Error::Set { given: given(), source })?;
-        let up_to = fastest.get(Key::V);
-        if up_to <= 0.0 {
-            return Err(Error::invalid(&["up_to"], given(), "no speed", "a speed above 0, in m/s"));
-        }
+        let up_to = up_to::speed(&wheel, &self.up_to)?;
         let alone = |key, part| wheel.smallest_damper(key, up_to, &control.part(part));
         let lateral = alone(Key::CQ, 0.0..0.1)?;
         let rotational = alone(Key::CPsi, 0.1..0.2)?;

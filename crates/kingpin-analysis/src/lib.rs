@@ -33,6 +33,7 @@ mod start;
 mod states;
 pub mod steady;
 pub mod studies;
+mod up_to;
 mod wheel_request;
 
 pub use classification::{Classification, Contact, NamedFate};

@@ -6,6 +6,7 @@ mod classification_options;
 mod cycles;
 mod damper;
 mod disturbance_options;
+mod folder_options;
 mod hopf;
 mod locus;
 mod margin;

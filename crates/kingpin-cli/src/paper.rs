@@ -1,8 +1,9 @@
 //! `kingpin paper`: the figures of the paper and a report on its statements.
 
+use crate::folder_options::FolderOptions;
 use clap::Args;
 use kingpin_analysis::paper::PaperRequest;
-use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
+use kingpin_terminal::{Failure, ProgressDisplay};
 use std::path::PathBuf;
 
 /// Figures 2 to 6 of the paper with their data, and a report on what the paper says
@@ -17,17 +18,8 @@ pub(crate) struct Paper {
     #[arg(short, long, value_name = "DIR", default_value_os_t = PaperRequest::default().out)]
     out: PathBuf,
 
-    /// Format in which the files are listed
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-
-    /// Number of threads; results do not depend on it [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    threads: Option<u16>,
-
-    /// No progress
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    options: FolderOptions,
 }
 
 impl Paper {
@@ -36,10 +28,9 @@ impl Paper {
     /// # Errors
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
-        start_threads(self.threads)?;
-        let output = Output::new(self.format, &[], self.quiet, &[])?;
+        let output = self.options.prepare()?;
         let request = PaperRequest { figure: self.figure, out: self.out.clone() };
-        let progress = ProgressDisplay::bar("paper", self.quiet);
+        let progress = ProgressDisplay::bar("paper", output.is_quiet());
         let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)
     }

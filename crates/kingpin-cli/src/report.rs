@@ -1,10 +1,11 @@
 //! `kingpin report`: everything about a wheel on one page.
 
+use crate::folder_options::FolderOptions;
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::Assignment;
 use clap::Args;
 use kingpin_analysis::report::ReportRequest;
-use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
+use kingpin_terminal::{Failure, ProgressDisplay};
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "kingpin report --wheel trolley.toml --up-to v=3 --out report";
@@ -25,17 +26,8 @@ pub(crate) struct ReportCommand {
     #[arg(short, long, value_name = "DIR", default_value_os_t = ReportRequest::default().out)]
     out: PathBuf,
 
-    /// Format in which the findings are printed
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-
-    /// Number of threads; results do not depend on it [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    threads: Option<u16>,
-
-    /// No progress
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    options: FolderOptions,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -47,12 +39,11 @@ impl ReportCommand {
     /// # Errors
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
-        start_threads(self.threads)?;
-        let output = Output::new(self.format, &[], self.quiet, &[])?;
+        let output = self.options.prepare()?;
         let request =
             ReportRequest { wheel: self.wheel.request(), up_to: self.up_to.clone(), out: self.out.clone() };
         let analysis = request.validate()?;
-        let progress = ProgressDisplay::bar("report", self.quiet);
+        let progress = ProgressDisplay::bar("report", output.is_quiet());
         let (result, _) = output.watch(progress, |control| analysis.run(control));
         output.deliver(&result?)
     }

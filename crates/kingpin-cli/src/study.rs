@@ -1,8 +1,9 @@
 //! `kingpin study`: what goes beyond the paper, each study with its figures, data and findings.
 
+use crate::folder_options::FolderOptions;
 use clap::{Args, ValueEnum};
 use kingpin_analysis::studies::{StudyName, StudyRequest};
-use kingpin_terminal::{Failure, Format, MOST_THREADS, Output, ProgressDisplay, start_threads};
+use kingpin_terminal::{Failure, ProgressDisplay};
 use std::path::PathBuf;
 
 /// Studies beyond the paper: damping, isola, sliding, basin, step-steer
@@ -17,17 +18,8 @@ pub(crate) struct StudyCommand {
     #[arg(short, long, value_name = "DIR", default_value_os_t = StudyRequest::default().out)]
     out: PathBuf,
 
-    /// Format in which the findings are told
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-
-    /// Number of threads; results do not depend on it [default: one per core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=MOST_THREADS))]
-    threads: Option<u16>,
-
-    /// No progress
-    #[arg(short, long)]
-    quiet: bool,
+    #[command(flatten)]
+    options: FolderOptions,
 }
 
 /// One study or all of them.
@@ -66,10 +58,9 @@ impl StudyCommand {
     /// # Errors
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
-        start_threads(self.threads)?;
-        let output = Output::new(self.format, &[], self.quiet, &[])?;
+        let output = self.options.prepare()?;
         let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };
-        let progress = ProgressDisplay::bar("study", self.quiet);
+        let progress = ProgressDisplay::bar("study", output.is_quiet());
         let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)
     }

@@ -32,6 +32,12 @@ impl ContactForce {
         self.longitudinal.hypot(self.lateral)
     }
 
+    /// What is left of the static friction, as a difference of squares in N^2, which is smooth where the force vanishes; below zero
+    /// the wheel cannot roll.
+    pub(crate) fn static_reserve(&self) -> f64 {
+        self.limit * self.limit.abs() - self.longitudinal.powi(2) - self.lateral.powi(2)
+    }
+
     /// Whether the ground can supply the friction force: `|T| < mu_s N`.
     pub fn rolls(&self) -> bool {
         self.friction() < self.limit

@@ -13,7 +13,7 @@ use crate::tyre::{Onset, TYRE_STATE_NAMES, TyreWheel};
 use crate::wheel::Wheel;
 use arclength::cycle::Orbit;
 use arclength::equilibrium::HopfPoint;
-use arclength::{Dual, Scalar, Threshold, VectorField};
+use arclength::{Dual, ErasedField, Scalar, Threshold, VectorField};
 
 /// Where the caster of a wheel with lateral elasticity only comes nearer than this to `psi = pi/2`, the errors of the other
 /// states, divided by it, are too large for a `V` that follows from them.
@@ -211,6 +211,12 @@ impl VectorField for RollingModel {
             Self::Lateral(wheel) => wheel.evaluate(state, parameters, derivative),
             Self::Tyre(wheel) => wheel.evaluate(state, parameters, derivative),
         }
+    }
+
+    // Compiled here, once for each scalar, and not in everything that follows a branch.
+    #[inline(never)]
+    fn erased(&self) -> ErasedField<'_> {
+        ErasedField::new(self)
     }
 
     fn thresholds(&self) -> Vec<Threshold> {

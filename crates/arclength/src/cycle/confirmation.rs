@@ -127,9 +127,7 @@ impl<'a> Asked<'a> {
                 let changes =
                     |now: &Floquet, then: &Floquet| multiplier_changes(&now.nontrivial, &then.nontrivial);
                 let resolved = resolved_multipliers(&level.problem, orbits, changes, are_resolved);
-                if let Some((floquet, changes)) =
-                    resolved.filter(|(floquet, changes)| are_resolved(floquet, changes))
-                {
+                if let Some((floquet, changes)) = resolved {
                     level.told.multipliers = floquet.nontrivial.clone();
                     (level.floquet, errors, ends) = (floquet, changes, true);
                 }

@@ -405,7 +405,7 @@ fn describe(
 }
 
 /// Coefficients of the normal form by their names, each followed by its error: the difference from that on intervals half as wide.
-/// Those of fields with borders, and those of a cycle that does not exist there, are left without.
+/// Those of fields with borders are left without; where the cycle does not exist there none is told.
 fn with_errors(
     curve: &CycleCurve<'_>,
     located: &Located,

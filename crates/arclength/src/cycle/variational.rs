@@ -28,8 +28,8 @@ pub(super) struct KnownOrbit<'a> {
 }
 
 /// The multipliers along the finer of two solutions for one orbit, and the changes of each (those other than the trivial one, the
-/// largest modulus first) against the other solution. Intervals are divided until the changes are small enough or no more is
-/// affordable. `None` where the field switches, or nothing was affordable.
+/// largest modulus first) against the other solution. Intervals are divided until the changes are small enough. `None` where the field
+/// switches, or what that takes is not affordable.
 pub(super) fn resolved_multipliers(
     problem: &LimitCycle<'_>,
     [coarse, fine]: [KnownOrbit<'_>; 2],
@@ -39,20 +39,17 @@ pub(super) fn resolved_multipliers(
     if problem.has_borders() {
         return None;
     }
-    let mut best = None;
     let mut parts = 1;
     while parts <= MOST_PARTS {
-        let Some(one) = multipliers_along(problem, coarse, parts) else { break };
-        let Some(other) = multipliers_along(problem, fine, parts) else { break };
+        let one = multipliers_along(problem, coarse, parts)?;
+        let other = multipliers_along(problem, fine, parts)?;
         let changes = changes(&other, &one);
-        let ends = is_enough(&other, &changes);
-        best = Some((other, changes));
-        if ends {
-            break;
+        if is_enough(&other, &changes) {
+            return Some((other, changes));
         }
         parts *= 2;
     }
-    best
+    None
 }
 
 /// The multipliers of the variational equation along an orbit, every interval in a number of parts.

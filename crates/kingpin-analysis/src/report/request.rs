@@ -12,6 +12,7 @@ use crate::classification::Contact;
 use crate::error::{Error, unless_stopped};
 use crate::folder;
 use crate::page::PageFigure;
+use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control, SampledInterval};
 use kingpin::{Key, Wheel};
@@ -85,15 +86,7 @@ impl ReportRequest {
                 let farthest = if critical <= FARTHEST * speed { critical } else { 0.0 };
                 rounded(farthest.max(SPEEDS * speed))
             }
-            Some(Assignment { key, value }) => {
-                let given = || format!("{key}={value}");
-                if !matches!(key.parse(), Ok(Key::V)) {
-                    return Err(Error::invalid(&["up_to"], given(), "not a speed", "v=VALUE, in m/s"));
-                }
-                let mut fastest = wheel;
-                fastest.set(key, value).map_err(|source| Error::Set { given: given(), source })?;
-                fastest.get(Key::V)
-            }
+            Some(given) => up_to::speed(&wheel, given)?,
         };
         if fastest < speed || fastest <= 0.0 {
             let allowed = format!("at least the wheel's own, {} m/s, and above 0", readable(speed));

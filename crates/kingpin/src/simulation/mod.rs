@@ -8,10 +8,12 @@
 
 mod dry_friction;
 mod error;
+mod sampling;
 #[cfg(test)]
 mod tests;
 
 pub use error::SimulationError;
+pub(crate) use sampling::sampling_times;
 
 use crate::rolling::STATE_NAMES;
 use crate::sliding::{KingPin, Phase, phase_at};
@@ -146,28 +148,17 @@ impl Wheel {
         samples: usize,
         control: &Control<'_>,
     ) -> Result<TimeHistory, SimulationError> {
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
-        }
-        if samples < 2 {
-            return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
-        }
+        let times = sampling_times(duration, samples)?;
         self.check_rigid()?;
         let model = self.rolling_model(&[])?;
         let free = model.free_state(initial);
         let full_state =
             |state: &[f64]| -> [f64; 5] { std::array::from_fn(|index| model.full_state(state, &[])[index]) };
         self.check_constraints(initial, &full_state(&free))?;
-        let last = (samples - 1) as f64;
-        let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
         if self.get(Key::MF) > 0.0 {
             return self.simulate_with_dry_friction(initial, &times, control);
         }
-        let reserve = |state: &[f64]| {
-            let force = self.contact_force(&full_state(state));
-            // Squares keep the function smooth where the force vanishes.
-            force.limit * force.limit.abs() - force.longitudinal.powi(2) - force.lateral.powi(2)
-        };
+        let reserve = |state: &[f64]| self.contact_force(&full_state(state)).static_reserve();
         let mut events = [Event::new(|_, state| reserve(state)).falling()];
         let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).under(control).with_events(
             autonomous(&model, &[]),

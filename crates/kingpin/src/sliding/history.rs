@@ -4,7 +4,7 @@ use super::model::{SlipState, slips};
 use super::{
     Contact, HybridState, KingPin, Phase, Piece, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state, phase_at,
 };
-use crate::simulation::SimulationError;
+use crate::simulation::{SimulationError, sampling_times};
 use crate::wheel::Wheel;
 use arclength::control::Control;
 
@@ -133,14 +133,7 @@ impl SlidingWheel {
         samples: usize,
         control: &Control<'_>,
     ) -> Result<SlidingHistory, SimulationError> {
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
-        }
-        if samples < 2 {
-            return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
-        }
-        let last = (samples - 1) as f64;
-        let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
+        let times = sampling_times(duration, samples)?;
         let mut history = SlidingHistory {
             times: Vec::with_capacity(samples),
             states: Vec::with_capacity(samples),

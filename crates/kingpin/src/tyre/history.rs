@@ -4,7 +4,7 @@
 //! undecided.
 
 use super::field::TYRE_STATE_NAMES;
-use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
+use crate::simulation::{SIMULATION_TOLERANCE, SimulationError, sampling_times};
 use crate::{ContactForce, Key, Wheel};
 use arclength::control::Control;
 use arclength::integration::{Event, Integrator, Statistics, autonomous};
@@ -60,12 +60,7 @@ impl Wheel {
         samples: usize,
         control: &Control<'_>,
     ) -> Result<TyreHistory, SimulationError> {
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(SimulationError::out_of_range("duration", duration, "positive and finite, in s"));
-        }
-        if samples < 2 {
-            return Err(SimulationError::out_of_range("samples", samples as f64, "at least 2"));
-        }
+        let times = sampling_times(duration, samples)?;
         let model = self.with_tyre(&[])?;
         let start = self.perturbed_states(perturbations)?;
         let free: Vec<f64> = model.free().iter().map(|&index| start[index]).collect();
@@ -74,14 +69,7 @@ impl Wheel {
             let allowed = "positive: with a tyre the wheel has to roll forwards";
             return Err(SimulationError::out_of_range("V1", start[3], allowed));
         }
-        let last = (samples - 1) as f64;
-        let times: Vec<f64> = (0..samples).map(|i| duration * (i as f64 / last)).collect();
-        let force = |free: &[f64]| self.tyre_contact_force(&model.full_state(free, &[]));
-        let reserve = |free: &[f64]| {
-            let force = force(free);
-            // Squares keep the function smooth where the force vanishes.
-            force.limit * force.limit.abs() - force.longitudinal.powi(2) - force.lateral.powi(2)
-        };
+        let reserve = |free: &[f64]| self.tyre_contact_force(&model.full_state(free, &[])).static_reserve();
         let forward = |free: &[f64]| model.full_state(free, &[])[3] - slowest;
         let mut events = [
             Event::new(|_, state| reserve(state)).falling(),
