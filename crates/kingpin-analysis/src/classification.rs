@@ -30,22 +30,27 @@ impl Contact {
 
 /// How motions are followed.
 ///
-/// Rolling is the default because there the uniform motion always exists: that of the paper's wheel takes more friction than
-/// there is, so that a wheel that may slide has nothing to return to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Classification {
-    /// Whether the wheel may slide.
-    pub contact: Contact,
+    /// Whether the wheel may slide, where that is said.
+    pub contact: Option<Contact>,
     /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled; 12 times the
     /// decay time of small disturbances, 30 to 300, where it is not given.
     pub duration: Option<f64>,
 }
 
 impl Classification {
-    /// The model of the contact.
-    pub fn model(&self) -> ContactModel {
-        self.contact.model()
+    /// The contact where it is said, else ideal rolling: there the uniform motion always exists, while that of the paper's wheel takes
+    /// more friction than there is, so that a wheel that may slide has nothing to return to.
+    pub fn contact_or_rolling(&self) -> Contact {
+        self.contact.unwrap_or_default()
+    }
+
+    /// The contact where it is said, else what a designer means: a wheel whose load is known may slide.
+    pub fn contact_by_load(&self, wheel: &Wheel) -> Contact {
+        let loaded = if wheel.get(Key::FAz) == 0.0 { Contact::Rolling } else { Contact::Sliding };
+        self.contact.unwrap_or(loaded)
     }
 
     /// The settings for a wheel.
@@ -71,10 +76,10 @@ impl Classification {
     ///
     /// # Errors
     /// No uniform motion.
-    pub fn warnings(&self, wheel: &Wheel) -> Result<Vec<String>, KingpinError> {
+    pub fn warnings(&self, wheel: &Wheel, contact: Contact) -> Result<Vec<String>, KingpinError> {
         let motion = wheel.uniform_motion()?;
         let mut warnings = Vec::new();
-        if self.contact == Contact::Rolling && !motion.rolls() {
+        if contact == Contact::Rolling && !motion.rolls() {
             warnings.push(
                 "rolling takes more than the static friction even in uniform motion; it is assumed to roll"
                     .to_owned(),

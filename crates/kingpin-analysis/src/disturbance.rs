@@ -8,6 +8,9 @@ use kingpin::simulation::SimulationError;
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
 
+/// The largest curvature that is tried lays the caster of a stiff wheel at about so many rad.
+const CASTER_ANGLE: f64 = 0.4;
+
 /// Kinds of disturbances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -29,7 +32,8 @@ pub enum DisturbanceKind {
 pub struct DisturbanceRequest {
     /// The kind.
     pub kind: DisturbanceKind,
-    /// Largest magnitude that is tried; 1 N s, 1.5 rad, 0.9 v or 5 1/m where it is not given.
+    /// Largest magnitude that is tried. Where it is not given, a blow that would change the speed of wheel and caster together by v,
+    /// an angle of 1.5 rad, a jolt of 0.9 v, or a curvature of 0.4/l.
     pub largest: Option<f64>,
 }
 
@@ -61,6 +65,14 @@ impl Edge {
     }
 }
 
+/// How far magnitudes were tried in the directions of these edges: to the edge, or to the largest magnitude where there is none or where
+/// nothing returns.
+pub(crate) fn reached(edges: impl IntoIterator<Item = Option<Edge>>, largest: f64) -> f64 {
+    let tried =
+        |edge: Option<Edge>| edge.filter(|edge| !edge.is_unstable()).map_or(largest, |edge| edge.returns);
+    edges.into_iter().map(|edge| tried(edge).abs()).fold(0.0, f64::max)
+}
+
 impl DisturbanceRequest {
     /// The disturbance.
     pub fn disturbance(&self) -> Disturbance {
@@ -75,10 +87,14 @@ impl DisturbanceRequest {
     /// The largest magnitude.
     pub fn largest(&self, wheel: &Wheel) -> f64 {
         self.largest.unwrap_or(match self.kind {
-            DisturbanceKind::Impulse => 1.0,
+            DisturbanceKind::Impulse => {
+                let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
+                let natural_speed = wheel.get(Key::L) * (wheel.get(Key::KQ) / mass).sqrt();
+                mass * if wheel.get(Key::V) > 0.0 { wheel.get(Key::V) } else { natural_speed }
+            }
             DisturbanceKind::ReleaseAngle => 1.5,
             DisturbanceKind::Jolt => 0.9 * wheel.get(Key::V),
-            DisturbanceKind::StepSteer => 5.0,
+            DisturbanceKind::StepSteer => CASTER_ANGLE / wheel.get(Key::L),
         })
     }
 

@@ -25,9 +25,10 @@ impl From<ContactOption> for Contact {
 /// How motions are followed.
 #[derive(Args, Clone, Debug)]
 pub struct ClassificationOptions {
-    /// Whether the wheel may slide
-    #[arg(long, value_enum, default_value_t)]
-    contact: ContactOption,
+    /// Whether the wheel may slide [default: rolling; in safe-kick and margin sliding where a load F_Az is set, and where none is
+    /// safe-kick tells both]
+    #[arg(long, value_enum)]
+    contact: Option<ContactOption>,
 
     /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled [default: 12 times the
     /// decay time of small disturbances, 30 to 300]
@@ -37,6 +38,6 @@ pub struct ClassificationOptions {
 
 impl From<&ClassificationOptions> for Classification {
     fn from(options: &ClassificationOptions) -> Self {
-        Self { contact: options.contact.into(), duration: options.duration }
+        Self { contact: options.contact.map(Contact::from), duration: options.duration }
     }
 }

@@ -35,7 +35,7 @@ pub struct DisturbanceOptions {
     #[arg(long, value_enum, default_value_t)]
     kind: KindOption,
 
-    /// Largest magnitude that is tried [default: 1 N s, 1.5 rad, 0.9 v, 5 1/m]
+    /// Largest magnitude that is tried [default: a blow that would change the speed of wheel and caster by v, 1.5 rad, 0.9 v, 0.4/l]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     largest: Option<f64>,
 }

@@ -13,8 +13,8 @@ const EXAMPLE: &str = "kingpin safe-kick -s v=6 -o edge.svg
 /// Smallest disturbance of a kind from which the wheel does not return to its uniform motion
 ///
 /// Both directions are tried. Magnitudes up to --largest are scanned at 64 equal distances for the first that does not
-/// return, and the edge before it is narrowed down by bisection to a millionth of the largest one. Just below an edge 32
-/// closer magnitudes are tried, and the search goes on from there if one does not return. The result says how far apart
+/// return, and the edge before it is narrowed down by bisection to a millionth. Up to the edge 64 magnitudes are tried once more, and
+/// 32 closer ones just below it; the search goes on from there if one does not return. The result says how far apart
 /// magnitudes were tried (`resolution`): failures in a narrower range may lie below the edge. Files hold the motions on
 /// both sides of it.
 #[derive(Args, Debug)]

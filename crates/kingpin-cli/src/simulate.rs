@@ -23,6 +23,16 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "KEY=DELTA", allow_hyphen_values = true)]
     perturb: Vec<Assignment>,
 
+    /// Sideways blow in N s on the rim of the wheel, R ahead of its centre, at the start, as that of `safe-kick`
+    #[arg(
+        long,
+        value_name = "N_S",
+        allow_negative_numbers = true,
+        default_value_t = 0.0,
+        hide_default_value = true
+    )]
+    blow: f64,
+
     /// Number of samples, at equal distances from 0 to T
     #[arg(long, value_name = "N", default_value_t = SimulateRequest::default_points(),
           value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
@@ -49,6 +59,7 @@ impl Simulate {
             wheel: self.wheel.request(),
             duration: self.duration,
             perturb: NamedNumbers(self.perturb.iter().map(change).collect::<Result<_, _>>()?),
+            blow: self.blow,
             points: self.points,
             contact: self.contact.into(),
         };

@@ -70,7 +70,8 @@ impl BasinRequest {
         let axes = self.axes()?;
         let wheel = self.wheel.read()?;
         let settings = self.classification.settings(&wheel)?;
-        let model = self.classification.model();
+        let contact = self.classification.contact_or_rolling();
+        let model = contact.model();
         let destinations = Destinations::new(&wheel, model, settings)?;
         let counts = [self.x.count, self.y.count];
         let ends =
@@ -90,7 +91,7 @@ impl BasinRequest {
             counts,
             sample: self.samples.map(|count| (count as usize, self.seed)),
             destinations,
-            warnings: self.classification.warnings(&wheel)?,
+            warnings: self.classification.warnings(&wheel, contact)?,
             computation,
         })
     }

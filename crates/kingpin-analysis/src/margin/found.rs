@@ -1,6 +1,6 @@
 //! What is found at one value of the parameter: a part of the journal and of the result.
 
-use crate::classification::Classification;
+use crate::classification::{Classification, Contact};
 use crate::disturbance::{DisturbanceRequest, Edge};
 use crate::error::Error;
 use arclength_analysis::Control;
@@ -24,10 +24,11 @@ impl Found {
     ///
     /// # Errors
     /// [`Error::Stopped`], and what is wrong with the request at any value.
-    pub(super) fn seek(
+    pub(crate) fn seek(
         wheel: &Wheel,
         disturbance: &DisturbanceRequest,
         classification: &Classification,
+        contact: Contact,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
         let without = |error: SimulationError| match error {
@@ -43,7 +44,7 @@ impl Found {
             Err(Error::Simulation(error)) => return without(error),
             settings => settings?,
         };
-        match disturbance.edges(wheel, classification.model(), settings, control) {
+        match disturbance.edges(wheel, contact.model(), settings, control) {
             Ok([positive, negative]) => Ok(Self { positive, negative, problem: None }),
             Err(error) => without(error),
         }

@@ -4,8 +4,8 @@ use super::found::Found;
 use super::result::MarginResult;
 use super::unstable_cycles::unstable_cycles;
 use crate::along::along;
-use crate::classification::Classification;
-use crate::disturbance::DisturbanceRequest;
+use crate::classification::{Classification, Contact};
+use crate::disturbance::{DisturbanceKind, DisturbanceRequest, reached};
 use crate::error::Error;
 use crate::journal::Journal;
 use crate::parameters::parameters_of;
@@ -62,6 +62,7 @@ pub struct MarginAnalysis {
     values: Vec<f64>,
     disturbance: DisturbanceRequest,
     classification: Classification,
+    contact: Contact,
     /// What the journal says that it belongs to.
     computation: Value,
 }
@@ -89,6 +90,7 @@ impl MarginRequest {
             // A duration that makes no sense is refused before anything is computed.
             self.classification.settings(&wheel.with(key, start)?)?;
         }
+        let contact = self.classification.contact_by_load(&wheel);
         let computation = json!({
             "program": env!("CARGO_PKG_VERSION"),
             "command": "margin",
@@ -96,7 +98,7 @@ impl MarginRequest {
             "along": (key.name(), start, end, count),
             "kind": self.disturbance.disturbance().name(),
             "largest": self.disturbance.largest,
-            "contact": self.classification.model().name(),
+            "contact": contact.model().name(),
             "duration": self.classification.duration,
         });
         Ok(MarginAnalysis {
@@ -107,6 +109,7 @@ impl MarginRequest {
                 .collect(),
             disturbance: self.disturbance,
             classification: self.classification,
+            contact,
             computation,
         })
     }
@@ -135,7 +138,8 @@ impl MarginAnalysis {
         let done = AtomicUsize::new(finished.len());
         let seek = |index: usize| {
             let wheel = self.wheel.with(self.along.key(), self.values[index])?;
-            let found = Found::seek(&wheel, &self.disturbance, &self.classification, &control.quiet())?;
+            let found =
+                Found::seek(&wheel, &self.disturbance, &self.classification, self.contact, &control.quiet())?;
             journal.keep(index, &found, control.stop());
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             control.done(done as f64 / self.values.len() as f64);
@@ -152,16 +156,18 @@ impl MarginAnalysis {
         if control.is_stopped() {
             return Err(journal.interrupted(self.values.len(), self.values.len()));
         }
-        let resolution = |&value: &f64| {
+        let directions = if self.disturbance.kind == DisturbanceKind::StepSteer { 1 } else { 2 };
+        let resolution = |(&value, found): (&f64, &Found)| {
             let largest = self.disturbance.largest(&self.wheel.with(self.along.key(), value)?);
-            Ok((value, SafeKick::resolution(largest)))
+            let edges = [found.positive, found.negative].into_iter().take(directions);
+            Ok((value, SafeKick::resolution(reached(edges, largest))))
         };
-        let values = self.values.iter().map(resolution).collect::<Result<Vec<_>, Error>>()?;
+        let values = self.values.iter().zip(&found).map(resolution).collect::<Result<Vec<_>, Error>>()?;
         Ok(MarginResult::new(
             self.wheel,
             self.along,
             self.disturbance.disturbance(),
-            self.classification.model(),
+            self.contact.model(),
             values,
             found,
             cycles,

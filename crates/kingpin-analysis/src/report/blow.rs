@@ -8,11 +8,7 @@ use crate::error::Error;
 use crate::safe_kick::{SafeKickRequest, SafeKickResult};
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::Control;
-use kingpin::Key;
 use kingpin_report::numbers::{readable, significant};
-
-/// The largest blow that is tried would change the speed of wheel and caster together by so many times the towing speed.
-const LARGEST: f64 = 1.0;
 
 /// Seeks it.
 ///
@@ -23,10 +19,8 @@ pub(super) fn seek(
     contact: Contact,
     control: &Control<'_>,
 ) -> Result<SafeKickResult, Error> {
-    let read = wheel.read()?;
-    let largest = LARGEST * read.get(Key::V) * (read.get(Key::MW) + read.get(Key::MC));
-    let disturbance = DisturbanceRequest { largest: Some(largest), ..DisturbanceRequest::default() };
-    let classification = Classification { contact, ..Classification::default() };
+    let disturbance = DisturbanceRequest::default();
+    let classification = Classification { contact: Some(contact), ..Classification::default() };
     let request = SafeKickRequest { wheel: wheel.clone(), disturbance, classification };
     request.validate()?.run(control)
 }

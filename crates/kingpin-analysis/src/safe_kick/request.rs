@@ -1,12 +1,13 @@
 //! What the smallest disturbance that does not return is asked for by, and how it is found.
 
-use super::result::SafeKickResult;
-use crate::classification::Classification;
+use super::result::{SafeKickResult, Search};
+use crate::classification::{Classification, Contact};
 use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 use crate::error::Error;
+use crate::margin::Found;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::Control;
-use kingpin::basin::{ClassificationSettings, ContactModel, DisturbedMotion};
+use kingpin::basin::{ClassificationSettings, DisturbedMotion};
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
 
@@ -41,7 +42,8 @@ pub struct SafeKickRequest {
 pub struct SafeKickAnalysis {
     wheel: Wheel,
     disturbance: DisturbanceRequest,
-    model: ContactModel,
+    classification: Classification,
+    contact: Contact,
     settings: ClassificationSettings,
     warnings: Vec<String>,
 }
@@ -55,7 +57,8 @@ impl SafeKickRequest {
         let wheel = self.wheel.read()?;
         let settings = self.classification.settings(&wheel)?;
         self.disturbance.check(&wheel)?;
-        let mut warnings = self.classification.warnings(&wheel)?;
+        let contact = self.classification.contact_by_load(&wheel);
+        let mut warnings = self.classification.warnings(&wheel, contact)?;
         if self.disturbance.kind == DisturbanceKind::StepSteer && wheel.get(Key::CU) == 0.0 {
             warnings.push(
                 "without c_u the longitudinal motion hardly decays on a slightly curved path, which leaves small steps \
@@ -63,8 +66,8 @@ impl SafeKickRequest {
                     .to_owned(),
             );
         }
-        let (disturbance, model) = (self.disturbance, self.classification.model());
-        Ok(SafeKickAnalysis { wheel, disturbance, model, settings, warnings })
+        let (disturbance, classification) = (self.disturbance, self.classification);
+        Ok(SafeKickAnalysis { wheel, disturbance, classification, contact, settings, warnings })
     }
 }
 
@@ -74,13 +77,23 @@ impl SafeKickAnalysis {
         &self.warnings
     }
 
-    /// Finds the edges in both directions, and the motions on both sides of the nearer one.
+    /// Finds the edges in both directions, and the motions on both sides of the nearer one. Where neither the contact nor the load is
+    /// said, those of a wheel that may slide under its weight are found besides.
     ///
     /// # Errors
     /// [`Error::Simulation`], and [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<SafeKickResult, Error> {
+        let neither_is_said = self.classification.contact.is_none() && self.contact == Contact::Rolling;
         let (search, control) = (control.part(0.0..PART_OF_SEARCH), &control.quiet());
-        let edges = self.disturbance.edges(&self.wheel, self.model, self.settings, &search)?;
+        let model = self.contact.model();
+        let edges = self.disturbance.edges(&self.wheel, model, self.settings, &search)?;
+        let sliding = match neither_is_said {
+            true => {
+                let (disturbance, classification) = (&self.disturbance, &self.classification);
+                Some(Found::seek(&self.wheel, disturbance, classification, Contact::Sliding, control)?)
+            }
+            false => None,
+        };
         let smallest = edges.iter().copied().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let motions = match smallest {
             Some(edge) => Some(self.motions(&self.wheel, &edge, self.settings.duration, control)?),
@@ -89,11 +102,10 @@ impl SafeKickAnalysis {
         Ok(SafeKickResult::new(
             self.wheel,
             self.disturbance.disturbance(),
-            self.model,
+            model,
             self.settings,
             self.disturbance.largest(&self.wheel),
-            edges,
-            motions,
+            Search { edges, sliding, motions },
         ))
     }
 
@@ -109,7 +121,7 @@ impl SafeKickAnalysis {
         let period = std::f64::consts::TAU * (mass / wheel.get(Key::KQ)).sqrt();
         let history = |magnitude: f64, duration: f64| {
             let samples = (SAMPLES_PER_PERIOD * duration / period).clamp(2.0, MOST_SAMPLES) as usize;
-            let model = self.model;
+            let model = self.contact.model();
             self.disturbance.disturbance().history(wheel, model, magnitude, duration, samples, control)
         };
         let motions = [history(edge.returns, duration)?, history(edge.fails, duration)?];

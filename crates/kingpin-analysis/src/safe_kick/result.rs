@@ -1,13 +1,14 @@
 //! The edges of what the wheel returns from as a result, with the motions on both sides of the nearer one.
 
 use crate::description;
-use crate::disturbance::Edge;
+use crate::disturbance::{Edge, reached};
+use crate::margin::Found;
 use crate::parameters::parameters_of;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, SafeKick};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::history::drawn;
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -77,7 +78,9 @@ pub struct SafeKickResult {
     pub duration: f64,
     /// Largest magnitude that was tried.
     pub largest: f64,
-    /// Distance of the magnitudes that were tried: failures in a narrower range may lie below an edge.
+    /// What a blow of that size would change the speed of wheel and caster by, in m/s.
+    pub largest_speed_change: Option<f64>,
+    /// Distance of the magnitudes that were tried up to an edge, or to the largest: failures in a narrower range may lie below it.
     pub resolution: f64,
     /// The same just below an edge, as far as `resolution`.
     pub resolution_beside_edge: f64,
@@ -88,24 +91,40 @@ pub struct SafeKickResult {
     /// The largest disturbance that returned, in the direction in which fewer do; nothing where it is undecided what lies
     /// beyond.
     pub safe: Option<f64>,
+    /// The same of a wheel that may slide under its own weight, where neither the contact nor the load was said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sliding: Option<Found>,
+    /// Options of `simulate` that replay the smallest disturbance that did not return.
+    pub replay: Option<String>,
     /// The motion after the largest disturbance that returned.
     pub returns: Option<DisturbedMotionResult>,
     /// The motion after the smallest that did not.
     pub fails: Option<DisturbedMotionResult>,
 }
 
+/// What was found.
+pub(super) struct Search {
+    /// The edges in the positive and in the negative direction.
+    pub edges: [Option<Edge>; 2],
+    /// Those of a wheel that may slide, where they were sought besides.
+    pub sliding: Option<Found>,
+    /// The motions on both sides of the nearer edge.
+    pub motions: Option<[DisturbedMotion; 2]>,
+}
+
 impl SafeKickResult {
-    /// The result of the edges in the positive and in the negative direction, and the motions at the nearer one.
+    /// The result of what was found.
     pub(super) fn new(
         wheel: Wheel,
         kind: Disturbance,
         model: ContactModel,
         settings: ClassificationSettings,
         largest: f64,
-        [positive, negative]: [Option<Edge>; 2],
-        motions: Option<[DisturbedMotion; 2]>,
+        Search { edges: [positive, negative], sliding, motions }: Search,
     ) -> Self {
         let edges = [positive, negative];
+        let directions = if kind == Disturbance::StepSteer { 1 } else { 2 };
+        let reached = reached(edges.into_iter().take(directions), largest);
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let (returns, fails) = match (smallest, motions) {
             (Some(edge), Some([returns, fails])) => (
@@ -114,6 +133,17 @@ impl SafeKickResult {
             ),
             _ => (None, None),
         };
+        let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
+        let replay = smallest.filter(|edge| !edge.is_unstable()).and_then(|edge| {
+            let disturbance = match kind {
+                Disturbance::Impulse => format!("--blow {}", edge.fails),
+                Disturbance::ReleaseAngle => format!("--perturb psi={}", edge.fails),
+                Disturbance::Jolt | Disturbance::StepSteer => return None,
+            };
+            let shown =
+                fails.as_ref().and_then(|motion| motion.t.last().copied()).unwrap_or(settings.duration);
+            Some(format!("{disturbance} --contact {} --duration {}", model.name(), significant(shown, 3)))
+        });
         Self {
             wheel,
             kind: kind.name(),
@@ -121,11 +151,14 @@ impl SafeKickResult {
             contact: model.name(),
             duration: settings.duration,
             largest,
-            resolution: SafeKick::resolution(largest),
-            resolution_beside_edge: SafeKick::resolution_beside_edge(largest),
+            largest_speed_change: (kind == Disturbance::Impulse).then(|| largest / mass),
+            resolution: SafeKick::resolution(reached),
+            resolution_beside_edge: SafeKick::resolution_beside_edge(reached),
             positive,
             negative,
             safe: smallest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns),
+            sliding,
+            replay,
             returns,
             fails,
         }
@@ -142,24 +175,10 @@ impl SafeKickResult {
     }
 }
 
-impl Report for SafeKickResult {
-    fn schema(&self) -> Schema {
-        Schema::first("kingpin.safe-kick")
-    }
-
-    fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, self.replaced())
-    }
-
-    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let (kind, unit) = (self.kind, self.unit);
-        writeln!(out, "{}", self.description())?;
-        writeln!(
-            out,
-            "{kind} up to {} {unit}, motions followed for {} s at most\n",
-            readable(self.largest),
-            readable(self.duration)
-        )?;
+impl SafeKickResult {
+    /// Writes the table of the edges in the positive and in the negative direction.
+    fn write_edges(&self, out: &mut dyn Write, [positive, negative]: [Option<Edge>; 2]) -> io::Result<()> {
+        let unit = self.unit;
         let headings = [
             "direction".to_owned(),
             format!("returns ({unit})"),
@@ -169,7 +188,7 @@ impl Report for SafeKickResult {
         let mut table = Table::new(headings);
         let both = self.kind != Disturbance::StepSteer.name();
         for (direction, edge) in
-            [("positive", self.positive), ("negative", self.negative)].into_iter().take(1 + usize::from(both))
+            [("positive", positive), ("negative", negative)].into_iter().take(1 + usize::from(both))
         {
             match edge {
                 Some(edge) => table.row([
@@ -186,13 +205,64 @@ impl Report for SafeKickResult {
                 ]),
             }
         }
-        table.write(out)?;
+        table.write(out)
+    }
+}
+
+impl Report for SafeKickResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.safe-kick")
+    }
+
+    fn parameters(&self) -> Parameters {
+        parameters_of(&self.wheel, self.replaced())
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (kind, unit) = (self.kind, self.unit);
+        writeln!(out, "{}", self.description())?;
+        let speed_change = self.largest_speed_change.map(|change| {
+            format!(" (which changes the speed of wheel and caster by {} m/s)", readable(change))
+        });
         writeln!(
             out,
-            "\nmagnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may lie below it",
+            "{kind} up to {} {unit}{}, motions followed for {} s at most\n",
+            readable(self.largest),
+            speed_change.unwrap_or_default(),
+            readable(self.duration)
+        )?;
+        self.write_edges(out, [self.positive, self.negative])?;
+        let unstable = self.positive.is_some_and(|edge| edge.is_unstable());
+        if unstable {
+            writeln!(out, "\nsmall disturbances grow: none is safe")?;
+            return Ok(());
+        }
+        writeln!(
+            out,
+            "\nbelow what does not return magnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may \
+             lie there",
             readable(self.resolution),
             readable(self.resolution_beside_edge)
         )?;
+        match &self.sliding {
+            Some(Found { problem: Some(problem), .. }) => {
+                writeln!(
+                    out,
+                    "\na wheel that may slide under its own weight (no load F_Az is set): {problem}"
+                )?;
+            }
+            Some(found) => {
+                writeln!(out, "\na wheel that may slide under its own weight (no load F_Az is set):\n")?;
+                self.write_edges(out, [found.positive, found.negative])?;
+            }
+            None => {}
+        }
+        if let Some(replay) = &self.replay {
+            writeln!(
+                out,
+                "\nthe smallest that does not return, for the same wheel: kingpin simulate {replay}"
+            )?;
+        }
         if [self.positive, self.negative].into_iter().flatten().any(|edge| edge.is_undecided()) {
             writeln!(
                 out,

@@ -24,6 +24,9 @@ pub struct SimulateRequest {
     /// Changes of states (u, q, psi, V, Omega; with k_u = inf q, psi, Omega; with a tyre u, q, psi, V1, V2, Omega, y_t) at the start.
     #[serde(default)]
     pub perturb: NamedNumbers,
+    /// A sideways blow in N s on the rim of the wheel, R ahead of its centre, at the start.
+    #[serde(default)]
+    pub blow: f64,
     /// Number of samples, at equal distances from 0 to the end.
     #[serde(default = "SimulateRequest::default_points")]
     pub points: u64,
@@ -38,6 +41,7 @@ pub struct SimulateAnalysis {
     wheel: Wheel,
     duration: f64,
     perturb: NamedNumbers,
+    blow: f64,
     points: usize,
     contact: Contact,
 }
@@ -57,6 +61,7 @@ impl SimulateRequest {
             wheel: WheelRequest::default(),
             duration,
             perturb: NamedNumbers::default(),
+            blow: 0.0,
             points: Self::default_points(),
             contact: Contact::default(),
         }
@@ -71,10 +76,25 @@ impl SimulateRequest {
             let allowed = format!("{} to {}", Self::POINTS.start(), Self::POINTS.end());
             return Err(Error::invalid(&["points"], self.points.to_string(), "too few or too many", allowed));
         }
+        let wheel = self.wheel.read()?;
+        if !self.blow.is_finite() {
+            let allowed = "finite, in N s; negative from the other side";
+            return Err(Error::invalid(&["blow"], self.blow.to_string(), "no blow", allowed));
+        }
+        if self.blow != 0.0 && wheel.has_lateral_elasticity_only() {
+            let allowed = "with k_u = inf: `--perturb Omega=` in its place, or a finite k_u";
+            return Err(Error::invalid(
+                &["blow"],
+                self.blow.to_string(),
+                "with lateral elasticity only a blow goes to the rigid support too",
+                allowed,
+            ));
+        }
         Ok(SimulateAnalysis {
-            wheel: self.wheel.read()?,
+            wheel,
             duration: self.duration,
             perturb: self.perturb.clone(),
+            blow: self.blow,
             points: self.points as usize,
             contact: self.contact,
         })
@@ -88,9 +108,16 @@ impl SimulateAnalysis {
     /// [`Error::Simulation`]: a duration that is none, an unknown state, no uniform motion, a motion that cannot be followed;
     /// [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<HistoryResult, Error> {
-        let perturbations: Vec<(&str, f64)> =
-            self.perturb.0.iter().map(|(name, change)| (name.as_str(), *change)).collect();
         let wheel = self.wheel;
+        let mut perturbations: Vec<(&str, f64)> =
+            self.perturb.0.iter().map(|(name, change)| (name.as_str(), *change)).collect();
+        if self.blow != 0.0 {
+            let [lateral, yaw] = wheel.velocity_change(self.blow, self.contact.model());
+            perturbations.push(("Omega", yaw));
+            if lateral != 0.0 {
+                perturbations.push(("V2", lateral));
+            }
+        }
         match self.contact {
             Contact::Sliding => {
                 let start = wheel.perturbed_sliding_motion(&perturbations)?;

@@ -111,6 +111,20 @@ impl<'a> Course<'a> {
     }
 }
 
+impl Course<'_> {
+    /// The same with one of the states `(u, q, psi, V, Omega)` changed.
+    pub(super) fn displaced(&self, state: usize, amount: f64) -> Self {
+        let mut displaced = self.clone();
+        match &mut displaced {
+            Self::Rolling { state: states, .. } => states[state] += amount,
+            Self::Hybrid { state: present, .. } => {
+                present.state[if state == 4 { 5 } else { state }] += amount
+            }
+        }
+        displaced
+    }
+}
+
 /// What is told of the seven states of a wheel that slides.
 fn reduced(&[u, q, psi, forward, lateral, yaw, _]: &[f64; 7]) -> [f64; 5] {
     [u, q, psi, forward.hypot(lateral).copysign(forward), yaw]

@@ -25,6 +25,11 @@ const LINEAR: f64 = 0.99;
 /// Eigenvalues with a real part below this, relative to the natural frequency, count as neutral.
 const NEUTRAL: f64 = 1e-9;
 
+/// Nodes in one natural period of the springs: enough for maxima of motions with sliding phases to be right to a millionth.
+const NODES_PER_PERIOD: f64 = 384.0;
+/// Natural periods that are followed at a time.
+const PERIODS_AT_A_TIME: f64 = 5.0;
+
 /// What becomes of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Fate {
@@ -107,7 +112,8 @@ pub(super) struct Target {
     resting_deflection: f64,
     /// The larger of the towing speed and the caster length times the natural frequency of the springs, in m/s.
     reference_speed: f64,
-    /// Natural period of the wheel on its springs in s.
+    /// Natural frequency of the wheel on its springs in rad/s, and its period in s.
+    frequency: f64,
     pub natural_period: f64,
     /// Whether motions return at all: near an unstable uniform motion they only linger.
     attracts: bool,
@@ -168,6 +174,7 @@ impl Target {
             weights: [longitudinal * frequency, lateral * frequency, reference_speed, longitudinal, length],
             resting_deflection: 0.5 * (high - low),
             reference_speed,
+            frequency,
             natural_period: TAU / frequency,
         })
     }
@@ -180,6 +187,36 @@ impl Target {
     /// The uniform motion.
     pub(super) fn state(&self) -> &[f64; 5] {
         &self.state
+    }
+
+    /// Distance of two states in units of the reference speed, with every state counted; angles count modulo a turn.
+    pub(super) fn separation(&self, one: &[f64; 5], other: &[f64; 5]) -> f64 {
+        let difference = |i: usize| match i {
+            2 => within_a_turn(one[i] - other[i]),
+            _ => one[i] - other[i],
+        };
+        (0..5).map(|i| (self.scale(i) * difference(i)).powi(2)).sum::<f64>().sqrt()
+    }
+
+    /// What one unit of a state counts in such a distance.
+    pub(super) fn scale(&self, state: usize) -> f64 {
+        let speed = match state {
+            0 | 1 => self.frequency,
+            2 => self.reference_speed,
+            3 => 1.0,
+            _ => self.weights[4],
+        };
+        speed / self.reference_speed
+    }
+
+    /// For how long, in s, motions are followed at a time.
+    pub(super) fn piece(&self) -> f64 {
+        PERIODS_AT_A_TIME * self.natural_period
+    }
+
+    /// Distance of the nodes of a motion in s.
+    pub(super) fn spacing(&self) -> f64 {
+        self.natural_period / NODES_PER_PERIOD
     }
 
     /// Whether the caster sticks, `Omega = omega` to the last bit, at an angle up to a largest one.

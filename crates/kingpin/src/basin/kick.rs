@@ -2,19 +2,21 @@
 
 use super::{ClassificationSettings, ContactModel, Destinations, Fate};
 use crate::error::KingpinError;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use rayon::prelude::*;
 
-/// Magnitudes that are tried, at equal distances, before the first failure is narrowed down.
+/// Magnitudes that are tried, at equal distances, up to the largest one and then again up to the edge that was found.
 const SCAN: usize = 64;
-/// Magnitudes that are tried between an edge and the one scanned magnitude below it: the basin is often torn just there.
+/// Magnitudes that are tried between an edge and the nearest one below it: the basin is often torn just there.
 const BESIDE_EDGE: usize = 32;
+/// Parts of the largest magnitude that are followed beforehand to become acquainted with shimmy.
+const SCOUTS: [f64; 2] = [0.5, 1.0];
 /// What the scan, and what then the first edge is of the whole time, roughly.
 const PARTS: [f64; 2] = [0.5, 0.7];
-/// The magnitude is narrowed down to this, relative to the largest one.
+/// The edge is narrowed down to this part of it.
 const RESOLUTION: f64 = 1e-6;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
 const SHORTENINGS: usize = 20;
@@ -112,19 +114,9 @@ impl Disturbance {
         match self {
             Disturbance::Impulse => {
                 let mut state = start(wheel)?;
-                let body = wheel.body();
-                let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
-                // Ahead is along +e1; the yaw rate counts from e2 to e1.
-                let moment = magnitude * wheel.get(Key::WheelRadius);
-                match model {
-                    ContactModel::Rolling => state[5] += moment * body.inverse_yaw_inertia,
-                    ContactModel::Sliding => {
-                        let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
-                        state[4] +=
-                            (body.yaw_inertia * magnitude - body.static_moment * moment) / determinant;
-                        state[5] += (mass * moment - body.static_moment * magnitude) / determinant;
-                    }
-                }
+                let [lateral, yaw] = wheel.velocity_change(magnitude, model);
+                state[4] += lateral;
+                state[5] += yaw;
                 Ok((*wheel, state))
             }
             Disturbance::ReleaseAngle => {
@@ -138,6 +130,25 @@ impl Disturbance {
                 Ok((wheel.with(Key::Curvature, magnitude)?, state))
             }
         }
+    }
+}
+
+impl Wheel {
+    /// What a sideways blow in N s on the rim of the wheel, `R` ahead of its centre, changes `V2` (m/s) and `Omega` (rad/s) by. In
+    /// ideal rolling the ground takes the sideways momentum; a wheel that may slide, or that has a tyre, moves sideways.
+    pub fn velocity_change(&self, blow: f64, model: ContactModel) -> [f64; 2] {
+        let body = self.body();
+        let mass = self.get(Key::MW) + self.get(Key::MC);
+        // Ahead is along +e1; the yaw rate counts from e2 to e1.
+        let moment = blow * self.get(Key::WheelRadius);
+        if model == ContactModel::Rolling && self.tyre() == Tyre::Rigid {
+            return [0.0, moment * body.inverse_yaw_inertia];
+        }
+        let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
+        [
+            (body.yaw_inertia * blow - body.static_moment * moment) / determinant,
+            (mass * moment - body.static_moment * blow) / determinant,
+        ]
     }
 }
 
@@ -169,19 +180,20 @@ pub struct SafeKick {
 }
 
 impl SafeKick {
-    /// Distance of the magnitudes that are tried up to a largest one: failures in a narrower range may be missed.
-    pub fn resolution(largest: f64) -> f64 {
-        largest.abs() / SCAN as f64
+    /// Distance of the magnitudes that are tried up to an edge, or to the largest one where there is no edge: failures in a narrower
+    /// range may be missed.
+    pub fn resolution(reached: f64) -> f64 {
+        reached.abs() / SCAN as f64
     }
 
     /// Distance of the magnitudes that are tried next to an edge, up to the [resolution](Self::resolution) below it.
-    pub fn resolution_beside_edge(largest: f64) -> f64 {
-        Self::resolution(largest) / BESIDE_EDGE as f64
+    pub fn resolution_beside_edge(edge: f64) -> f64 {
+        Self::resolution(edge) / BESIDE_EDGE as f64
     }
 
     /// Finds the smallest disturbance up to `largest` from which the uniform motion does not return: the first
-    /// failure among equidistant magnitudes, narrowed down by bisection; then the first among closer ones just below that, as long
-    /// as there is one. `None` if there is no failure.
+    /// failure among equidistant magnitudes, narrowed down by bisection; then the first among closer ones up to that, and still closer
+    /// ones just below it, as long as there is one. `None` if there is no failure.
     ///
     /// Not to have returned in the time that motions are followed counts as failure; near the edge of a basin they linger, and
     /// the fate at the edge tells whether that time was too short.
@@ -200,18 +212,36 @@ impl SafeKick {
         if !largest.is_finite() || largest == 0.0 {
             return Err(SimulationError::out_of_range("largest disturbance", largest, "finite and not 0"));
         }
+        let undisturbed = disturbance.apply(wheel, model, 0.0)?.0;
+        let mut destinations = Destinations::new(&undisturbed, model, settings)?;
+        let steers = disturbance == Disturbance::StepSteer;
+        let attracts = destinations.attracts();
+        if attracts && !steers {
+            // The strongest ones show the shimmy that others end in.
+            let scouts = SCOUTS.map(|part| Ok(disturbance.apply(wheel, model, part * largest)?.1));
+            let scouts = scouts.into_iter().collect::<Result<Vec<_>, SimulationError>>()?;
+            destinations = destinations.acquainted(&scouts, &control.quiet())?;
+        }
         let fate = |magnitude: f64| -> Result<Option<Fate>, SimulationError> {
             let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
+            if !steers {
+                return destinations.of_sliding_state(&state, &control.quiet()).map(Some);
+            }
             match Destinations::new(&wheel, model, settings) {
                 Ok(destinations) => destinations.of_sliding_state(&state, &control.quiet()).map(Some),
-                Err(error) if disturbance == Disturbance::StepSteer && magnitude != 0.0 => match error {
+                Err(
                     SimulationError::UniformMotionSlides { .. }
-                    | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }) => Ok(None),
-                    error => Err(error),
-                },
+                    | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }),
+                ) if magnitude != 0.0 => Ok(None),
                 Err(error) => Err(error),
             }
         };
+        if !attracts {
+            // Nothing returns; a small one tells where motions end.
+            let (wheel, state) = disturbance.apply(wheel, model, 0.0)?;
+            let beyond = fate(Self::resolution(largest).copysign(largest))?;
+            return Ok(Some(Self { returns: 0.0, fails: 0.0, fate: beyond, wheel, state }));
+        }
         let returned = |&fate: &Option<Fate>| fate == Some(Fate::UniformMotion);
         let scan = |magnitudes: Vec<f64>, control: &Control<'_>| -> Result<_, SimulationError> {
             let progress = control.count(magnitudes.len());
@@ -223,49 +253,35 @@ impl SafeKick {
             let fates = fates.collect::<Result<Vec<Option<Fate>>, SimulationError>>()?;
             let first = fates.iter().position(|fate| !returned(fate));
             Ok(first.map(|first| {
-                // Where the uniform motion is unstable, the motion that is not disturbed at all tells nothing.
-                let beyond = fates[first.max(usize::from(magnitudes[first] == 0.0))];
-                (magnitudes[first.saturating_sub(1)], magnitudes[first], beyond)
+                let below = first.checked_sub(1).map_or(0.0, |index| magnitudes[index]);
+                (below, magnitudes[first], fates[first])
             }))
         };
         let narrow = |(mut returns, mut fails, mut beyond): (f64, f64, Option<Fate>),
                       control: &Control<'_>| {
-            let halvings = (SCAN as f64 * RESOLUTION).recip().log2().ceil() as usize;
-            let progress = control.count(halvings);
-            while (fails - returns).abs() > RESOLUTION * largest.abs() {
+            while (fails - returns).abs() > RESOLUTION * fails.abs() {
                 let middle = 0.5 * (returns + fails);
                 match fate(middle)? {
                     Some(Fate::UniformMotion) => returns = middle,
                     other => (fails, beyond) = (middle, other),
                 }
-                progress.advance(1);
+                control.check()?;
             }
             Ok::<_, SimulationError>((returns, fails, beyond))
         };
         let [scanned, narrowed] = PARTS;
-        let mut magnitudes: Vec<f64> =
-            (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
-        let undisturbed = disturbance.apply(wheel, model, 0.0)?.0;
-        if !Destinations::new(&undisturbed, model, settings)?.attracts() {
-            // Nothing returns; the smallest one tells where motions end.
-            magnitudes.truncate(2);
-        }
+        let magnitudes = (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
         let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else { return Ok(None) };
         let (mut returns, mut fails, mut beyond) = narrow(first, &control.part(scanned..narrowed))?;
-        let beside = control.part(narrowed..1.0);
-        // Each turn goes down by one of the closer steps at least.
+        let finer = control.part(narrowed..1.0);
+        // Each turn goes down by one of the closest steps at least.
         while returns != 0.0 {
-            let lowest = returns - Self::resolution(largest).min(returns.abs()).copysign(largest);
-            let part = |index: usize| lowest + (returns - lowest) * (index as f64 / BESIDE_EDGE as f64);
-            let magnitudes = (0..BESIDE_EDGE).map(part).collect();
-            let Some(lower) = scan(magnitudes, &beside)? else { break };
-            let (mut below, failed, fate) = lower;
-            if failed == lowest {
-                // The nearest magnitude below it that is known to return is one of the first scan.
-                let step = largest / SCAN as f64;
-                below = step * ((lowest / step).ceil() - 1.0).max(0.0);
-            }
-            (returns, fails, beyond) = narrow((below, failed, fate), &control.quiet())?;
+            let step = returns / SCAN as f64;
+            let up_to_edge = (1..SCAN).map(|index| step * index as f64);
+            let beside = |index: usize| returns - step * (1.0 - index as f64 / BESIDE_EDGE as f64);
+            let magnitudes = up_to_edge.chain((1..BESIDE_EDGE).map(beside)).collect();
+            let Some(lower) = scan(magnitudes, &finer)? else { break };
+            (returns, fails, beyond) = narrow(lower, &control.quiet())?;
         }
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
         Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))

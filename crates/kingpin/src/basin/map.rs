@@ -10,6 +10,8 @@ use rayon::prelude::*;
 /// long and a tile that was not finished is lost.
 const ROLLING_TILE: usize = 64;
 const SLIDING_TILE: usize = 4;
+/// So many of the initial states, from the first to the last, are followed beforehand to become acquainted with shimmy.
+const SCOUTS: usize = 4;
 
 /// A state that is varied between two values; the states that are not varied are those of the uniform motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,7 +80,7 @@ pub struct Fraction {
 
 /// Initial states whose fates are to be found, divided into tiles.
 ///
-/// A tile depends on nothing but its states, so tiles can be computed in any order, in several runs.
+/// A tile depends on nothing but its states and a few of the others, so tiles can be computed in any order, in several runs.
 ///
 /// ```
 /// use arclength::control::Control;
@@ -191,13 +193,26 @@ impl<'a> BasinMap<'a> {
     ) -> Result<Vec<Tile>, SimulationError> {
         let wanted: Vec<usize> = (0..self.tiles()).filter(|&index| !finished(index)).collect();
         let known = self.tiles() - wanted.len();
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
+        // The same for every tile, whichever are wanted.
+        let scout = |scout: usize| {
+            let [u, q, psi, speed, yaw] = self.initial[scout * (self.initial.len() - 1) / (SCOUTS - 1)];
+            [u, q, psi, speed, 0.0, yaw, speed]
+        };
+        let scouts: Vec<[f64; 7]> = (0..SCOUTS).map(scout).collect();
+        let destinations = match self.destinations.clone().acquainted(&scouts, &control.quiet()) {
+            Err(SimulationError::Interrupted(_)) => return Ok(Vec::new()),
+            destinations => destinations?,
+        };
         let progress = control.part(known as f64 / self.tiles() as f64..1.0).count(wanted.len());
         let compute = |&index: &usize| {
             if control.is_stopped() {
                 return None;
             }
             let first = index * self.tile;
-            let tile = match self.destinations.of(self.states_of(index), &control.quiet()) {
+            let tile = match destinations.of(self.states_of(index), &control.quiet()) {
                 Ok(fates) => Tile { index, first, fates },
                 Err(SimulationError::Interrupted(_)) => return None,
                 Err(error) => return Some(Err(error)),

@@ -6,6 +6,7 @@
 //! [`BasinMap`] does so for grids and random samples of initial states in tiles that can be computed apart, stopped and
 //! resumed; [`SafeKick`] finds the smallest disturbance from which the wheel does not return.
 
+mod attractor;
 mod contact_model;
 mod course;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod fate;
 mod kick;
 mod lasting;
 mod map;
+mod maxima;
 #[cfg(test)]
 mod tests;
 
@@ -28,6 +30,7 @@ use crate::simulation::SimulationError;
 use crate::sliding::SlidingWheel;
 use crate::wheel::Wheel;
 use arclength::control::Control;
+use attractor::Attractor;
 use course::Course;
 use fate::{PATIENCE, Target, Watch};
 use lasting::{BRIEF, Lasting, Seen, THOROUGH};
@@ -35,8 +38,14 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-/// Tolerance of the integration of motions that are only classified.
+/// Tolerance of the integration of motions that are only classified, ...
 const CLASSIFICATION_TOLERANCE: f64 = 1e-10;
+/// ... and of those that slide.
+const SLIDING_CLASSIFICATION_TOLERANCE: f64 = 1e-9;
+/// Slip speeds in m/s from which on, and down to which, the slip of motions that are only classified is followed: beyond them it
+/// keeps to its limit direction, with errors of second order in the one and of first order in the other.
+const ONSET_SLIP: f64 = 1e-4;
+const VANISHING_SLIP: f64 = 1e-7;
 
 /// Tells where motions of one wheel end.
 ///
@@ -59,6 +68,8 @@ pub struct Destinations {
     settings: ClassificationSettings,
     target: Target,
     follower: Follower,
+    /// Shimmy that is known.
+    attractors: Vec<Attractor>,
 }
 
 #[derive(Clone, Debug)]
@@ -93,7 +104,12 @@ impl Destinations {
         }
         let isotropic = wheel.get(Key::KU) == wheel.get(Key::KQ) && wheel.get(Key::CU) == wheel.get(Key::CQ);
         let follower = match model {
-            ContactModel::Sliding => Follower::Hybrid(Box::new(wheel.sliding()?)),
+            ContactModel::Sliding => Follower::Hybrid(Box::new(
+                wheel
+                    .sliding()?
+                    .slips(ONSET_SLIP, VANISHING_SLIP)
+                    .tolerance(SLIDING_CLASSIFICATION_TOLERANCE),
+            )),
             ContactModel::Rolling if wheel.get(Key::MF) > 0.0 => {
                 Follower::Hybrid(Box::new(wheel.always_rolling()?.tolerance(CLASSIFICATION_TOLERANCE)))
             }
@@ -102,7 +118,8 @@ impl Destinations {
             }
             ContactModel::Rolling => Follower::Rolling,
         };
-        Ok(Self { wheel: *wheel, model, target: Target::new(wheel, model)?, settings, follower })
+        let target = Target::new(wheel, model)?;
+        Ok(Self { wheel: *wheel, model, target, settings, follower, attractors: Vec::new() })
     }
 
     /// The wheel.
@@ -166,10 +183,51 @@ impl Destinations {
         }
     }
 
+    /// The same, acquainted with the shimmy that motions from some states, the seven of the wheel that slides, settle on: others that
+    /// come as near to it as one was pushed from which it came back need not be followed any longer.
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn acquainted(mut self, starts: &[[f64; 7]], control: &Control<'_>) -> Result<Self, SimulationError> {
+        let control = &control.quiet();
+        let patience = self.settings.duration;
+        let settled = |state: &[f64; 7]| -> Result<Option<(Attractor, Course<'_>)>, SimulationError> {
+            let [u, q, psi, speed, _, yaw, _] = *state;
+            let course = match &self.follower {
+                Follower::Hybrid(sliding) => Course::hybrid(sliding, sliding.slipping_state(state)),
+                Follower::Rolling => Course::rolling(&self.wheel, [u, q, psi, speed, yaw])?,
+                // Many at once are as fast without.
+                Follower::Ensemble(_) => return Ok(None),
+            };
+            let watch = Watch::new(&self.target, &self.settings, &course.state());
+            let mut lasting = Lasting::new(course, 0.0, &[]);
+            lasting.until_the_end(&self.target, watch, control)?;
+            Ok(lasting.found())
+        };
+        let settled: Vec<_> = starts.par_iter().map(settled).collect::<Result<_, _>>()?;
+        let mut distinct: Vec<(Attractor, Course<'_>)> = Vec::new();
+        for (attractor, course) in settled.into_iter().flatten() {
+            if !distinct.iter().any(|(known, _)| attractor.is(known, &self.target)) {
+                distinct.push((attractor, course));
+            }
+        }
+        let explored = distinct
+            .into_par_iter()
+            .map(|(attractor, course)| attractor.explored(&course, patience, &self.target, control));
+        let attractors = explored.collect::<Result<Vec<_>, _>>()?;
+        self.attractors.extend(attractors);
+        Ok(self)
+    }
+
     /// One motion by itself.
     fn of_course(&self, course: Course<'_>, control: &Control<'_>) -> Result<Fate, SimulationError> {
+        if !self.attracts() && self.target.separation(&course.state(), self.target.state()) == 0.0 {
+            // Undisturbed, it stays at a uniform motion from which the least disturbance leads away.
+            return Ok(Fate::Undecided);
+        }
         let watch = Watch::new(&self.target, &self.settings, &course.state());
-        Lasting::new(course, 0.0).until_the_end(&self.target, watch, &control.quiet())
+        let mut lasting = Lasting::new(course, 0.0, &self.attractors);
+        lasting.until_the_end(&self.target, watch, &control.quiet())
     }
 
     /// Many motions at once. Those that swing to and fro at the end of the duration are looked at one by one, in passing;
@@ -198,11 +256,10 @@ impl Destinations {
         self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough, control)?;
         let fate = |motion: Followed| match motion.fate {
             Some(fate) => Ok(fate),
-            None => Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time).until_the_end(
-                &self.target,
-                motion.watch,
-                control,
-            ),
+            None => {
+                let course = Course::rolling(&self.wheel, motion.state)?;
+                Lasting::new(course, motion.time, &[]).until_the_end(&self.target, motion.watch, control)
+            }
         };
         motions.into_par_iter().map(fate).collect()
     }
@@ -254,7 +311,7 @@ impl Destinations {
         control: &Control<'_>,
     ) -> Result<(), SimulationError> {
         motions.par_iter_mut().filter(|motion| motion.fate.is_none()).try_for_each(|motion| {
-            let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time);
+            let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time, &[]);
             if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch, control)? {
                 motion.fate = Some(fate);
             }

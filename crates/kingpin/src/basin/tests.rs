@@ -133,6 +133,29 @@ fn shimmy_with_sliding_phases_is_found() {
 }
 
 #[test]
+fn acquaintance_with_shimmy_changes_no_fate() {
+    // Large shimmy with three swings in a period beside a stable uniform motion, and one that everything ends in.
+    let loaded = Wheel::default().with(Key::V, 8.4).unwrap().with(Key::FAz, -100.0).unwrap();
+    let short = [(Key::L, 0.03), (Key::V, 0.5), (Key::Curvature, 0.0), (Key::CU, 0.1), (Key::CQ, 0.1)]
+        .into_iter()
+        .try_fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value))
+        .unwrap();
+    for (wheel, shimmies) in [(loaded, 1), (short, 5)] {
+        let start = |angle: f64| wheel.perturbed_uniform_motion(&[("psi", angle)]).unwrap();
+        let starts: Vec<[f64; 5]> = [-1.1, -0.3, 0.05, 0.4, 1.2].into_iter().map(start).collect();
+        let stranger = destinations(&wheel, ContactModel::Sliding, 15.0);
+        let [u, q, psi, speed, yaw] = start(1.2);
+        let acquainted =
+            stranger.clone().acquainted(&[[u, q, psi, speed, 0.0, yaw, speed]], &Control::none());
+        let acquainted = acquainted.unwrap();
+        assert_eq!(acquainted.attractors.len(), 1);
+        let fates = stranger.of(&starts, &Control::none()).unwrap();
+        assert_eq!(acquainted.of(&starts, &Control::none()).unwrap(), fates);
+        assert_eq!(fates.iter().filter(|fate| **fate == Fate::Shimmy).count(), shimmies, "{fates:?}");
+    }
+}
+
+#[test]
 fn a_damped_kick_dies_out_and_a_wild_one_counts_as_escape() {
     // v = 2 m/s, straight, c = 0.2 N s/m: the caster turns round twice and comes to rest.
     let wheel = [(Key::V, 2.0), (Key::Curvature, 0.0), (Key::CU, 0.2), (Key::CQ, 0.2)]

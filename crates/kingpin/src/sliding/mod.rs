@@ -65,8 +65,8 @@ pub const ONSET_SLIP: f64 = 1e-6;
 /// Slip speed in m/s below which shrinking slip is followed to zero along a straight line.
 pub const VANISHING_SLIP: f64 = 1e-9;
 
-/// Absolute tolerance of the slip velocity in m/s.
-const SLIP_RESOLUTION: f64 = 1e-4 * VANISHING_SLIP;
+/// Absolute tolerance of the slip velocity, relative to the slip speed at which it is taken to vanish.
+const SLIP_RESOLUTION: f64 = 1e-4;
 
 /// Caster angle in rad below which a wheel whose small motions die out with dry friction about the king pin is at rest: further swings
 /// would be smaller and smaller, without end.
@@ -132,6 +132,9 @@ pub struct SlidingWheel {
     comes_to_rest: bool,
     while_rolling: Integrator,
     while_sliding: Integrator,
+    /// Slip speeds at which slip leaves its limit direction and at which it is taken straight to zero.
+    onset_slip: f64,
+    vanishing_slip: f64,
     maximum_phases: usize,
 }
 
@@ -177,7 +180,9 @@ impl Wheel {
             rolls_always,
             comes_to_rest: self.swing_factor().is_some_and(|factor| factor.abs() < 1.0),
             while_rolling: rolling_integrator(SLIDING_TOLERANCE),
-            while_sliding: sliding_integrator(SLIDING_TOLERANCE),
+            while_sliding: sliding_integrator(SLIDING_TOLERANCE, VANISHING_SLIP),
+            onset_slip: ONSET_SLIP,
+            vanishing_slip: VANISHING_SLIP,
             maximum_phases: MAXIMUM_PHASES,
         })
     }
@@ -189,10 +194,10 @@ fn rolling_integrator(tolerance: f64) -> Integrator {
 }
 
 /// Tolerances while sliding: the direction of the slip must be known down to where the slip vanishes.
-fn sliding_integrator(tolerance: f64) -> Integrator {
+fn sliding_integrator(tolerance: f64, vanishing_slip: f64) -> Integrator {
     let mut absolute = [0.01 * tolerance; 7];
-    absolute[S1] = SLIP_RESOLUTION;
-    absolute[S2] = SLIP_RESOLUTION;
+    absolute[S1] = SLIP_RESOLUTION * vanishing_slip;
+    absolute[S2] = SLIP_RESOLUTION * vanishing_slip;
     Integrator::default().relative_tolerance(tolerance).absolute_tolerances(&absolute)
 }
 
@@ -200,7 +205,14 @@ impl SlidingWheel {
     /// Sets the relative tolerance of the integration.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.while_rolling = rolling_integrator(tolerance);
-        self.while_sliding = sliding_integrator(tolerance);
+        self.while_sliding = sliding_integrator(tolerance, self.vanishing_slip);
+        self
+    }
+
+    /// Sets the slip speed in m/s at which slip leaves its limit direction, and that at which it is taken straight to zero.
+    pub(crate) fn slips(mut self, onset: f64, vanishing: f64) -> Self {
+        self.onset_slip = onset;
+        self.vanishing_slip = vanishing;
         self
     }
 

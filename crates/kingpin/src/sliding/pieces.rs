@@ -2,7 +2,7 @@
 
 use super::model::{Equations, FrictionMoment, S1, S2, SlipState, slip_squared, slips};
 use super::regime::{Mode, Regime};
-use super::{Contact, HybridState, ONSET_SLIP, Phase, SlidingWheel, VANISHING_SLIP, as_slip_state};
+use super::{Contact, HybridState, Phase, SlidingWheel, as_slip_state};
 use crate::simulation::SimulationError;
 use arclength::VectorField;
 use arclength::control::Control;
@@ -174,7 +174,7 @@ impl SlidingWheel {
             equations.derivative(state, equations.incipient_force(state), derivative);
         });
         let mut events = vec![
-            Event::new(|_, x| slip_squared(x) - ONSET_SLIP * ONSET_SLIP).rising().terminal(),
+            Event::new(|_, x| slip_squared(x) - self.onset_slip.powi(2)).rising().terminal(),
             Event::new(|_, x| equations.slip_along_limit_direction(x)).falling().terminal(),
         ];
         events.extend(end_about_king_pin(equations, mode, as_slip_state));
@@ -202,7 +202,7 @@ impl SlidingWheel {
             equations.derivative(state, equations.sliding_force(state), derivative);
         });
         // Without friction there is nothing special about zero slip.
-        let vanishing = if equations.static_limit == 0.0 { 0.0 } else { VANISHING_SLIP * VANISHING_SLIP };
+        let vanishing = if equations.static_limit == 0.0 { 0.0 } else { self.vanishing_slip.powi(2) };
         // The direction of vanishing slip turns ever faster, so the steps shrink with the slip and cannot jump over zero:
         // looking at the end of each step is enough.
         let mut events: Vec<Event<'_>> =
