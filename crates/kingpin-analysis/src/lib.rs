@@ -28,6 +28,7 @@ mod parameters;
 pub mod report;
 mod result_file;
 pub mod safe_kick;
+pub mod shimmy;
 pub mod simulate;
 pub mod stability;
 mod start;

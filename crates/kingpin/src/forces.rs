@@ -200,6 +200,37 @@ impl Wheel {
     }
 }
 
+/// What the king pin bears and what the dampers take at a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KingPinLoad {
+    /// Force on the king pin in N.
+    pub force: f64,
+    /// What all dampers take, in W.
+    pub damper_power: f64,
+}
+
+impl Wheel {
+    /// The load of the king pin at [all states](Self::states) of a motion that rolls. Dry friction about the king pin is no damper.
+    ///
+    /// # Errors
+    /// Those of [`rolling_model`](Self::rolling_model).
+    ///
+    /// # Panics
+    /// Where there are fewer states than the wheel has.
+    pub fn king_pin_loads<'a>(
+        &self,
+        states: impl IntoIterator<Item = &'a [f64]>,
+    ) -> Result<Vec<KingPinLoad>, KingpinError> {
+        let model = self.rolling_model(&[])?;
+        let load = |states: &[f64]| {
+            let forces = model.forces(&model.free_state(states), &[]);
+            let [along, across] = forces.king_pin;
+            KingPinLoad { force: along.hypot(across), damper_power: forces.damper_power }
+        };
+        Ok(states.into_iter().map(load).collect())
+    }
+}
+
 impl UniformMotion {
     /// The forces of the uniform motion as those of a cycle of no size.
     ///
