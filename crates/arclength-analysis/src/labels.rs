@@ -1,10 +1,12 @@
 //! Labels of special and requested cycles, numbered along a result: LPC1, PD1, NS1, BPC1, AT1.
 
-use arclength::branch::Label;
+use arclength::branch::{Label, SpecialKind};
 
-/// Whether something bifurcates at a labelled point: it was not merely asked for, nor is it an end or a neutral saddle.
+/// Whether something bifurcates at a labelled point: it was not merely asked for, nor is it an end, a neutral saddle or a label that
+/// only one model has.
 pub fn is_bifurcation(label: Option<&str>) -> bool {
-    label.is_some_and(|label| !matches!(kind(label), "AT" | "EP" | "NSE"))
+    let label = label.and_then(|label| label.parse::<Label>().ok());
+    label.is_some_and(|label| !matches!(label.kind, SpecialKind::Requested | SpecialKind::NeutralSaddle))
 }
 
 /// A label without its number. The labels of resonances end in a digit of their own.

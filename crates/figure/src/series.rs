@@ -138,6 +138,8 @@ impl From<bool> for Stability {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     points: Vec<(Point, Stability)>,
+    /// Which points are dotted; those beyond its end are not.
+    dotted: Vec<bool>,
     unstable_color: Option<Color>,
     pub(crate) style: CurveStyle,
 }
@@ -147,9 +149,16 @@ impl Branch {
     pub fn new<P: Into<Point>, S: Into<Stability>>(points: impl IntoIterator<Item = (P, S)>) -> Self {
         Self {
             points: points.into_iter().map(|(point, stability)| (point.into(), stability.into())).collect(),
+            dotted: Vec::new(),
             unstable_color: None,
             style: CurveStyle::default(),
         }
+    }
+
+    /// Draws dotted, whatever its stability, what touches one of the points that are so marked, in their order: solutions outside
+    /// the range of the model.
+    pub fn dotted(self, dotted: impl IntoIterator<Item = bool>) -> Self {
+        Self { dotted: dotted.into_iter().collect(), ..self }
     }
 
     /// Another colour for the unstable parts.
@@ -159,22 +168,31 @@ impl Branch {
 
     curve_style!();
 
-    /// The runs of equal stability, each with both its ends.
-    fn runs(&self) -> Vec<(Vec<Point>, bool)> {
-        let mut runs: Vec<(Vec<Point>, bool)> = Vec::new();
-        for pair in self.points.windows(2) {
+    /// The runs of equal stability, and equally dotted, each with both its ends.
+    fn runs(&self) -> Vec<Run> {
+        let is_dotted = |index: usize| self.dotted.get(index) == Some(&true);
+        let mut runs: Vec<Run> = Vec::new();
+        for (index, pair) in self.points.windows(2).enumerate() {
             let stable = match (pair[0].1, pair[1].1) {
                 (Stability::Stable, _) | (Stability::Changes, Stability::Stable) => true,
                 (Stability::Unstable, _) | (Stability::Changes, Stability::Unstable) => false,
-                (Stability::Changes, Stability::Changes) => runs.last().is_none_or(|run| run.1),
+                (Stability::Changes, Stability::Changes) => runs.last().is_none_or(|run| run.stable),
             };
+            let dotted = is_dotted(index) || is_dotted(index + 1);
             match runs.last_mut() {
-                Some((points, same)) if *same == stable => points.push(pair[1].0),
-                _ => runs.push((vec![pair[0].0, pair[1].0], stable)),
+                Some(run) if run.stable == stable && run.dotted == dotted => run.points.push(pair[1].0),
+                _ => runs.push(Run { points: vec![pair[0].0, pair[1].0], stable, dotted }),
             }
         }
         runs
     }
+}
+
+/// A part of a branch that is drawn in one style.
+struct Run {
+    points: Vec<Point>,
+    stable: bool,
+    dotted: bool,
 }
 
 /// Anything a panel draws as a curve: made from a [`Line`] or a [`Branch`].
@@ -201,10 +219,14 @@ impl From<Line> for Curve {
 
 impl From<Branch> for Curve {
     fn from(branch: Branch) -> Self {
-        let piece = |(points, stable): (Vec<Point>, bool)| CurvePiece {
-            points,
-            dash: if stable { Dash::Solid } else { Dash::Dashed },
-            color: if stable { None } else { branch.unstable_color },
+        let piece = |run: Run| CurvePiece {
+            points: run.points,
+            dash: match run {
+                Run { dotted: true, .. } => Dash::Dotted,
+                Run { stable: true, .. } => Dash::Solid,
+                _ => Dash::Dashed,
+            },
+            color: if run.stable { None } else { branch.unstable_color },
         };
         Curve { pieces: branch.runs().into_iter().map(piece).collect(), style: branch.style }
     }
@@ -391,9 +413,20 @@ mod tests {
         let ends: Vec<(f64, f64, bool)> = branch
             .runs()
             .iter()
-            .map(|(points, stable)| (points[0].x, points[points.len() - 1].x, *stable))
+            .map(|run| (run.points[0].x, run.points[run.points.len() - 1].x, run.stable))
             .collect();
         assert_eq!(ends, [(0.0, 2.0, true), (2.0, 5.0, false), (5.0, 6.0, true)]);
+    }
+
+    #[test]
+    fn what_touches_a_dotted_point_is_dotted() {
+        let branch = Branch::new((0..5).map(|i| ((f64::from(i), 0.0), i < 2)))
+            .dotted([false, false, false, true, true]);
+        let styles: Vec<(f64, bool, bool)> =
+            branch.runs().iter().map(|run| (run.points[0].x, run.stable, run.dotted)).collect();
+        assert_eq!(styles, [(0.0, true, false), (2.0, false, true)]);
+        let Curve { pieces, .. } = branch.into();
+        assert_eq!(pieces.iter().map(|piece| piece.dash).collect::<Vec<_>>(), [Dash::Solid, Dash::Dotted]);
     }
 
     #[test]

@@ -13,6 +13,7 @@ mod margin;
 mod paper;
 mod report;
 mod safe_kick;
+mod shimmy;
 mod simulate;
 mod stability;
 mod steady;
@@ -44,6 +45,7 @@ enum Command {
     Hopf(hopf::Hopf),
     Cycles(cycles::Cycles),
     Locus(locus::Locus),
+    Shimmy(shimmy::Shimmy),
     Simulate(simulate::Simulate),
     Study(study::StudyCommand),
     Basin(basin::Basin),
@@ -63,6 +65,7 @@ impl Command {
             Self::Hopf(command) => command.run(),
             Self::Cycles(command) => command.run(),
             Self::Locus(command) => command.run(),
+            Self::Shimmy(command) => command.run(),
             Self::Simulate(command) => command.run(),
             Self::Study(command) => command.run(),
             Self::Basin(command) => command.run(),

@@ -45,6 +45,11 @@ impl ContactForce {
 }
 
 impl Wheel {
+    /// `mu_s N`, the largest friction force with which the wheel rolls, in N; negative where the load lifts the wheel.
+    pub fn static_limit(&self) -> f64 {
+        self.get(Key::MuS) * self.normal_force()
+    }
+
     /// The force of the ground on the rolling wheel, without a tyre, at a state `(u, q, psi, V, Omega)`; where `k_u = inf`, `u` and `V` do not
     /// count, for they follow from the others.
     pub fn contact_force(&self, state: &[f64; 5]) -> ContactForce {
@@ -75,12 +80,11 @@ impl Wheel {
     ) -> ContactForce {
         let mass = self.get(Key::MW) + self.get(Key::MC);
         let wheel_radius = self.get(Key::WheelRadius);
-        let normal = self.normal_force();
         ContactForce {
             longitudinal: -(self.get(Key::JWxi) / (wheel_radius * wheel_radius)) * forward_acceleration,
             lateral: mass * centripetal_acceleration + remaining,
-            normal,
-            limit: self.get(Key::MuS) * normal,
+            normal: self.normal_force(),
+            limit: self.static_limit(),
         }
     }
 }

@@ -203,6 +203,11 @@ pub(crate) fn characteristic_cubic(a: &[[f64; 3]; 3]) -> [f64; 3] {
 }
 
 impl LateralWheel {
+    /// Which parameters are active.
+    pub(crate) fn active_parameters(&self) -> &ActiveParameters {
+        &self.active
+    }
+
     /// The wheel with the values that it was made with.
     pub fn wheel(&self) -> &Wheel {
         self.active.wheel()
@@ -234,6 +239,17 @@ impl LateralWheel {
     /// The same at other values of the active keys.
     pub(crate) fn forward_speed_at<T: Scalar>(&self, state: &[T], parameters: &[T]) -> T {
         self.motion(state, parameters, &mut [T::from(0.0); 3]).forward_speed
+    }
+
+    /// The forward speed and its rate of change at other values of the active keys, with the vector field.
+    pub(crate) fn forward_motion<T: Scalar>(
+        &self,
+        state: &[T],
+        parameters: &[T],
+        derivative: &mut [T],
+    ) -> [T; 2] {
+        let motion = self.motion(state, parameters, derivative);
+        [motion.forward_speed, motion.forward_acceleration]
     }
 
     /// The force of the ground on the wheel at a state `(q, psi, Omega)`.

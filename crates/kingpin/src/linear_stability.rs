@@ -95,14 +95,18 @@ impl Characteristic {
         }
     }
 
-    /// Number of eigenvalues with positive real part, of those that count.
-    fn unstable(&self) -> usize {
-        let eigenvalues = match self {
+    /// The eigenvalues without those of an undamped longitudinal motion in rectilinear towing.
+    fn eigenvalues_that_count(&self) -> Vec<Complex64> {
+        match self {
             Self::Straight { longitudinal: [0.0, _], lateral } => roots(lateral).into(),
             Self::Tyre(linearisation) => linearisation.eigenvalues_that_count(),
             characteristic => characteristic.eigenvalues(),
-        };
-        eigenvalues.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count()
+        }
+    }
+
+    /// Number of eigenvalues with positive real part, of those that count.
+    fn unstable(&self) -> usize {
+        self.eigenvalues_that_count().iter().filter(|eigenvalue| eigenvalue.re > 0.0).count()
     }
 }
 
@@ -156,6 +160,11 @@ impl UniformMotion {
     /// ```
     pub fn eigenvalues(&self) -> Vec<Complex64> {
         self.characteristic().eigenvalues()
+    }
+
+    /// The eigenvalues on which the stability depends: without those of an undamped longitudinal motion in rectilinear towing.
+    pub(crate) fn eigenvalues_that_count(&self) -> Vec<Complex64> {
+        self.characteristic().eigenvalues_that_count()
     }
 
     /// The largest real part of the eigenvalues, in 1/s; in rectilinear towing without longitudinal damping that of the

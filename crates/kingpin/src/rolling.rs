@@ -108,6 +108,11 @@ impl Wheel {
 }
 
 impl RollingWheel {
+    /// Which parameters are active.
+    pub(crate) fn active_parameters(&self) -> &ActiveParameters {
+        &self.active
+    }
+
     /// The wheel with the values that it was made with.
     pub fn wheel(&self) -> &Wheel {
         self.active.wheel()

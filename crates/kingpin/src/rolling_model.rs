@@ -85,17 +85,39 @@ impl Wheel {
 }
 
 impl RollingModel {
+    /// Indices of the free states among [all states](Wheel::states).
+    pub(crate) fn free(&self) -> &'static [usize] {
+        match self {
+            Self::Elastic(_) => &[0, 1, 2, 3, 4],
+            Self::Lateral(_) => &[1, 2, 4],
+            Self::Tyre(wheel) => wheel.free(),
+        }
+    }
+
     /// The state of the vector field at [all states](Wheel::states): those of them that are free.
     ///
     /// # Panics
     /// Where there are fewer states than the wheel has.
     pub fn free_state(&self, full: &[f64]) -> Vec<f64> {
-        let free: &[usize] = match self {
-            Self::Elastic(_) => &[0, 1, 2, 3, 4],
-            Self::Lateral(_) => &[1, 2, 4],
-            Self::Tyre(wheel) => wheel.free(),
-        };
-        free.iter().map(|&index| full[index]).collect()
+        self.free().iter().map(|&index| full[index]).collect()
+    }
+
+    /// The wheel at values of the active keys.
+    pub(crate) fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
+        match self {
+            Self::Elastic(wheel) => wheel.wheel_at(parameters),
+            Self::Lateral(wheel) => wheel.wheel_at(parameters),
+            Self::Tyre(wheel) => wheel.wheel_at(parameters),
+        }
+    }
+
+    /// Whether the states along a cycle determine the speed of the wheel: with lateral elasticity only they do not near `psi = pi/2`.
+    pub(crate) fn determines_speed(&self, orbit: &Orbit) -> bool {
+        if !matches!(self, Self::Lateral(_)) {
+            return true;
+        }
+        let [lowest, highest] = orbit.range_of(|state| state[1].cos());
+        lowest >= SMALLEST_COSINE || highest <= -SMALLEST_COSINE
     }
 
     /// [All states](Wheel::states) at a state of the vector field, which must have its dimension.
@@ -167,11 +189,10 @@ impl RollingModel {
                 return;
             }
         };
-        let [lowest, highest] = orbit.range_of(|state| state[1].cos());
-        let [slowest, fastest] = if lowest < SMALLEST_COSINE && highest > -SMALLEST_COSINE {
-            [f64::NAN; 2]
-        } else {
+        let [slowest, fastest] = if self.determines_speed(orbit) {
             orbit.range_of(|state| lateral.forward_speed_at(state, &parameters))
+        } else {
+            [f64::NAN; 2]
         };
         for (extremum, forward_speed) in [(smallest, slowest), (largest, fastest)] {
             *extremum = vec![0.0, extremum[0], extremum[1], forward_speed, extremum[2]];

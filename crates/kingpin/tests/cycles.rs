@@ -40,6 +40,10 @@ proptest! {
         let (Some(rough), Some(exact)) = (at(&coarse), at(&fine)) else { return Ok(()) };
         let allowed = (3.0 * rough.error_estimate).max(1e-9);
         prop_assert!((rough.period / exact.period - 1.0).abs() <= allowed);
+        let there = wheel.with(Key::V, value)?;
+        let [found, truth] = [there.cycle_forces(&rough.orbit)?, there.cycle_forces(&exact.orbit)?];
+        prop_assert!((found.friction_max / truth.friction_max - 1.0).abs() <= allowed);
+        prop_assert!((found.king_pin_force_max / truth.king_pin_force_max - 1.0).abs() <= allowed);
         for component in 0..5 {
             let size = 0.5 * (exact.max[component] - exact.min[component]);
             for (computed, truth) in

@@ -1,5 +1,6 @@
 //! Quantities that are recorded along a branch, and values of theirs at which a point is wanted or the branch is to end.
 
+use crate::continuation::Purpose;
 use std::fmt;
 
 /// A function of the points of a branch.
@@ -14,8 +15,8 @@ pub struct Monitor<'a, P> {
     name: String,
     #[allow(clippy::type_complexity)]
     function: Box<dyn Fn(&P) -> Option<f64> + 'a>,
-    /// Values, and whether the branch ends there.
-    values: Vec<(f64, bool)>,
+    /// Values, and what happens there.
+    values: Vec<(f64, Purpose)>,
 }
 
 impl<'a, P> Monitor<'a, P> {
@@ -26,13 +27,19 @@ impl<'a, P> Monitor<'a, P> {
 
     /// Values at which a point is wanted.
     pub fn at(mut self, values: &[f64]) -> Self {
-        self.values.extend(values.iter().map(|value| (*value, false)));
+        self.values.extend(values.iter().map(|value| (*value, Purpose::Point)));
+        self
+    }
+
+    /// Values at which a point is wanted if one can be computed there; the branch goes on without it otherwise.
+    pub fn mark(mut self, values: &[f64]) -> Self {
+        self.values.extend(values.iter().map(|value| (*value, Purpose::Mark)));
         self
     }
 
     /// Values at which the branch ends.
     pub fn until(mut self, values: &[f64]) -> Self {
-        self.values.extend(values.iter().map(|value| (*value, true)));
+        self.values.extend(values.iter().map(|value| (*value, Purpose::End)));
         self
     }
 
@@ -46,8 +53,8 @@ impl<'a, P> Monitor<'a, P> {
         (self.function)(point).filter(|value| value.is_finite())
     }
 
-    /// Values at which a point is wanted, and whether the branch ends there.
-    pub(crate) fn values(&self) -> &[(f64, bool)] {
+    /// Values at which something happens, and what.
+    pub(crate) fn values(&self) -> &[(f64, Purpose)] {
         &self.values
     }
 }

@@ -145,10 +145,10 @@ pub(crate) fn request<'r, Q, P>(
         .iter()
         .enumerate()
         .flat_map(|(index, monitor)| {
-            monitor.values().iter().map(move |&(value, stops)| Target {
+            monitor.values().iter().map(move |&(value, purpose)| Target {
                 monitor: index,
                 value,
-                stops,
+                purpose,
                 function: Box::new(move |solution: &Solution<Q>| monitor.value(&point(solution, None))),
             })
         })

@@ -6,7 +6,7 @@ use super::corrector::between;
 use super::curve::{Curve, Ending};
 use super::events::{EventSearch, Events, Unlocated};
 use super::metric::along;
-use super::requested::{Between, Origin, Target, first_exit, fix, insert_targets, insert_values};
+use super::requested::{Between, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
 use super::stop::Stop;
@@ -308,9 +308,10 @@ impl<C: Curve> Run<'_, '_, C> {
     fn stopping_target(&self, between: &mut Between<C>) -> Option<Stop<C::Reason>> {
         let targets = &self.request.targets;
         let (place, target) = between.iter().enumerate().find_map(|(place, (_, origin))| match origin {
-            Origin::Target(index) => {
-                targets.get(*index).filter(|target| target.stops).map(|found| (place, found))
-            }
+            Origin::Target(index) => targets
+                .get(*index)
+                .filter(|target| target.purpose == Purpose::End)
+                .map(|found| (place, found)),
             _ => None,
         })?;
         between.truncate(place + 1);

@@ -31,7 +31,7 @@ pub use curve::{Adaptation, Curve, Discretised, Ending, Equations, EventOf};
 pub(crate) use follow::exact_start;
 pub use follow::{Followed, FollowedCurve, Observer, Request, follow};
 pub(crate) use metric::{along, distance, metric_image, norm};
-pub use requested::{Origin, Target};
+pub use requested::{Origin, Purpose, Target};
 pub use settings::Settings;
 pub use solution::{Bound, Solution};
 pub use stop::{Explanation, Reason, Stop, Wording};

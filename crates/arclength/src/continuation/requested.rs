@@ -24,14 +24,25 @@ pub enum Origin<K> {
     End,
 }
 
+/// What a run does at a value of a monitor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// It has a solution there.
+    Point,
+    /// It has one if one can be computed there, and goes on without it otherwise.
+    Mark,
+    /// It ends there.
+    End,
+}
+
 /// A value of a monitor at which a solution is wanted.
 pub struct Target<'f, P> {
     /// Index of the monitor.
     pub monitor: usize,
     /// The value.
     pub value: f64,
-    /// Whether the run ends there.
-    pub stops: bool,
+    /// What the run does there.
+    pub purpose: Purpose,
     /// The monitor; `None` where it does not exist.
     #[allow(clippy::type_complexity)]
     pub function: Box<dyn Fn(&Solution<P>) -> Option<f64> + 'f>,
@@ -39,8 +50,8 @@ pub struct Target<'f, P> {
 
 impl<P> fmt::Debug for Target<'_, P> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { monitor, value, stops, .. } = self;
-        write!(formatter, "monitor {monitor} at {value}{}", if *stops { ", where the run ends" } else { "" })
+        let Self { monitor, value, purpose, .. } = self;
+        write!(formatter, "monitor {monitor} at {value}, {purpose:?}")
     }
 }
 
@@ -92,7 +103,10 @@ pub(super) fn insert_targets<C: Curve>(
         let test =
             |_: &mut C, solution: &Solution<C::Point>| Some((target.function)(solution)? - target.value);
         insert_passages(curve, current, between, advanced, test, |curve, left, right| {
-            let found = locate(curve, left, right, settings, TARGET_BRACKET, test)?;
+            let found = match locate(curve, left, right, settings, TARGET_BRACKET, test) {
+                Err(Error::NotFound { .. }) if target.purpose == Purpose::Mark => None,
+                found => found?,
+            };
             Ok(found.map(|solution| (solution, Origin::Target(index))))
         })?;
     }

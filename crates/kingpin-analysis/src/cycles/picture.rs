@@ -1,18 +1,16 @@
 //! The bifurcation diagram: largest and smallest caster angle of cycles over the parameter, and the uniform motion.
 
-use super::point::CyclePointResult;
+use super::point::{CyclePointResult, ROLLING_LIMIT};
 use crate::along::drawn_as;
+use crate::uniform_curve::{UniformPoint, uniform_motion};
 use crate::{axis_label, description};
 use arclength_analysis::labels::kind;
+use kingpin::Wheel;
 use kingpin::branches::Along;
-use kingpin::{Key, Wheel};
 use kingpin_figure::{
     Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
     palette,
 };
-
-/// Values of the parameter at which the uniform motion is drawn.
-const UNIFORM_MOTIONS: usize = 400;
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
 pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointResult]) -> Figure {
@@ -23,7 +21,9 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
     let x = Axis::new(axis_label::of(key)).limits(low, high);
     let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)")).legend(Legend::Below);
     panel = panel.curve(
-        uniform_motion(wheel, along, points, key, low, high).color(palette::BLUE).legend("uniform motion"),
+        uniform_motion(wheel, along, hopf_points(points, abscissa))
+            .color(palette::BLUE)
+            .legend("uniform motion"),
     );
     let branches = points.last().map_or(0, |point| point.branch);
     for number in 1..=branches {
@@ -32,6 +32,7 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
             let curve = Branch::new(
                 points.iter().map(|point| ((abscissa(point.cycle.value), angle(point)), stability(point))),
             )
+            .dotted(points.iter().map(|point| needs_more_friction(point)))
             .color(palette::VERMILION);
             let first = largest && number == 1;
             panel = panel.curve(if first { curve.legend("limit cycle, extremes") } else { curve });
@@ -47,11 +48,24 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
     if anything_unstable {
         panel = panel.legend_entry(LegendEntry::line("unstable", palette::BLACK, Dash::Dashed));
     }
+    if points.iter().any(needs_more_friction) {
+        let legend = LegendEntry::line("needs more than $\\mu_s N$", palette::BLACK, Dash::Dotted);
+        panel = panel.legend_entry(legend);
+    }
     let description = format!(
         "Caster angle of limit cycles and of the uniform motion against {key} at {}",
         description::of(wheel, &[along.key()])
     );
     Figure::single_column().description(description).panel(panel)
+}
+
+/// The Hopf points as changes of stability of the uniform motion.
+fn hopf_points(points: &[CyclePointResult], abscissa: fn(f64) -> f64) -> Vec<UniformPoint> {
+    let at_hopf = |point: &CyclePointResult| {
+        let place = (abscissa(point.cycle.value), point.psi_max);
+        (place, Stability::Changes, needs_more_friction(point))
+    };
+    points.iter().filter(|point| point.is_hopf_point()).map(at_hopf).collect()
 }
 
 fn largest(point: &CyclePointResult) -> f64 {
@@ -71,37 +85,18 @@ fn stability(point: &CyclePointResult) -> Stability {
     }
 }
 
+/// Whether the wheel cannot roll like this.
+fn needs_more_friction(point: &CyclePointResult) -> bool {
+    point.forces.rolls == Some(false) && !point.is_rolling_limit()
+}
+
 fn marker(label: &str) -> Marker {
     match kind(label) {
+        ROLLING_LIMIT => Marker::new(MarkerShape::Square).open(),
         "LPC" => Marker::new(MarkerShape::Square),
         "PD" => Marker::new(MarkerShape::Diamond).open(),
         "NS" => Marker::new(MarkerShape::Triangle).open(),
         "AT" => Marker::default().open(),
         _ => Marker::default(),
     }
-}
-
-/// The uniform motion where it exists, its stability changing exactly at the Hopf points.
-fn uniform_motion(
-    wheel: &Wheel,
-    along: &Along,
-    points: &[CyclePointResult],
-    key: Key,
-    low: f64,
-    high: f64,
-) -> Branch {
-    let (_, abscissa) = drawn_as(along);
-    let hopf_points = points.iter().filter(|point| point.is_hopf_point());
-    let mut points: Vec<((f64, f64), Stability)> =
-        hopf_points.map(|point| ((abscissa(point.cycle.value), point.psi_max), Stability::Changes)).collect();
-    for index in 0..=UNIFORM_MOTIONS {
-        let value = low + (high - low) * index as f64 / UNIFORM_MOTIONS as f64;
-        let motion = wheel.with(key, value).and_then(|wheel| wheel.uniform_motion());
-        // Outside its range there is nothing to draw.
-        if let Ok(motion) = motion {
-            points.push(((value, motion.psi()), Stability::from(motion.is_stable() == Some(true))));
-        }
-    }
-    points.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-    Branch::new(points)
 }

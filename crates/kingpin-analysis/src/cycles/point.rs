@@ -1,13 +1,15 @@
 //! A cycle, or a Hopf point, of a branch in a result.
 
 use crate::error::Error;
+use crate::forces::ForcesResult;
 use crate::states::named_state;
 use arclength::branch::SpecialKind;
 use arclength::cycle::CyclePoint;
 use arclength_analysis::branch::{pairs, stability};
 use arclength_analysis::cycles::{AlongCycle, CycleResult};
 use arclength_analysis::labels::{is_bifurcation, kind};
-use kingpin::branches::HopfPoint;
+use kingpin::branches::{Along, HopfPoint};
+use kingpin::{KingpinError, Wheel};
 use kingpin_report::numbers::significant;
 use kingpin_report::{Cell, NamedNumbers};
 use num_complex::Complex64;
@@ -16,6 +18,9 @@ use std::f64::consts::TAU;
 
 /// Index of the caster angle among the states.
 const CASTER_ANGLE: usize = 2;
+
+/// Label of cycles whose largest friction force is mu_s N.
+pub(super) const ROLLING_LIMIT: &str = "RL";
 
 /// A cycle, or the Hopf point at which a branch starts or ends.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -26,6 +31,18 @@ pub struct CyclePointResult {
     pub psi_max: f64,
     /// Smallest caster angle in rad.
     pub psi_min: f64,
+    /// Caster angle of the uniform motion in rad; nothing where there is none.
+    #[serde(default)]
+    pub psi_0: Option<f64>,
+    /// Largest psi - psi_0 in rad.
+    #[serde(default)]
+    pub deviation_max: Option<f64>,
+    /// Smallest psi - psi_0 in rad.
+    #[serde(default)]
+    pub deviation_min: Option<f64>,
+    /// The forces along it.
+    #[serde(flatten)]
+    pub forces: ForcesResult,
     /// The cycle.
     #[serde(flatten)]
     pub cycle: CycleResult,
@@ -37,26 +54,48 @@ impl CyclePointResult {
         is_bifurcation(self.cycle.label.as_deref())
     }
 
+    /// Whether it stands here because there the largest friction force is mu_s N.
+    pub fn is_rolling_limit(&self) -> bool {
+        self.cycle.label.as_deref().is_some_and(|label| kind(label) == ROLLING_LIMIT)
+    }
+
     /// Whether the uniform motion bifurcates here.
     pub fn is_hopf_point(&self) -> bool {
         self.cycle.label.as_deref().is_some_and(|label| kind(label) == SpecialKind::Hopf.label())
     }
 }
 
-/// A cycle of a branch.
-pub(super) fn at_cycle(branch: u64, cycle: CyclePoint, label: Option<String>) -> CyclePointResult {
-    CyclePointResult {
+/// A cycle of a branch of a wheel along a parameter.
+///
+/// # Errors
+/// A value that the wheel does not take.
+pub(super) fn at_cycle(
+    branch: u64,
+    cycle: CyclePoint,
+    label: Option<String>,
+    (wheel, along): (&Wheel, &Along),
+) -> Result<CyclePointResult, KingpinError> {
+    let wheel = wheel.with(along.key(), cycle.value)?;
+    let forces = wheel.cycle_forces(&cycle.orbit)?;
+    let psi_0 = wheel.uniform_motion().ok().map(|motion| motion.psi());
+    let (psi_max, psi_min) = (cycle.max[CASTER_ANGLE], cycle.min[CASTER_ANGLE]);
+    Ok(CyclePointResult {
         branch,
-        psi_max: cycle.max[CASTER_ANGLE],
-        psi_min: cycle.min[CASTER_ANGLE],
+        psi_max,
+        psi_min,
+        psi_0,
+        deviation_max: psi_0.map(|angle| psi_max - angle),
+        deviation_min: psi_0.map(|angle| psi_min - angle),
+        forces: forces.into(),
         cycle: CycleResult::new(cycle, label, named_state),
-    }
+    })
 }
 
 /// The Hopf point as a cycle of no amplitude: its multipliers are the exponentials of the eigenvalues.
 pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<CyclePointResult, Error> {
     let period = TAU / hopf.frequency;
-    let eigenvalues = hopf.wheel.uniform_motion()?.eigenvalues();
+    let motion = hopf.wheel.uniform_motion()?;
+    let eigenvalues = motion.eigenvalues();
     let multipliers: Vec<Complex64> =
         eigenvalues.iter().map(|eigenvalue| (eigenvalue * period).exp()).collect();
     let nearest =
@@ -71,6 +110,10 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
         branch,
         psi_max: hopf.state[CASTER_ANGLE],
         psi_min: hopf.state[CASTER_ANGLE],
+        psi_0: Some(hopf.state[CASTER_ANGLE]),
+        deviation_max: Some(0.0),
+        deviation_min: Some(0.0),
+        forces: motion.forces()?.into(),
         cycle: CycleResult {
             value: hopf.value,
             period,
@@ -96,7 +139,7 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
 }
 
 /// Its row in a table.
-pub(super) fn cells(point: &CyclePointResult) -> [Cell; 9] {
+pub(super) fn cells(point: &CyclePointResult) -> [Cell; 10] {
     let cycle = &point.cycle;
     // All but the trivial multiplier, which is the nearest to 1.
     let multipliers: Vec<Complex64> = cycle
@@ -108,7 +151,11 @@ pub(super) fn cells(point: &CyclePointResult) -> [Cell; 9] {
     let trivial = (0..multipliers.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
     let others = multipliers.iter().enumerate().filter(|(index, _)| Some(*index) != trivial);
     let largest = others.map(|(_, multiplier)| multiplier.norm()).max_by(f64::total_cmp);
-    let remark = if point.is_hopf_point() { String::new() } else { cycle.remark() };
+    let remark = match point {
+        _ if point.is_rolling_limit() => "needs all of the static friction".to_owned(),
+        _ if point.is_hopf_point() => String::new(),
+        _ => cycle.remark(),
+    };
     [
         cycle.label.clone().into(),
         cycle.value.into(),
@@ -117,6 +164,7 @@ pub(super) fn cells(point: &CyclePointResult) -> [Cell; 9] {
         point.psi_min.into(),
         largest.into(),
         Cell::Text(significant(cycle.error_estimate, 2)),
+        point.forces.cell(),
         stability(cycle.stable, point.is_bifurcation()).into(),
         remark.into(),
     ]

@@ -2,10 +2,11 @@
 
 use super::followed::FollowedBranch;
 use super::picture;
-use super::point::{CyclePointResult, at_cycle, at_hopf, cells};
+use super::point::{CyclePointResult, ROLLING_LIMIT, at_cycle, at_hopf, cells};
 use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
+use crate::forces::{self, ForcesResult};
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states;
@@ -121,15 +122,21 @@ impl CyclesResult {
         let mut labels = LabelCounter::default();
         let mut all = Vec::new();
         let mut branches = Vec::new();
-        for (number, branch) in (1..).zip(followed) {
+        let mut rolling_limits = 0;
+        for (number, mut branch) in (1..).zip(followed) {
             let mut points = Vec::new();
             if let Some(hopf) = &branch.hopf {
                 points.push(at_hopf(number, hopf, branch.origin.clone())?);
             }
-            for cycle in branch.cycles.points {
+            for cycle in std::mem::take(&mut branch.cycles.points) {
                 // Numbered along the whole result.
-                let label = cycle.label.map(|label| labels.next(label.kind).to_string());
-                points.push(at_cycle(number, cycle, label));
+                let label = if branch.cycles.is_rolling_limit(&cycle) {
+                    rolling_limits += 1;
+                    Some(format!("{ROLLING_LIMIT}{rolling_limits}"))
+                } else {
+                    cycle.label.map(|label| labels.next(label.kind).to_string())
+                };
+                points.push(at_cycle(number, cycle, label, (&wheel, &interval))?);
             }
             if let Some((label, hopf)) = &branch.reached {
                 points.push(at_hopf(number, hopf, label.clone())?);
@@ -214,6 +221,7 @@ impl Report for CyclesResult {
                 "psi_min (rad)",
                 "largest multiplier",
                 "error",
+                ForcesResult::HEADING,
                 "",
                 "",
             ]);
@@ -258,7 +266,15 @@ impl Report for CyclesResult {
                 .optional_numbers(format!("min_{name}"), cycles().map(move |cycle| cycle.min.named(name)))
                 .unit(unit);
         }
-        columns.named_numbers("test", cycles().map(|cycle| &cycle.tests))
+        columns = columns
+            .named_numbers("test", cycles().map(|cycle| &cycle.tests))
+            .optional_numbers("psi_0", self.points.iter().map(|point| point.psi_0))
+            .unit("rad")
+            .optional_numbers("deviation_max", self.points.iter().map(|point| point.deviation_max))
+            .unit("rad")
+            .optional_numbers("deviation_min", self.points.iter().map(|point| point.deviation_min))
+            .unit("rad");
+        forces::columns(columns, self.points.iter().map(|point| &point.forces))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

@@ -56,6 +56,6 @@ impl HopfAnalysis {
     pub fn run(&self, control: &Control<'_>) -> Result<HopfResult, Error> {
         let settings = self.steps.settings(equilibrium_settings());
         let branch = search(&self.wheel, self.along, settings, control)?;
-        Ok(HopfResult::new(self.wheel, self.along, &branch))
+        Ok(HopfResult::new(self.wheel, self.along, &branch)?)
     }
 }

@@ -4,6 +4,7 @@ use super::motion::{BracketedResult, MotionResult, named_tests};
 use super::search::label;
 use crate::along::{along, varying};
 use crate::description;
+use crate::forces::{self, ForcesResult};
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::{self, named_state};
@@ -48,6 +49,25 @@ pub struct HopfPointResult {
     /// Why there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
+    /// What moves farthest: `longitudinal` or `lateral`, the king pin, or `yaw`, the wheel about it.
+    #[serde(default)]
+    pub mode: Option<String>,
+    /// Number of unstable directions of the uniform motion just below the value.
+    #[serde(default)]
+    pub unstable_before: Option<usize>,
+    /// The same just above.
+    #[serde(default)]
+    pub unstable_after: Option<usize>,
+    /// Slope in the parameter of the square of the largest psi - psi_0 of the cycles, in rad^2 over its unit, negative where they lie
+    /// below.
+    #[serde(default)]
+    pub psi_max_squared_slope: Option<f64>,
+    /// Slope of the largest friction force in the largest psi - psi_0 of the cycles, in N/rad.
+    #[serde(default)]
+    pub friction_slope: Option<f64>,
+    /// Forces of the uniform motion: the limit of those of the cycles.
+    #[serde(flatten)]
+    pub forces: ForcesResult,
     /// Error estimate of the value.
     #[serde(default)]
     pub location_error: Option<f64>,
@@ -135,7 +155,10 @@ impl HopfResult {
     pub const SCHEMA: &'static str = "kingpin.hopf";
 
     /// The result of a search.
-    pub(super) fn new(wheel: Wheel, interval: Along, branch: &MotionBranch) -> Self {
+    ///
+    /// # Errors
+    /// Those of the wheel at a Hopf point.
+    pub(super) fn new(wheel: Wheel, interval: Along, branch: &MotionBranch) -> Result<Self, KingpinError> {
         let along = varying(&interval);
         let motions: Vec<MotionResult> = branch.motions.iter().map(MotionResult::new).collect();
         let last = |motion: Option<&MotionResult>| {
@@ -150,7 +173,7 @@ impl HopfResult {
         let end =
             |motion: Option<&MotionResult>| motion.map_or((f64::NAN, None), |end| (end.value, end.stable));
         let [low, high] = [end(motions.first()), end(motions.last())];
-        Self {
+        Ok(Self {
             wheel,
             interval,
             searched: [low.0, high.0],
@@ -160,11 +183,11 @@ impl HopfResult {
             points: (0..)
                 .zip(&branch.hopf_points)
                 .map(|(index, point)| hopf_point(index, point, interval.key(), branch))
-                .collect(),
+                .collect::<Result<_, _>>()?,
             motions,
             along,
             dry_friction: NeglectedDryFriction::of(&wheel, &[interval.key()]),
-        }
+        })
     }
 
     /// What was detected but not located.
@@ -189,11 +212,29 @@ fn remark(point: &HopfPoint, key: Key) -> Option<String> {
     Some(reason.to_owned() + &slope.unwrap_or_default())
 }
 
-fn hopf_point(index: usize, point: &HopfPoint, key: Key, branch: &MotionBranch) -> HopfPointResult {
+impl HopfPointResult {
+    /// On which side of the point the uniform motion is stable.
+    pub fn stable_side(&self) -> &'static str {
+        match (self.unstable_before, self.unstable_after) {
+            (Some(0), _) => "below",
+            (_, Some(0)) => "above",
+            (Some(_), Some(_)) => "neither",
+            _ => "undecided",
+        }
+    }
+}
+
+fn hopf_point(
+    index: usize,
+    point: &HopfPoint,
+    key: Key,
+    branch: &MotionBranch,
+) -> Result<HopfPointResult, KingpinError> {
     let motion = branch.motions.iter().find(|motion| {
         motion.value == point.value && matches!(motion.special.as_deref(), Some(SpecialPoint::Hopf(_)))
     });
-    HopfPointResult {
+    let [unstable_before, unstable_after] = point.birth.unstable;
+    Ok(HopfPointResult {
         value: point.value,
         frequency: point.frequency,
         first_lyapunov: point.first_lyapunov,
@@ -203,11 +244,17 @@ fn hopf_point(index: usize, point: &HopfPoint, key: Key, branch: &MotionBranch) 
         c1_real: point.detail.c1_real,
         psi_max_slope: point.psi_max_slope,
         remark: remark(point, key),
+        mode: Some(point.birth.mode.to_string()),
+        unstable_before,
+        unstable_after,
+        psi_max_squared_slope: point.birth.psi_max_squared_slope,
+        friction_slope: point.birth.friction_slope,
+        forces: point.wheel.uniform_motion()?.forces()?.into(),
         first_lyapunov_error: point.detail.first_lyapunov_error,
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
         tests: motion.map(named_tests).unwrap_or_default(),
-    }
+    })
 }
 
 impl Report for HopfResult {
@@ -230,6 +277,9 @@ impl Report for HopfResult {
             "frequency (rad/s)".to_owned(),
             "first Lyapunov coefficient".to_owned(),
             String::new(),
+            "mode".to_owned(),
+            "stable".to_owned(),
+            ForcesResult::HEADING.to_owned(),
         ]);
         for point in &self.points {
             table.row([
@@ -238,6 +288,9 @@ impl Report for HopfResult {
                 point.frequency.into(),
                 point.first_lyapunov.into(),
                 criticality(point.criticality).into(),
+                point.mode.clone().into(),
+                point.stable_side().into(),
+                point.forces.cell(),
             ]);
         }
         table.write(out)?;
@@ -250,6 +303,7 @@ impl Report for HopfResult {
     }
 
     fn columns(&self) -> Columns {
+        let count = |number: Option<usize>| number.map(|number| number as f64);
         let points = || self.points.iter();
         let columns = Columns::new()
             .texts("label", points().map(|point| Some(point.label.clone())))
@@ -264,7 +318,7 @@ impl Report for HopfResult {
                 .optional_numbers(name, points().map(move |point| point.state.get(index)))
                 .unit(states::unit(name))
         });
-        columns
+        let columns = columns
             .optional_numbers("c1_real", points().map(|point| point.c1_real))
             .optional_numbers("location_error", points().map(|point| point.location_error))
             .unit(self.interval.key().unit())
@@ -274,6 +328,13 @@ impl Report for HopfResult {
                 points().map(|point| &point.eigenvalues),
             )
             .named_numbers("test", points().map(|point| &point.tests))
+            .texts("mode", points().map(|point| point.mode.clone()))
+            .optional_numbers("unstable_before", points().map(|point| count(point.unstable_before)))
+            .optional_numbers("unstable_after", points().map(|point| count(point.unstable_after)))
+            .optional_numbers("psi_max_squared_slope", points().map(|point| point.psi_max_squared_slope))
+            .optional_numbers("friction_slope", points().map(|point| point.friction_slope))
+            .unit("N/rad");
+        forces::columns(columns, points().map(|point| &point.forces))
     }
 
     fn story(&self) -> Option<Story> {

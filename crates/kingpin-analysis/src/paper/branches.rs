@@ -1,6 +1,7 @@
 //! The branches of limit cycles that figures 5 and 6 show: each from its Hopf point along the speed, and the one of
 //! straight running, which has no Hopf point in the speed, by following a cycle in the turning radius to infinity.
 
+use super::rolling_limit::HEAVIEST;
 use super::tasks::Tasks;
 use super::wheel::{RADII, paper_wheel};
 use crate::error::Error;
@@ -8,7 +9,7 @@ use arclength::continuation::{Settings, Stop};
 use arclength::cycle::CyclePoint;
 use arclength_analysis::Control;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
-use kingpin::{Key, Wheel};
+use kingpin::{CycleForces, Key, Wheel};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -31,6 +32,8 @@ const SEARCH: (f64, f64) = (0.9, 1.1);
 /// aims at: small enough to draw smooth curves through the points.
 const LARGEST_CHANGE: f64 = 0.02;
 const PREDICTOR_ERROR: f64 = 0.005;
+/// A cycle that was located at the rolling limit needs more than there is by less than this part.
+const AT_THE_LIMIT: f64 = 1e-6;
 /// Radius and speed, in m and m/s, of the cycle that is followed to straight running.
 const TOWARDS_STRAIGHT: (f64, f64) = (5.0, 4.0);
 
@@ -108,6 +111,25 @@ impl Branch {
         Ok(self.wheel(speed)?.uniform_motion()?.psi())
     }
 
+    /// The forces along a cycle under the largest load of figure 4, on which the cycle itself does not depend.
+    pub(super) fn forces(&self, cycle: &CyclePoint) -> Result<CycleForces, Error> {
+        Ok(self.wheel(cycle.value)?.with(Key::FAz, HEAVIEST)?.cycle_forces(&cycle.orbit)?)
+    }
+
+    /// Which points of the branch, its Hopf point among them, need more friction than there is under the largest load of figure 4.
+    pub(super) fn beyond_rolling(&self) -> Result<Vec<bool>, Error> {
+        let mut beyond = Vec::with_capacity(self.cycles.len() + 1);
+        if let Some(hopf) = &self.hopf {
+            let motion = self.wheel(hopf.value)?.with(Key::FAz, HEAVIEST)?.uniform_motion()?;
+            beyond.push(!motion.rolls());
+        }
+        for cycle in &self.cycles {
+            let ratio = self.forces(cycle)?.friction_ratio_max();
+            beyond.push(ratio.is_some_and(|ratio| ratio > 1.0 + AT_THE_LIMIT));
+        }
+        Ok(beyond)
+    }
+
     /// The cycle that was asked for at a speed.
     pub(super) fn cycle_at(&self, speed: f64) -> Option<&CyclePoint> {
         self.cycles.iter().find(|cycle| cycle.value == speed)
@@ -126,7 +148,8 @@ pub(super) fn hopf_point(caster_length: f64, radius: f64) -> Result<HopfPoint, E
     let anywhere = paper_wheel(1.0, caster_length, radius)?;
     let critical = radius * anywhere.critical_yaw_rate().ok_or_else(not_found)?;
     let along = Along::new(Key::V, SEARCH.0 * critical, SEARCH.1 * critical)?;
-    let wheel = paper_wheel(SEARCH.0 * critical, caster_length, radius)?;
+    // The load changes no motion; with it cycles are located at the rolling limit under it.
+    let wheel = paper_wheel(SEARCH.0 * critical, caster_length, radius)?.with(Key::FAz, HEAVIEST)?;
     wheel.hopf_points(along, &Control::none())?.points.into_iter().next().ok_or_else(not_found)
 }
 
@@ -182,7 +205,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
         .find(|cycle| cycle.value.is_infinite())
         .ok_or_else(|| not_found(f64::INFINITY))?;
     let along = Along::new(Key::V, SLOWEST, FASTEST)?;
-    let wheel = paper_wheel(speed, branch.caster_length, f64::INFINITY)?;
+    let wheel = paper_wheel(speed, branch.caster_length, f64::INFINITY)?.with(Key::FAz, HEAVIEST)?;
     let found = wheel.cycles_through(&last.orbit, along, &options(along), |_| ControlFlow::Continue(()))?;
     let cycles = complete(found)?;
     Ok(Branch { caster_length: branch.caster_length, radius: f64::INFINITY, hopf: None, cycles })

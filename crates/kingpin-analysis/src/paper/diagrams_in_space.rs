@@ -3,6 +3,7 @@
 use super::branches::{Branch, Branches, FIGURE_5_RADIUS};
 use super::data::{Cell, Data};
 use super::drawing::Drawing;
+use super::rolling_limit::HEAVIEST;
 use super::stability_chart::{Boundary, LENGTHS, boundary, stable_side};
 use crate::error::Error;
 use kingpin_figure::{
@@ -31,6 +32,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
     .ground_curve(Line::new(visible.iter().copied().map(<(f64, f64)>::from)).color(palette::BLUE))
     .legend_entry(LegendEntry::line("stable", palette::GREEN, Dash::Solid))
     .legend_entry(LegendEntry::line("unstable", palette::VERMILION, Dash::Dashed))
+    .legend_entry(LegendEntry::line(beyond_rolling_legend(), palette::VERMILION, Dash::Dotted))
     .legend_entry(LegendEntry::patch("linearly stable at $r=1$ m", shade));
     let mut data = Data::new(&[
         ("solution", ""),
@@ -40,6 +42,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         ("psi_min", "rad"),
         ("period", "s"),
         ("stability", ""),
+        ("friction_max", "N"),
     ]);
     for branch in branches.of_figure_5() {
         panel = panel.wall(wall(branch, &mut data)?);
@@ -54,6 +57,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
             nothing(),
             nothing(),
             nothing(),
+            nothing(),
         ]);
     }
     let figure = Figure::double_column()
@@ -62,10 +66,17 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         .panel(panel);
     let caption = format!(
         "Largest and smallest caster angle against the towing speed at <i>r</i> = {FIGURE_5_RADIUS} m for several caster \
-         lengths, standing on the stability chart. Solid green: stable; dashed red: unstable. The cycles are born at the \
-         Hopf points (dots, above the boundary of the chart) towards lower speeds."
+         lengths, standing on the stability chart. Solid green: stable; dashed red: unstable; dotted: cycles that ask the ground for \
+         more than the static friction under {} N, the largest load of figure 4. The cycles are born at the \
+         Hopf points (dots, above the boundary of the chart) towards lower speeds.",
+        HEAVIEST.abs()
     );
     Ok(Drawing { number: 5, figure, data, caption })
+}
+
+/// What the dotted parts of figures 5 and 6 are.
+pub(super) fn beyond_rolling_legend() -> String {
+    format!("cannot roll under {} N", HEAVIEST.abs())
 }
 
 /// The diagram at one caster length.
@@ -90,6 +101,7 @@ fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
             motion.psi().into(),
             Cell::Empty,
             if changes { "Hopf point" } else { stability_word(motion.is_stable()) }.into(),
+            motion.contact_force().friction().into(),
         ]);
     }
     wall = wall.curve(Curve::new(uniform).color(palette::GREEN).unstable_color(palette::VERMILION));
@@ -97,12 +109,14 @@ fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
         std::iter::repeat_n(Stability::Changes, usize::from(branch.hopf.is_some()))
             .chain(branch.cycles.iter().map(|cycle| Stability::from(cycle.stable == Some(true))))
             .collect();
+    let beyond = branch.beyond_rolling()?;
     for largest in [true, false] {
         let curve = branch
             .extremes()
             .zip(&stability)
             .map(|((speed, max, min), stability)| ((speed, if largest { max } else { min }), *stability));
-        wall = wall.curve(Curve::new(curve).color(palette::GREEN).unstable_color(palette::VERMILION));
+        let curve = Curve::new(curve).dotted(beyond.iter().copied());
+        wall = wall.curve(curve.color(palette::GREEN).unstable_color(palette::VERMILION));
     }
     for cycle in &branch.cycles {
         data.push([
@@ -113,6 +127,7 @@ fn wall(branch: &Branch, data: &mut Data) -> Result<Wall, Error> {
             cycle.min[2].into(),
             cycle.period.into(),
             stability_word(cycle.stable).into(),
+            branch.forces(cycle)?.friction_max.into(),
         ]);
     }
     if let Some(hopf) = &branch.hopf {

@@ -15,7 +15,9 @@ const FASTEST: f64 = 13.0;
 /// Shortest caster of the figure in m.
 const SHORTEST: f64 = 0.005;
 /// Vertical forces on the king pin in N; negative ones press down.
-const LOADS: [f64; 4] = [0.0, -10.0, -20.0, -50.0];
+const LOADS: [f64; 4] = [0.0, -10.0, -20.0, HEAVIEST];
+/// The largest of them, under which figures 5 and 6 are looked at.
+pub(super) const HEAVIEST: f64 = -50.0;
 /// Where the curves carry their names, as part of their length from below.
 const NAMES_AT: [f64; 4] = [0.45, 0.45, 0.83, 0.45];
 

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::illustration::Illustration;
 use crate::cycles::{CyclesRequest, CyclesResult};
 use crate::error::Error;
+use crate::forces::ForcesResult;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::labels::kind;
 use arclength_analysis::{Control, Interval};
@@ -71,11 +72,12 @@ pub(super) fn finding(
             None => "a cycle of undecided stability",
         };
         said.push(format!(
-            "At {} m/s there is {word}: caster angle {} to {} rad, period {} s",
+            "At {} m/s there is {word}: caster angle {} to {} rad, period {} s{}",
             readable(speed),
             significant(point.psi_min, 4),
             significant(point.psi_max, 4),
-            significant(point.cycle.period, 5)
+            significant(point.cycle.period, 5),
+            friction(&point.forces)
         ));
     }
     let error = cycles.points.iter().map(|point| point.cycle.error_estimate).fold(0.0, f64::max);
@@ -88,6 +90,19 @@ pub(super) fn finding(
     Finding::new(subject, said.join(". ") + ".", check).undecided_if(unlocated > 0)
 }
 
+/// What a cycle asks of the ground.
+fn friction(forces: &ForcesResult) -> String {
+    let (Some(force), Some(ratio)) = (forces.friction_max, forces.friction_ratio_max) else {
+        return String::new();
+    };
+    let consequence = if ratio < 1.0 { "it rolls" } else { "it cannot roll, and slides" };
+    format!(
+        "; at its worst moment it asks for {} N of friction, {} times what there is: {consequence}",
+        significant(force, 3),
+        significant(ratio, 3)
+    )
+}
+
 /// The branches over the speed.
 ///
 /// # Errors
@@ -95,7 +110,7 @@ pub(super) fn finding(
 pub(super) fn illustration(cycles: &CyclesResult, radius: f64) -> Result<Option<Illustration>, Error> {
     let caption = format!(
         "Largest and smallest caster angle of the limit cycles over the speed at <i>r</i> = {} m, with ideal rolling; solid where stable, \
-         dashed where unstable.",
+         dashed where unstable, dotted where the wheel cannot roll like this.",
         if radius.is_infinite() { "∞".to_owned() } else { readable(radius) }
     );
     Illustration::of(cycles, caption)

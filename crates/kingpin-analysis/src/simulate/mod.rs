@@ -1,5 +1,6 @@
 //! A time history from the uniform motion with some states perturbed.
 
+mod loads;
 mod phase;
 mod request;
 mod result;

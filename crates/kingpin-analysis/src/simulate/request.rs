@@ -127,11 +127,11 @@ impl SimulateAnalysis {
             Contact::Rolling if wheel.tyre() != Tyre::Rigid => {
                 let history =
                     wheel.simulate_with_tyre(self.duration, &perturbations, self.points, control)?;
-                Ok(HistoryResult::Tyre(TyreHistoryResult::new(wheel, self.duration, history)))
+                Ok(HistoryResult::Tyre(TyreHistoryResult::new(wheel, self.duration, history)?))
             }
             Contact::Rolling => {
                 let history = wheel.simulate(self.duration, &perturbations, self.points, control)?;
-                Ok(HistoryResult::Rolling(RollingHistory::new(wheel, &history)))
+                Ok(HistoryResult::Rolling(RollingHistory::new(wheel, &history)?))
             }
         }
     }

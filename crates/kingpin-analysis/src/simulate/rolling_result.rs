@@ -1,11 +1,12 @@
 //! Time histories of a wheel that rolls as a result.
 
+use super::loads::{largest_ratio, loads};
 use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
 use kingpin::rolling::STATE_NAMES;
 use kingpin::simulation::TimeHistory;
-use kingpin::{Key, Wheel};
+use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, extremes, summary};
 use kingpin_report::numbers::readable;
@@ -39,6 +40,12 @@ pub struct RollingHistory {
     pub friction_force: Vec<f64>,
     /// Force of the ground on the wheel in N.
     pub normal_force: Vec<f64>,
+    /// Largest friction force over mu_s N; nothing where nothing presses the wheel down.
+    pub friction_ratio_max: Option<f64>,
+    /// Force on the king pin in N, at every time.
+    pub king_pin_force: Vec<f64>,
+    /// What the dampers take in W, at every time.
+    pub damper_power: Vec<f64>,
     /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub king_pin: Option<Vec<&'static str>>,
@@ -55,12 +62,20 @@ pub struct RollingHistory {
 
 impl RollingHistory {
     /// The result of a motion.
-    pub(super) fn new(wheel: Wheel, history: &TimeHistory) -> Self {
+    ///
+    /// # Errors
+    /// Those of [`Wheel::king_pin_loads`].
+    pub(super) fn new(wheel: Wheel, history: &TimeHistory) -> Result<Self, KingpinError> {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
         let dry = wheel.get(Key::MF) > 0.0;
-        Self {
+        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]))?;
+        let friction_force = history.friction_force();
+        Ok(Self {
             wheel,
+            friction_ratio_max: largest_ratio(&wheel, &friction_force),
+            king_pin_force: loads.iter().map(|load| load.force).collect(),
+            damper_power: loads.iter().map(|load| load.damper_power).collect(),
             rolling_lost_at: history.rolling_lost_at,
             t: history.times.clone(),
             u: state(0),
@@ -68,13 +83,13 @@ impl RollingHistory {
             psi: state(2),
             forward_speed: state(3),
             yaw_rate: state(4),
-            friction_force: history.friction_force(),
+            friction_force,
             normal_force: history.normal_force(),
             king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
             friction_moment: dry.then(|| history.friction_moment.clone()),
             dry_friction_work: dry.then_some(history.dry_friction_work),
             phases: Phase::list(&wheel, &history.phases),
-        }
+        })
     }
 
     /// What is worth knowing about it.
@@ -124,7 +139,8 @@ impl Report for RollingHistory {
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
         let states = self.states().map(|(name, values, unit, _)| (name, values, unit));
         let force = ("friction_force", &self.friction_force, "N");
-        summary(states.into_iter().chain([force])).write(out)?;
+        let load = ("king_pin_force", &self.king_pin_force, "N");
+        summary(states.into_iter().chain([force, load])).write(out)?;
         writeln!(out)?;
         match self.rolling_lost_at {
             Some(time) => {
@@ -146,6 +162,7 @@ impl Report for RollingHistory {
             .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
             .unit("N");
+        let columns = loads(columns, &self.king_pin_force, &self.damper_power);
         phase::columns(columns, self.friction_moment.as_deref(), self.king_pin.as_deref())
     }
 

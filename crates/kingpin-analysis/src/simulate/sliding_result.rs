@@ -1,5 +1,6 @@
 //! Time histories of a wheel that rolls or slides as a result.
 
+use super::loads::{largest_ratio, loads};
 use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
@@ -47,6 +48,12 @@ pub struct SlidingHistory {
     pub friction_force: Vec<f64>,
     /// Force of the ground on the wheel in N.
     pub normal_force: Vec<f64>,
+    /// Largest friction force over mu_s N; nothing where nothing presses the wheel down.
+    pub friction_ratio_max: Option<f64>,
+    /// Force on the king pin in N, at every time.
+    pub king_pin_force: Vec<f64>,
+    /// What the dampers take in W, at every time.
+    pub damper_power: Vec<f64>,
     /// What the wheel does at every time, `rolling` or `sliding`.
     pub phase: Vec<&'static str>,
     /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
@@ -84,6 +91,9 @@ impl SlidingHistory {
             rim_speed: state(6),
             slip: history.slip(),
             normal_force: vec![history.normal_force; friction_force.len()],
+            friction_ratio_max: largest_ratio(&wheel, &friction_force),
+            king_pin_force: history.king_pin_loads.iter().map(|load| load.force).collect(),
+            damper_power: history.king_pin_loads.iter().map(|load| load.damper_power).collect(),
             friction_force,
             phase: history.times.iter().map(contact).collect(),
             king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
@@ -122,7 +132,11 @@ impl Report for SlidingHistory {
         let duration = self.t.last().copied().unwrap_or(0.0);
         writeln!(out, "motion with rolling and sliding at {}", description::of(&self.wheel, &[]))?;
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
-        let more = [("slip", &self.slip, "m/s"), ("friction_force", &self.friction_force, "N")];
+        let more = [
+            ("slip", &self.slip, "m/s"),
+            ("friction_force", &self.friction_force, "N"),
+            ("king_pin_force", &self.king_pin_force, "N"),
+        ];
         summary(self.states().into_iter().chain(more)).write(out)?;
         let slides: Vec<&Phase> =
             self.phases.iter().filter(|phase| phase.contact == phase::contact(Contact::Sliding)).collect();
@@ -154,6 +168,7 @@ impl Report for SlidingHistory {
             .numbers("normal_force", self.normal_force.iter().copied())
             .unit("N")
             .texts("phase", self.phase.iter().map(|phase| Some((*phase).to_owned())));
+        let columns = loads(columns, &self.king_pin_force, &self.damper_power);
         phase::columns(columns, self.friction_moment.as_deref(), self.king_pin.as_deref())
     }
 

@@ -1,10 +1,11 @@
 //! Time histories of a wheel with a tyre as a result.
 
+use super::loads::{largest_ratio, loads};
 use crate::description;
 use crate::parameters::parameters_of;
 use crate::states;
 use kingpin::tyre::{TYRE_STATE_NAMES, TyreHistory};
-use kingpin::{ContactForce, Tyre, Wheel};
+use kingpin::{ContactForce, KingpinError, Tyre, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, extremes, summary};
 use kingpin_report::numbers::readable;
@@ -53,15 +54,29 @@ pub struct TyreHistoryResult {
     pub friction_force: Vec<f64>,
     /// Force of the ground on the wheel in N.
     pub normal_force: Vec<f64>,
+    /// Largest friction force over mu_s N; nothing where nothing presses the wheel down.
+    pub friction_ratio_max: Option<f64>,
+    /// Force on the king pin in N, at every time.
+    pub king_pin_force: Vec<f64>,
+    /// What the dampers take in W, at every time.
+    pub damper_power: Vec<f64>,
 }
 
 impl TyreHistoryResult {
     /// The result of a motion.
-    pub(super) fn new(wheel: Wheel, duration: f64, history: TyreHistory) -> Self {
+    ///
+    /// # Errors
+    /// Those of [`Wheel::king_pin_loads`].
+    pub(super) fn new(wheel: Wheel, duration: f64, history: TyreHistory) -> Result<Self, KingpinError> {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
-        Self {
+        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]))?;
+        let friction_force: Vec<f64> = history.contact_forces.iter().map(ContactForce::friction).collect();
+        Ok(Self {
             wheel,
             duration,
+            friction_ratio_max: largest_ratio(&wheel, &friction_force),
+            king_pin_force: loads.iter().map(|load| load.force).collect(),
+            damper_power: loads.iter().map(|load| load.damper_power).collect(),
             friction_exceeded_at: history.friction_exceeded_at,
             stopped_at: history.stopped_at,
             u: state(0),
@@ -71,10 +86,10 @@ impl TyreHistoryResult {
             lateral_speed: state(4),
             yaw_rate: state(5),
             deflection: state(6),
-            friction_force: history.contact_forces.iter().map(ContactForce::friction).collect(),
+            friction_force,
             normal_force: history.contact_forces.iter().map(|force| force.normal).collect(),
             t: history.times,
-        }
+        })
     }
 
     /// What is worth knowing about it.
@@ -131,7 +146,8 @@ impl Report for TyreHistoryResult {
         let reached = self.stopped_at.unwrap_or(self.duration);
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(reached))?;
         let force = ("friction_force", &self.friction_force, "N");
-        summary(self.states().into_iter().chain([force])).write(out)?;
+        let load = ("king_pin_force", &self.king_pin_force, "N");
+        summary(self.states().into_iter().chain([force, load])).write(out)?;
         writeln!(out)?;
         if let Some(time) = self.stopped_at {
             writeln!(out, "the wheel stops rolling forwards at {} s: undecided from there", readable(time))?;
@@ -147,14 +163,15 @@ impl Report for TyreHistoryResult {
     fn columns(&self) -> Columns {
         let times = Columns::new().numbers("t", self.t.iter().copied()).unit("s");
         let states = self.states().into_iter();
-        states
+        let columns = states
             .fold(times, |columns, (name, values, unit)| {
                 columns.numbers(name, values.iter().copied()).unit(unit)
             })
             .numbers("friction_force", self.friction_force.iter().copied())
             .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
-            .unit("N")
+            .unit("N");
+        loads(columns, &self.king_pin_force, &self.damper_power)
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

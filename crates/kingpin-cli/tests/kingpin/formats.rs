@@ -205,7 +205,9 @@ fn histories_with_sliding_have_seven_states_and_phases() {
     }
     assert!(phases.contains(&"rolling".into()) && phases.contains(&"sliding".into()));
     let header = String::from_utf8(read(&folder.path("a.csv"))).unwrap();
-    assert!(header.starts_with("t,u,q,psi,V1,V2,Omega,W,slip,friction_force,normal_force,phase\n"));
+    assert!(header.starts_with(
+        "t,u,q,psi,V1,V2,Omega,W,slip,friction_force,normal_force,phase,king_pin_force,damper_power\n"
+    ));
     // Without a kick and with friction enough it rolls as without the option.
     let gentle = "--duration 1 --points 11 --perturb psi=0.01 -s r=inf -s v=2";
     let rolls = folder.json(&format!("simulate {gentle} -q"));

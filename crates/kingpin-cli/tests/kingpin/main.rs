@@ -6,11 +6,13 @@ mod branches;
 mod curves;
 mod dry_friction;
 mod files;
+mod forces;
 mod formats;
 #[cfg(unix)]
 mod interruption;
 mod lateral;
 mod long_values;
+mod shimmy;
 mod studies;
 mod tables;
 mod tyre;

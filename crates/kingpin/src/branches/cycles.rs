@@ -1,8 +1,8 @@
 //! Limit cycles of the rolling wheel along a parameter.
 
-use super::{Along, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
-use crate::{KingpinError, RollingModel, Wheel};
-use arclength::branch::{Monitor, Unlocated};
+use super::{Along, FRICTION_MONITOR, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
+use crate::{KingpinError, RollingModel, Tyre, Wheel};
+use arclength::branch::{Monitor, SpecialKind, Unlocated};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use std::ops::ControlFlow;
@@ -33,6 +33,17 @@ pub struct WheelCycles {
     pub stops: [Option<Stop<CycleEnd>>; 2],
     /// Changes of test functions behind which no special cycle could be located.
     pub unlocated: Vec<Unlocated>,
+    /// Values that were asked for, as they are found.
+    asked: Vec<f64>,
+}
+
+impl WheelCycles {
+    /// Whether the branch was searched for this cycle because there the largest friction force is `mu_s N`: on one side of it the wheel
+    /// rolls, on the other it cannot.
+    pub fn is_rolling_limit(&self, cycle: &CyclePoint) -> bool {
+        cycle.label.is_some_and(|label| label.kind == SpecialKind::Requested)
+            && !self.asked.contains(&cycle.value)
+    }
 }
 
 impl HopfPoint {
@@ -114,8 +125,14 @@ impl Wheel {
             model.smallest_speed_ratio(&point.orbit, &[point.value])
         })
         .until(&[SLOWEST_ON_CYCLES]);
+        let used = Monitor::new(FRICTION_MONITOR, |point: &CyclePoint| {
+            model.cycle_forces(&point.orbit, &[point.value]).friction_ratio_max()
+        })
+        .mark(&[1.0]);
         let cycles = Cycles::of(&model, start);
         let cycles = if matches!(model, RollingModel::Tyre(_)) { cycles.monitor(slowest) } else { cycles };
+        // Under the law of a brush the ground never has to supply more than there is.
+        let cycles = if self.tyre() == Tyre::Brush { cycles } else { cycles.monitor(used) };
         let mut branch = cycles
             .parameters(&[along.convert(value)])
             .along(key.name(), along.range())
@@ -138,6 +155,7 @@ impl Wheel {
             points: branch.points,
             stops: branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop))),
             unlocated: branch.unlocated,
+            asked: options.at.iter().map(|&value| along.as_found(value)).collect(),
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Hopf points of the uniform motion: where shimmy is born.
 
 use super::Along;
+use super::birth::Birth;
 #[cfg(doc)]
 use crate::UniformMotion;
 use crate::tyre::Onset;
@@ -33,6 +34,8 @@ pub struct HopfPoint {
     pub psi_max_slope: Option<f64>,
     /// Whether the cycles that are born are unstable (subcritical) or stable (supercritical).
     pub criticality: Criticality,
+    /// How cycles are born: mode, stable side, growth.
+    pub birth: Birth,
     /// The uniform motion, in [all states](Wheel::states).
     pub state: Vec<f64>,
     /// The wheel at this point.
@@ -174,6 +177,8 @@ impl Wheel {
                     _ => None,
                 })
                 .map(|point| {
+                    let wheel = wheel.with(key, point.value)?;
+                    let state = model.full_state(&point.state, &[point.value]);
                     Ok(HopfPoint {
                         value: along.convert(point.value),
                         location_error: along.convert_error(along.convert(point.value), point.location_error),
@@ -181,8 +186,9 @@ impl Wheel {
                         first_lyapunov: point.first_lyapunov,
                         psi_max_slope: onset_at(point.value).and_then(|onset| onset.psi_max_slope),
                         criticality: point.criticality,
-                        state: model.full_state(&point.state, &[point.value]),
-                        wheel: wheel.with(key, point.value)?,
+                        birth: Birth::at(point, &wheel.motion_in(&state), along)?,
+                        state,
+                        wheel,
                         detail: point.clone(),
                         onset: onset_at(point.value),
                     })

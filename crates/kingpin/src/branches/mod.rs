@@ -3,10 +3,12 @@
 //!
 //! The turning radius may be followed to infinity: behind the scenes `r` is then replaced by `1/r`.
 
+mod birth;
 mod curves;
 mod cycles;
 mod hopf;
 
+pub use birth::{Birth, Mode};
 pub use curves::{CurveOptions, CycleCurve, HopfCurve};
 pub use cycles::{CycleOptions, WheelCycles};
 pub use hopf::{HopfPoint, HopfSearch, MotionBranch};
@@ -19,6 +21,9 @@ use arclength::continuation::Stop;
 /// [`SLOWEST_ON_CYCLES`].
 pub const SPEED_MONITOR: &str =
     "the smallest V1/v on the cycles, which a tyre takes only while it is positive,";
+
+/// What is recorded along branches of cycles, in words: where it is 1, a cycle is located.
+pub const FRICTION_MONITOR: &str = "the largest friction force over mu_s N";
 
 /// The smallest `V1/v` of cycles of a wheel with a tyre, at which their branches and curves end.
 pub const SLOWEST_ON_CYCLES: f64 = 0.01;

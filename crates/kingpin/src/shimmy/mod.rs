@@ -12,6 +12,8 @@ mod branch;
 mod curve;
 mod error;
 pub(crate) mod extrema;
+mod forces;
+mod kicks;
 pub(crate) mod passage;
 mod return_map;
 mod search;
@@ -21,6 +23,8 @@ mod variation;
 
 pub use branch::{SlidingBranch, SlidingBranchEnd, SlidingBranchOptions, SlidingBranchPoint, SlidingRole};
 pub use error::{Grazing, Refusal, ShimmyError};
+pub use forces::ShimmyForces;
+pub use kicks::Kick;
 pub use search::SlidingMotionSearch;
 
 use crate::simulation::SimulationError;

@@ -90,11 +90,7 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<PeriodicSliding, ShimmyError> {
         search.check()?;
-        self.check_without_dry_friction(
-            "periodic motion with sliding phases",
-            "set M_f = 0, or see with `simulate` on what the motion settles",
-        )
-        .map_err(SimulationError::from)?;
+        self.check_shimmy()?;
         let (settling, control) = (control.part(0.0..PART_OF_SETTLING), &control.quiet());
         let sliding = self.sliding()?.tolerance(SETTLING_TOLERANCE);
         let initial = sliding.rolling_state(initial);
@@ -197,6 +193,8 @@ impl Wheel {
             nearest,
         })?;
         let mut state = settled;
+        // A caster that turns right round swings about no angle.
+        let all_turns = if turns == 0 { all_turns } else { TAU * (settled.state[PSI] / TAU).round() };
         state.state[PSI] -= all_turns;
         Ok(Recurrence { start: Start { state, period }, scales, turns })
     }

@@ -434,3 +434,32 @@ fn large_shimmy_of_the_papers_wheel_beside_stable_uniform_motion() {
         if (value - 8.455932).abs() < 1e-5));
     assert!(branch.points.iter().all(|point| point.motion.stable == Some(true)));
 }
+
+#[test]
+fn the_towing_gives_what_dampers_and_sliding_take() {
+    for motion in [short_caster_motion(), loaded_motion()] {
+        let found = motion.forces(&Control::none()).unwrap();
+        let taken = found.forces.damper_power + found.sliding_power;
+        assert!((found.towing_power / taken - 1.0).abs() < 1e-6, "{found:?}");
+        assert_eq!(found.forces.friction_max, motion.wheel.static_limit());
+        // Against a fine history: the powers as means, the king-pin force from springs and dampers.
+        let count = 40_000;
+        let history = motion.history(1.0, count + 1, &Control::none()).unwrap();
+        let mean = |values: &[f64]| values[..count].iter().sum::<f64>() / count as f64;
+        assert!((found.towing_power / mean(&history.towing_power) - 1.0).abs() < 1e-4);
+        assert!((taken / mean(&history.dissipated_power) - 1.0).abs() < 1e-4);
+        let get = |key| motion.wheel.get(key);
+        let force = |[u, q, psi, forward, lateral, yaw, _]: &[f64; 7]| {
+            let (sine, cosine) = psi.sin_cos();
+            let across = lateral + get(Key::L) * yaw;
+            let omega = motion.wheel.towing_yaw_rate();
+            let u_rate = forward * cosine + across * sine - get(Key::V) + omega * q;
+            let q_rate = across * cosine - forward * sine - omega * u;
+            let longitudinal = get(Key::KU) * u + get(Key::CU) * u_rate;
+            longitudinal.hypot(get(Key::KQ) * q + get(Key::CQ) * q_rate)
+        };
+        let largest = history.states.iter().map(force).fold(0.0, f64::max);
+        let difference = found.forces.king_pin_force_max / largest - 1.0;
+        assert!((-1e-9..1e-6).contains(&difference), "{difference}");
+    }
+}

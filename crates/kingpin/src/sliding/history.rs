@@ -4,6 +4,7 @@ use super::model::{SlipState, slips};
 use super::{
     Contact, HybridState, KingPin, Phase, Piece, SLIDING_STATE_NAMES, SlidingWheel, as_slip_state, phase_at,
 };
+use crate::forces::KingPinLoad;
 use crate::simulation::{SimulationError, sampling_times};
 use crate::wheel::Wheel;
 use arclength::control::Control;
@@ -23,6 +24,8 @@ pub struct SlidingHistory {
     pub towing_power: Vec<f64>,
     /// Power that friction and dampers dissipate in W, one for each time.
     pub dissipated_power: Vec<f64>,
+    /// What the king pin bears and what the dampers take, one for each time.
+    pub king_pin_loads: Vec<KingPinLoad>,
     /// Normal force in N.
     pub normal_force: f64,
     /// Phases in order; neighbours of the same kind are those between which the slip passed through zero.
@@ -141,6 +144,7 @@ impl SlidingWheel {
             friction_moment: Vec::with_capacity(samples),
             towing_power: Vec::with_capacity(samples),
             dissipated_power: Vec::with_capacity(samples),
+            king_pin_loads: Vec::with_capacity(samples),
             normal_force: self.rolling.wheel().normal_force(),
             phases: Vec::new(),
             dry_friction_work: 0.0,
@@ -159,6 +163,10 @@ impl SlidingWheel {
                     _ => equations.holding_force(&state),
                 };
                 let (towing, dissipated) = equations.power(&state, friction);
+                history.king_pin_loads.push(KingPinLoad {
+                    force: equations.king_pin_force(&state),
+                    damper_power: equations.power_of_damping(&state),
+                });
                 history.friction.push(friction);
                 history.friction_moment.push(equations.friction_moment(&state, friction));
                 history.towing_power.push(towing);

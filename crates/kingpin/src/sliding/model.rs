@@ -309,12 +309,36 @@ impl Equations<f64> {
             + 0.5 * body.rotational_stiffness * psi * psi
     }
 
+    /// Force of springs and dampers on the king pin in N.
+    pub(crate) fn king_pin_force(&self, state: &SlipState) -> f64 {
+        let mut rate = [0.0; 7];
+        self.derivative(state, [0.0; 2], &mut rate);
+        let body = &self.body;
+        let along = body.longitudinal_stiffness * state[0] + body.longitudinal_damping * rate[0];
+        along.hypot(body.lateral_stiffness * state[1] + body.lateral_damping * rate[1])
+    }
+
+    /// Power in W that the dampers take.
+    pub(crate) fn power_of_damping(&self, state: &SlipState) -> f64 {
+        let mut rate = [0.0; 7];
+        self.derivative(state, [0.0; 2], &mut rate);
+        let body = &self.body;
+        body.longitudinal_damping * rate[0] * rate[0]
+            + body.lateral_damping * rate[1] * rate[1]
+            + body.rotational_damping * (state[5] - self.omega).powi(2)
+    }
+
+    /// Power in W that a friction force takes while the wheel slides.
+    pub(crate) fn power_of_sliding(&self, state: &SlipState, friction: [f64; 2]) -> f64 {
+        -friction[0] * state[S1] - friction[1] * state[S2]
+    }
+
     /// Power in W of the towing frame, and the power that the dampers, dry friction about the king pin and a friction force dissipate.
     pub(crate) fn power(&self, state: &SlipState, friction: [f64; 2]) -> (f64, f64) {
         let mut rate = [0.0; 7];
         self.derivative(state, friction, &mut rate);
         let body = &self.body;
-        let [u, q, psi, _, lateral, yaw, slip] = *state;
+        let [u, q, psi, _, _, yaw, _] = *state;
         let damping = [-body.longitudinal_damping * rate[0], -body.lateral_damping * rate[1]];
         let force = [damping[0] - body.longitudinal_stiffness * u, damping[1] - body.lateral_stiffness * q];
         let dry = self.friction_moment(state, friction);
@@ -322,11 +346,8 @@ impl Equations<f64> {
             body.rotational_stiffness * psi - body.rotational_damping * (yaw - self.omega) + dry;
         let towing =
             force[0] * (self.v - self.omega * q) + force[1] * self.omega * u + about_king_pin * self.omega;
-        let dissipated = -damping[0] * rate[0] - damping[1] * rate[1]
-            + body.rotational_damping * (yaw - self.omega).powi(2)
-            + dry * (self.omega - yaw)
-            - friction[0] * slip
-            - friction[1] * lateral;
+        let dissipated =
+            self.power_of_damping(state) + dry * (self.omega - yaw) + self.power_of_sliding(state, friction);
         (towing, dissipated)
     }
 }

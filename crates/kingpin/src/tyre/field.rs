@@ -94,6 +94,11 @@ impl Wheel {
 }
 
 impl TyreWheel {
+    /// Which parameters are active.
+    pub(crate) fn active_parameters(&self) -> &ActiveParameters {
+        &self.active
+    }
+
     /// The wheel with the values that it was made with.
     pub fn wheel(&self) -> &Wheel {
         self.active.wheel()
@@ -136,6 +141,12 @@ impl TyreWheel {
             Some(body) => self.kind.full_state(body, towing, free),
             None => self.kind.full_state(&self.body(parameters), towing, free),
         }
+    }
+
+    /// The rates of all seven states and the lateral force of the ground at a state of the vector field.
+    pub(crate) fn rates_and_lateral_force<T: Scalar>(&self, free: &[T], parameters: &[T]) -> ([T; 7], T) {
+        let motion = self.motion(free, parameters);
+        (motion.rates, motion.lateral_force)
     }
 
     /// The rates of all seven states and the forces at a state of the vector field, whose parameters may be followed by the cells of

@@ -7,6 +7,7 @@ mod claim;
 mod contact;
 mod cycles;
 mod equations;
+mod friction_of_cycles;
 mod linear;
 mod random;
 
@@ -39,6 +40,7 @@ pub(super) fn all(computed: &Computed, tasks: &Tasks<'_>) -> Result<Vec<Claim>, 
         Box::new(cycles::of_the_hopf_points),
         Box::new(|| cycles::of_the_basin(computed.branches)),
         Box::new(|| cycles::of_the_radius(computed.branches)),
+        Box::new(|| friction_of_cycles::claims(computed.branches)),
     ];
     let found: Vec<Vec<Claim>> = groups
         .par_iter()
@@ -53,4 +55,4 @@ pub(super) fn all(computed: &Computed, tasks: &Tasks<'_>) -> Result<Vec<Claim>, 
 }
 
 /// Groups of statements that are computed side by side.
-pub(super) const GROUPS: usize = 7;
+pub(super) const GROUPS: usize = 8;

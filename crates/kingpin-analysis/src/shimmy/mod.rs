@@ -1,0 +1,12 @@
+//! Large shimmy along a parameter: periodic motions of a wheel that may slide, each with its phases of rolling and sliding.
+
+mod picture;
+mod point;
+mod request;
+mod result;
+mod search;
+
+pub use point::{ShimmyPhase, ShimmyPointResult};
+pub use request::{ShimmyAnalysis, ShimmyRequest};
+pub use result::{ShimmyBranchResult, ShimmyResult};
+pub use search::Attempt;

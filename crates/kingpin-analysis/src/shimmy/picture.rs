@@ -1,0 +1,67 @@
+//! The diagram of shimmy: largest and smallest caster angle over the parameter, beside the uniform motion.
+
+use super::point::{GRAZING, ShimmyPointResult};
+use crate::along::drawn_as;
+use crate::uniform_curve::uniform_motion;
+use crate::{axis_label, description};
+use arclength_analysis::labels::kind;
+use kingpin::Wheel;
+use kingpin::branches::Along;
+use kingpin_figure::{
+    Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
+    palette,
+};
+
+/// Draws the branches, stable parts solid and the others dashed, with labelled points.
+pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]) -> Figure {
+    let (key, abscissa) = drawn_as(along);
+    let (start, end) = along.ends();
+    let (start, end) = (abscissa(start), abscissa(end));
+    let (low, high) = (start.min(end), start.max(end));
+    let x = Axis::new(axis_label::of(key)).limits(low, high);
+    let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)")).legend(Legend::Below);
+    panel =
+        panel.curve(uniform_motion(wheel, along, Vec::new()).color(palette::BLUE).legend("uniform motion"));
+    let branches = points.last().map_or(0, |point| point.branch);
+    for number in 1..=branches {
+        let points: Vec<&ShimmyPointResult> = points.iter().filter(|point| point.branch == number).collect();
+        for largest in [true, false] {
+            let angle = |point: &ShimmyPointResult| if largest { point.psi_max } else { point.psi_min };
+            let curve = Branch::new(
+                points.iter().map(|point| ((abscissa(point.value), angle(point)), stability(point))),
+            )
+            .color(palette::VERMILION);
+            let first = largest && number == 1;
+            panel = panel.curve(if first { curve.legend("shimmy with sliding, extremes") } else { curve });
+        }
+        for point in points {
+            if let Some(label) = &point.label {
+                let at = (abscissa(point.value), point.psi_max);
+                panel = panel.point(PointLabel::new(at, label.as_str()).marker(marker(label)));
+            }
+        }
+    }
+    if points.iter().any(|point| point.stable == Some(false)) {
+        panel = panel.legend_entry(LegendEntry::line("unstable", palette::BLACK, Dash::Dashed));
+    }
+    let description = format!(
+        "Caster angle of shimmy with sliding phases and of the uniform motion against {key} at {}",
+        description::of(wheel, &[along.key()])
+    );
+    Figure::single_column().description(description).panel(panel)
+}
+
+fn stability(point: &ShimmyPointResult) -> Stability {
+    if point.is_bifurcation() { Stability::Changes } else { Stability::from(point.stable == Some(true)) }
+}
+
+fn marker(label: &str) -> Marker {
+    match kind(label) {
+        "LPC" => Marker::new(MarkerShape::Square),
+        "PD" => Marker::new(MarkerShape::Diamond).open(),
+        "NS" => Marker::new(MarkerShape::Triangle).open(),
+        GRAZING => Marker::new(MarkerShape::Triangle).size(3.0),
+        "AT" => Marker::default().open(),
+        _ => Marker::default(),
+    }
+}

@@ -1,0 +1,302 @@
+//! Branches of shimmy with sliding as a result.
+
+use super::picture;
+use super::point::{GRAZING, ShimmyPointResult, ascending, at_motion};
+use super::search::Attempt;
+use crate::along::varying;
+use crate::description;
+use crate::error::Error;
+use crate::forces::{self, ForcesResult};
+use crate::parameters::parameters_of;
+use crate::states;
+use arclength::branch::{LabelCounter, SpecialKind};
+use arclength_analysis::{Control, End, VaryingParameter};
+use kingpin::Wheel;
+use kingpin::branches::Along;
+use kingpin::shimmy::{
+    ShimmyError, ShimmyForces, SlidingBranch, SlidingBranchEnd, SlidingBranchPoint, SlidingRole,
+};
+use kingpin::sliding::SLIDING_STATE_NAMES;
+use kingpin_figure::{Figure, FigureError};
+use kingpin_report::numbers::readable;
+use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// A branch that was followed, with the forces of its motions.
+pub(super) struct ShimmyBranch {
+    attempt: Attempt,
+    pub points: Vec<SlidingBranchPoint>,
+    forces: Vec<Option<ShimmyForces>>,
+    ends: [SlidingBranchEnd; 2],
+}
+
+impl ShimmyBranch {
+    /// The branch by ascending value of the parameter.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed again.
+    pub(super) fn new(attempt: Attempt, branch: SlidingBranch, control: &Control<'_>) -> Result<Self, Error> {
+        let SlidingBranch { mut points, mut ends, .. } = branch;
+        if ascending(&mut points) {
+            ends.reverse();
+        }
+        let mut forces = Vec::with_capacity(points.len());
+        for (index, point) in points.iter().enumerate() {
+            control.at(&format!("forces, {} of {}", index + 1, points.len()));
+            forces.push(match point.motion.forces(&Control::none()) {
+                Ok(forces) => Some(forces),
+                // At a grazing rounding may change the phases.
+                Err(ShimmyError::NotConverged { .. }) => None,
+                Err(error) => return Err(error.into()),
+            });
+        }
+        Ok(Self { attempt, points, forces, ends })
+    }
+}
+
+/// Where a branch was found and why it ends.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShimmyBranchResult {
+    /// Its number, from 1.
+    pub branch: u64,
+    /// The kick from which its first motion was reached.
+    pub from: String,
+    /// Why it ends, at the first point and at the last one.
+    pub ends: [String; 2],
+    /// The last good point in either direction.
+    pub last: [NamedNumbers; 2],
+    /// What to try at either end, where anything is left to do.
+    pub remedies: [Option<String>; 2],
+}
+
+/// Branches of shimmy with sliding along a parameter.
+#[derive(Clone, Debug, Serialize)]
+pub struct ShimmyResult {
+    /// The wheel; its value of the parameter that varies is anywhere.
+    #[serde(skip)]
+    pub wheel: Wheel,
+    /// The parameter and its interval.
+    #[serde(skip)]
+    pub interval: Along,
+    /// The parameter that varies.
+    pub along: VaryingParameter,
+    /// The branches.
+    pub branches: Vec<ShimmyBranchResult>,
+    /// Values that were asked for at which no branch has a motion.
+    #[serde(skip)]
+    pub missed: Vec<f64>,
+    /// Their motions, branch by branch.
+    pub points: Vec<ShimmyPointResult>,
+    /// Every kick that was tried.
+    pub tried: Vec<Attempt>,
+}
+
+impl ShimmyResult {
+    /// Schema of the result file.
+    pub const SCHEMA: &'static str = "kingpin.shimmy";
+
+    pub(super) fn new(
+        wheel: Wheel,
+        interval: Along,
+        found: Vec<ShimmyBranch>,
+        tried: Vec<Attempt>,
+        at: &[f64],
+    ) -> Self {
+        let along = varying(&interval);
+        let is_asked = |value: f64| at.iter().any(|asked| interval.as_found(*asked) == value);
+        let (mut labels, mut grazings) = (LabelCounter::default(), 0);
+        let (mut points, mut branches) = (Vec::new(), Vec::new());
+        for (number, branch) in (1..).zip(found) {
+            let ShimmyBranch { attempt, points: motions, forces, ends } = branch;
+            for (point, forces) in motions.iter().zip(forces) {
+                let label = match point.role {
+                    SlidingRole::Step if !is_asked(point.value) => None,
+                    // A branch may start at a value that was asked for.
+                    SlidingRole::Step | SlidingRole::Requested => {
+                        Some(labels.next(SpecialKind::Requested).to_string())
+                    }
+                    SlidingRole::Bifurcation(kind) => Some(labels.next(kind).to_string()),
+                    SlidingRole::Grazing(_) => {
+                        grazings += 1;
+                        Some(format!("{GRAZING}{grazings}"))
+                    }
+                };
+                points.push(at_motion(number, point, label, forces));
+            }
+            let last = |point: Option<&SlidingBranchPoint>| {
+                let values = point.map(|point| {
+                    [(along.key.clone(), point.value), ("period".to_owned(), point.motion.period)]
+                });
+                NamedNumbers(values.into_iter().flatten().collect())
+            };
+            let lasts = [last(motions.first()), last(motions.last())];
+            let told: Vec<End> = ends.iter().zip(lasts).map(|(end, last)| told(end, &along, last)).collect();
+            branches.push(ShimmyBranchResult {
+                branch: number,
+                from: format!("{} at {}", attempt.kick(), along.at(attempt.value)),
+                ends: [0, 1].map(|index| told[index].cause.clone()),
+                remedies: [0, 1].map(|index| told[index].remedy.clone()),
+                last: [0, 1].map(|index| told[index].last.clone()),
+            });
+        }
+        let is_there = |value: f64| points.iter().any(|point: &ShimmyPointResult| point.value == value);
+        let missed = at.iter().copied().filter(|value| !is_there(interval.as_found(*value))).collect();
+        Self { wheel, interval, along, branches, missed, points, tried }
+    }
+
+    /// What was asked for and not found.
+    pub fn warnings(&self) -> Vec<String> {
+        let missed = |value: &f64| format!("no shimmy at {}: no branch passes there", self.along.at(*value));
+        self.missed.iter().map(missed).collect()
+    }
+
+    fn points_of(&self, branch: &ShimmyBranchResult) -> Vec<&ShimmyPointResult> {
+        self.points.iter().filter(|point| point.branch == branch.branch).collect()
+    }
+}
+
+/// The parts of a branch, as intervals of the parameter, in which it is stable, from bifurcation to bifurcation.
+fn stable_parts(points: &[&ShimmyPointResult]) -> Vec<[f64; 2]> {
+    let is_stable = |index: usize| points[index].stable == Some(true);
+    let mut parts: Vec<[f64; 2]> = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        let before = index > 0 && is_stable(index - 1);
+        let after = index + 1 < points.len() && is_stable(index + 1);
+        let ends = point.is_bifurcation();
+        match parts.last_mut() {
+            Some([_, end]) if before && (ends || is_stable(index)) => *end = point.value,
+            _ if is_stable(index) || (ends && after) => parts.push([point.value; 2]),
+            _ => {}
+        }
+        // A bifurcation between two stable stretches ends one and begins the other.
+        if ends && before && after {
+            parts.push([point.value; 2]);
+        }
+    }
+    let ordered = parts.into_iter().map(|[one, other]| [one.min(other), one.max(other)]);
+    ordered.collect()
+}
+
+/// Why a branch ends.
+fn told(end: &SlidingBranchEnd, along: &VaryingParameter, last: NamedNumbers) -> End {
+    match end {
+        SlidingBranchEnd::Continuation(stop) => End::of(stop, std::slice::from_ref(along), last),
+        SlidingBranchEnd::Grazing { change, value, .. } => End {
+            cause: format!("{change}, at {}; no motion beside it has the other phases", along.at(*value)),
+            last,
+            remedy: Some("an interval beyond it, where kicked motions may settle on others".to_owned()),
+        },
+        end => End { cause: end.to_string(), last, remedy: None },
+    }
+}
+
+impl Report for ShimmyResult {
+    fn schema(&self) -> Schema {
+        Schema::first(Self::SCHEMA)
+    }
+
+    fn parameters(&self) -> Parameters {
+        parameters_of(&self.wheel, &[self.interval.key()])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        writeln!(out, "shimmy with sliding at {}", description::of(&self.wheel, &[self.interval.key()]))?;
+        for branch in &self.branches {
+            let points = self.points_of(branch);
+            writeln!(out, "\nbranch {} from {}, {} points", branch.branch, branch.from, points.len())?;
+            writeln!(out, "  first: {}\n  last:  {}\n", branch.ends[0], branch.ends[1])?;
+            let heading = self.along.heading();
+            let mut table = Table::new([
+                "label",
+                &heading,
+                "period (s)",
+                "psi_max (rad)",
+                "psi_min (rad)",
+                "largest multiplier",
+                "error",
+                "slides",
+                "phases",
+                "",
+                "",
+            ]);
+            let last = points.len().saturating_sub(1);
+            for (index, point) in points.iter().enumerate() {
+                if point.label.is_some() || index == 0 || index == last {
+                    table.row(point.cells());
+                }
+            }
+            table.write(out)?;
+            let part = |[low, high]: [f64; 2]| format!("from {} to {}", readable(low), readable(high));
+            let parts: Vec<String> = stable_parts(&points).into_iter().map(part).collect();
+            match &parts[..] {
+                [] => writeln!(out, "\nno stable shimmy on it")?,
+                parts => {
+                    let unit = self.interval.key().unit();
+                    writeln!(out, "\nstable shimmy for {} {} {unit}", self.along.key, parts.join(" and "))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn columns(&self) -> Columns {
+        let points = || self.points.iter();
+        let columns = Columns::new()
+            .counts("branch", points().map(|point| point.branch))
+            .texts("label", points().map(|point| point.label.clone()))
+            .numbers("value", points().map(|point| point.value))
+            .unit(self.interval.key().unit())
+            .numbers("period", points().map(|point| point.period))
+            .unit("s")
+            .numbers("psi_max", points().map(|point| point.psi_max))
+            .unit("rad")
+            .numbers("psi_min", points().map(|point| point.psi_min))
+            .unit("rad")
+            .booleans("stable", points().map(|point| point.stable))
+            .numbers("error_estimate", points().map(|point| point.error_estimate))
+            .numbers("trivial_multiplier_error", points().map(|point| point.trivial_multiplier_error))
+            .complex_numbers(
+                "multiplier",
+                SLIDING_STATE_NAMES.len(),
+                points().map(|point| &point.multipliers),
+            )
+            .numbers("turns", points().map(|point| f64::from(point.turns)))
+            .optional_numbers("psi_0", points().map(|point| point.psi_0))
+            .unit("rad")
+            .optional_numbers("deviation_max", points().map(|point| point.deviation_max))
+            .unit("rad")
+            .optional_numbers("deviation_min", points().map(|point| point.deviation_min))
+            .unit("rad")
+            .numbers("sliding_fraction", points().map(|point| point.sliding_fraction))
+            .texts("phases", points().map(|point| Some(point.phases_in_words())))
+            .optional_numbers("sliding_power", points().map(|point| point.sliding_power))
+            .unit("W");
+        let columns = SLIDING_STATE_NAMES.iter().fold(columns, |columns, &name| {
+            columns
+                .optional_numbers(name, points().map(move |point| point.state.named(name)))
+                .unit(states::unit(name))
+        });
+        let forces: Vec<&ForcesResult> = points().map(|point| &point.forces).collect();
+        forces::columns(columns, forces.into_iter())
+    }
+
+    fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        Ok(Some(picture::diagram(&self.wheel, &self.interval, &self.points)))
+    }
+
+    fn story(&self) -> Option<Story> {
+        let mut story = Story::new();
+        for attempt in &self.tried {
+            story.tell(
+                "tried",
+                format!("{}, {}: {}", self.along.at(attempt.value), attempt.kick(), attempt.outcome),
+            );
+        }
+        for branch in &self.branches {
+            story.tell("branch", format!("{} from {}", branch.branch, branch.from));
+            branch.ends.iter().for_each(|end| story.tell("end", end.clone()));
+        }
+        Some(story)
+    }
+}

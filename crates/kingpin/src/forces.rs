@@ -1,0 +1,250 @@
+//! Forces along a motion that rolls: of the ground on the wheel and of the springs and dampers on the king pin, with the power that
+//! the dampers take.
+//!
+//! They follow from the momentum balances, in which all accelerations are known from the vector field, and so in the same way whether
+//! the king pin is elastic or rigid. Without a tyre
+//!
+//! ```text
+//! F1 = M V' - m Omega^2           F2 = (J Omega' + m V Omega + c_psi (Omega - omega) - k_psi psi)/l
+//! T1 = -(J_wxi/R^2) V'            T2 = (m_w + m_c) V Omega + m Omega' - F2
+//! ```
+//!
+//! and with one, whose law gives `T2`,
+//!
+//! ```text
+//! F1 = M V1' - (m_w + m_c) V2 Omega - m Omega^2           F2 = (m_w + m_c) (V2' + V1 Omega) + m Omega' - T2
+//! ```
+
+use crate::active::ActiveParameters;
+use crate::error::KingpinError;
+use crate::parameters::Key;
+use crate::rolling_model::RollingModel;
+use crate::uniform_motion::UniformMotion;
+use crate::wheel::Wheel;
+use arclength::cycle::Orbit;
+use arclength::{Dual, Scalar, VectorField};
+
+/// The forces at a state, in the body frame of the caster, in N.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Forces<T> {
+    /// `T1` and `T2`, of the ground on the wheel along and across the caster.
+    pub ground: [T; 2],
+    /// `F1` and `F2`, on the king pin along and across the caster.
+    pub king_pin: [T; 2],
+    /// What the dampers at the king pin and about it take, in W.
+    pub damper_power: T,
+}
+
+/// What the forces need of a motion.
+struct Motion<T> {
+    psi: T,
+    yaw_rate: T,
+    yaw_acceleration: T,
+    /// `u'` and `q'`.
+    king_pin_speeds: [T; 2],
+    /// `V` and `V'`, with a tyre `V1` and `V1'`.
+    forward: [T; 2],
+    /// With a tyre `V2`, `V2'` and `T2`.
+    tyre: Option<[T; 3]>,
+}
+
+impl<T: Scalar> Forces<T> {
+    fn of(active: &ActiveParameters, parameters: &[T], motion: &Motion<T>) -> Self {
+        let value = |key| active.value(key, parameters);
+        let (_, omega) = active.towing(parameters);
+        let mass = value(Key::MW) + value(Key::MC);
+        let radius = value(Key::WheelRadius);
+        let spin = value(Key::JWxi) / (radius * radius);
+        let (l, arm) = (value(Key::L), value(Key::L) - value(Key::LC));
+        let static_moment = value(Key::MC) * arm;
+        let Motion { psi, yaw_rate, yaw_acceleration, .. } = *motion;
+        let [forward, forward_acceleration] = motion.forward;
+        let turning = yaw_rate - omega;
+        let along = (mass + spin) * forward_acceleration - static_moment * yaw_rate * yaw_rate;
+        let centripetal = mass * forward * yaw_rate + static_moment * yaw_acceleration;
+        let (king_pin, lateral) = match motion.tyre {
+            Some([lateral, lateral_acceleration, force]) => {
+                let along = along - mass * lateral * yaw_rate;
+                ([along, mass * lateral_acceleration + centripetal - force], force)
+            }
+            None => {
+                let inertia = value(Key::JCz) + value(Key::JWzeta) + static_moment * arm;
+                let about_king_pin = value(Key::CPsi) * turning - value(Key::KPsi) * psi;
+                let moment = inertia * yaw_acceleration + static_moment * forward * yaw_rate + about_king_pin;
+                let across = moment / l;
+                ([along, across], centripetal - across)
+            }
+        };
+        let [u_rate, q_rate] = motion.king_pin_speeds;
+        // A direction in which the king pin is rigid has no speed, whatever its damper.
+        let power = |key, speed: T| value(key) * speed * speed;
+        Self {
+            ground: [-(spin * forward_acceleration), lateral],
+            king_pin,
+            damper_power: power(Key::CU, u_rate) + power(Key::CQ, q_rate) + power(Key::CPsi, turning),
+        }
+    }
+}
+
+impl RollingModel {
+    /// The forces at a state of the vector field.
+    pub(crate) fn forces<T: Scalar>(&self, state: &[T], parameters: &[T]) -> Forces<T> {
+        let zero = T::zero();
+        match self {
+            Self::Elastic(wheel) => {
+                let mut rates = [zero; 5];
+                wheel.evaluate(state, parameters, &mut rates);
+                let motion = Motion {
+                    psi: state[2],
+                    yaw_rate: state[4],
+                    yaw_acceleration: rates[4],
+                    king_pin_speeds: [rates[0], rates[1]],
+                    forward: [state[3], rates[3]],
+                    tyre: None,
+                };
+                Forces::of(wheel.active_parameters(), parameters, &motion)
+            }
+            Self::Lateral(wheel) => {
+                let mut rates = [zero; 3];
+                let forward = wheel.forward_motion(state, parameters, &mut rates);
+                let motion = Motion {
+                    psi: state[1],
+                    yaw_rate: state[2],
+                    yaw_acceleration: rates[2],
+                    king_pin_speeds: [zero, rates[0]],
+                    forward,
+                    tyre: None,
+                };
+                Forces::of(wheel.active_parameters(), parameters, &motion)
+            }
+            Self::Tyre(wheel) => {
+                let full = wheel.full_state(state, parameters);
+                let (rates, lateral_force) = wheel.rates_and_lateral_force(state, parameters);
+                let motion = Motion {
+                    psi: full[2],
+                    yaw_rate: full[5],
+                    yaw_acceleration: rates[5],
+                    king_pin_speeds: [rates[0], rates[1]],
+                    forward: [full[3], rates[3]],
+                    tyre: Some([full[4], rates[4], lateral_force]),
+                };
+                Forces::of(wheel.active_parameters(), parameters, &motion)
+            }
+        }
+    }
+
+    /// The largest forces along a cycle of this vector field.
+    pub(crate) fn cycle_forces(&self, orbit: &Orbit, parameters: &[f64]) -> CycleForces {
+        let limit = self.wheel_at(parameters).map_or(f64::NAN, |wheel| wheel.static_limit());
+        if !self.determines_speed(orbit) {
+            let unknown = f64::NAN;
+            return CycleForces {
+                friction_max: unknown,
+                static_limit: limit,
+                king_pin_force_max: unknown,
+                damper_power: unknown,
+            };
+        }
+        let constants: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        // The squares are smooth where a force vanishes.
+        let largest = |components: fn(&Forces<Dual<f64, 1>>) -> [Dual<f64, 1>; 2]| {
+            let [_, largest] = orbit.range_of(|state| {
+                let [one, other] = components(&self.forces(state, &constants));
+                one * one + other * other
+            });
+            largest.sqrt()
+        };
+        CycleForces {
+            friction_max: largest(|forces| forces.ground),
+            static_limit: limit,
+            king_pin_force_max: largest(|forces| forces.king_pin),
+            damper_power: orbit.mean(|state| self.forces(state, parameters).damper_power),
+        }
+    }
+}
+
+/// The largest forces along a cycle, of the collocation polynomials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CycleForces {
+    /// Largest friction force of the ground on the wheel, in N. All forces are not numbers where, with `k_u = inf`, the caster comes near
+    /// `psi = pi/2`.
+    pub friction_max: f64,
+    /// `mu_s N`, the largest friction force with which the wheel rolls, in N; negative where the load lifts the wheel.
+    pub static_limit: f64,
+    /// Largest force on the king pin, in N.
+    pub king_pin_force_max: f64,
+    /// What all dampers take, the mean over a period in W.
+    pub damper_power: f64,
+}
+
+impl CycleForces {
+    /// The largest friction force over `mu_s N`; `None` where nothing presses the wheel down.
+    pub fn friction_ratio_max(&self) -> Option<f64> {
+        (self.static_limit > 0.0).then(|| self.friction_max / self.static_limit)
+    }
+
+    /// Whether the ground can supply the friction all along the cycle; `None` where that is not known.
+    pub fn rolls(&self) -> Option<bool> {
+        (!self.friction_max.is_nan()).then_some(self.friction_max < self.static_limit)
+    }
+}
+
+impl Wheel {
+    /// The largest forces along a cycle of the rolling wheel in its [free states](Self::free_states).
+    ///
+    /// # Errors
+    /// An orbit that is none of this wheel, [`KingpinError::Continuation`]; those of [`rolling_model`](Self::rolling_model).
+    pub fn cycle_forces(&self, orbit: &Orbit) -> Result<CycleForces, KingpinError> {
+        orbit.check(self.free_states().len())?;
+        Ok(self.rolling_model(&[])?.cycle_forces(orbit, &[]))
+    }
+}
+
+/// What the king pin bears and what the dampers take at a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KingPinLoad {
+    /// Force on the king pin in N.
+    pub force: f64,
+    /// What all dampers take, in W.
+    pub damper_power: f64,
+}
+
+impl Wheel {
+    /// The load of the king pin at [all states](Self::states) of a motion that rolls. Dry friction about the king pin is no damper.
+    ///
+    /// # Errors
+    /// Those of [`rolling_model`](Self::rolling_model).
+    ///
+    /// # Panics
+    /// Where there are fewer states than the wheel has.
+    pub fn king_pin_loads<'a>(
+        &self,
+        states: impl IntoIterator<Item = &'a [f64]>,
+    ) -> Result<Vec<KingPinLoad>, KingpinError> {
+        let model = self.rolling_model(&[])?;
+        let load = |states: &[f64]| {
+            let forces = model.forces(&model.free_state(states), &[]);
+            let [along, across] = forces.king_pin;
+            KingPinLoad { force: along.hypot(across), damper_power: forces.damper_power }
+        };
+        Ok(states.into_iter().map(load).collect())
+    }
+}
+
+impl UniformMotion {
+    /// The forces of the uniform motion as those of a cycle of no size.
+    ///
+    /// # Errors
+    /// Those of [`rolling_model`](Wheel::rolling_model).
+    pub fn forces(&self) -> Result<CycleForces, KingpinError> {
+        let model = self.wheel().rolling_model(&[])?;
+        let forces = model.forces(&model.free_state(&self.states()), &[]);
+        let [along, across] = forces.king_pin;
+        Ok(CycleForces {
+            friction_max: self.contact_force().friction(),
+            static_limit: self.wheel().static_limit(),
+            king_pin_force_max: along.hypot(across),
+            damper_power: 0.0,
+        })
+    }
+}
