@@ -12,13 +12,19 @@ const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf";
 ///
 /// The least c_q and the least c_psi with which the uniform motion is stable at every speed from a thousandth of the one given
 /// to that one, each alone and both together, and the speed that decides. The wheel's own c_q and c_psi do not count. Large
-/// cycles that do not come from a Hopf point may take more damping; they are not sought here.
+/// cycles beside stable motion (an isola) may take more: they are followed from the Hopf points of weaker dampers along the speed, the
+/// damping and their folds in both, and the wheel is kicked at random; the result says what was searched, which is no proof that there
+/// are none.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Damper {
     /// Speed up to which the motion is to be stable
     #[arg(long, value_name = "v=VALUE")]
     up_to: Assignment,
+
+    /// Only what small motions take: large cycles are not sought
+    #[arg(long)]
+    small_motions: bool,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -33,7 +39,11 @@ impl Damper {
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare_without_picture()?;
-        let request = DamperRequest { wheel: self.wheel.request(), up_to: self.up_to.clone() };
+        let request = DamperRequest {
+            wheel: self.wheel.request(),
+            up_to: self.up_to.clone(),
+            small_motions: self.small_motions,
+        };
         let progress = ProgressDisplay::bar("dampers", output.is_quiet());
         let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)

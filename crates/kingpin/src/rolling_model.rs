@@ -140,6 +140,15 @@ impl RollingModel {
         }
     }
 
+    /// How far a cycle of this vector field is from where the equations cease to hold, [`Wheel::border_of_cycles`].
+    pub(crate) fn distance_from_border(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
+        match self {
+            Self::Elastic(_) => None,
+            Self::Lateral(_) => Some(orbit.range_of(|state| state[1].cos())[0]),
+            Self::Tyre(wheel) => Some(wheel.smallest_speed_ratio(orbit, parameters)),
+        }
+    }
+
     /// That the wheel rolls forwards all along a cycle of this vector field, if it has a tyre.
     pub(crate) fn check_forwards(&self, orbit: &Orbit, parameters: &[f64]) -> Result<(), KingpinError> {
         match self.smallest_speed_ratio(orbit, parameters) {

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 /// A branch with the label of what it starts from.
 #[derive(Debug)]
-pub(super) struct FollowedBranch {
+pub(crate) struct FollowedBranch {
     /// The label of what it starts from, and what was done there.
     pub origin: String,
     /// The Hopf point that it starts from.
@@ -25,7 +25,7 @@ pub(super) struct FollowedBranch {
 ///
 /// # Errors
 /// [`Error::Wheel`].
-pub(super) fn from_hopf_points(
+pub(crate) fn from_hopf_points(
     points: &[HopfPoint],
     only: Option<usize>,
     along: Along,

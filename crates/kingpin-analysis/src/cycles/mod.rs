@@ -6,6 +6,7 @@ mod point;
 mod request;
 mod result;
 
+pub(crate) use followed::from_hopf_points;
 pub use point::CyclePointResult;
 pub use request::{CyclesAnalysis, CyclesRequest};
 pub use result::{BranchResult, CyclesResult};

@@ -14,7 +14,7 @@ use arclength::branch::LabelCounter;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::{Along, SPEED_MONITOR};
+use kingpin::branches::Along;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::readable;
@@ -149,7 +149,8 @@ impl CyclesResult {
             };
             let [first, second] = &branch.cycles.stops;
             let varying = std::slice::from_ref(&along);
-            let monitors = [SPEED_MONITOR.to_owned()];
+            let border = branch.cycles.wheel.border_of_cycles();
+            let monitors: Vec<String> = border.iter().map(|(words, _)| (*words).to_owned()).collect();
             let first = match (first, &branch.hopf) {
                 (Some(stop), _) => End::monitored(Some(stop), varying, &monitors, last(points.first())),
                 (None, Some(hopf)) => End {

@@ -11,6 +11,28 @@ fn points(result: &Value) -> &Vec<Value> {
     result["points"].as_array().unwrap()
 }
 
+/// Where the isola shrinks to a point, by the study of it: a polynomial through folds at exact speeds.
+#[test]
+fn the_damper_without_isola_is_that_at_which_the_isola_dies() {
+    let result = Folder::new().json("damper --up-to v=3 -s l=0.04 -s r=inf -s k_u=inf -q");
+    let found = &result["isola_free"]["c_q"];
+    assert_eq!(found["decided_by_large_cycles"], true);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    assert!((number(&found["damping"]) / 0.649059942 - 1.0).abs() < 1e-6, "{found}");
+    assert!((number(&found["last_cycle"]["speed"]) / 0.883556972 - 1.0).abs() < 1e-4, "{found}");
+    assert!((number(&found["last_cycle"]["psi_max"]) / 1.02609266 - 1.0).abs() < 1e-4, "{found}");
+    assert!(number(&result["c_q"]) < 0.07);
+}
+
+/// The equations are singular there, and branches crept towards it for ever.
+#[test]
+fn a_branch_ends_where_the_caster_lies_across() {
+    let result =
+        Folder::new().json("cycles -s l=0.04 -s r=inf -s k_u=inf -s c_psi=0.0021 --along v=0.2:80 -q");
+    let last = result["points"].as_array().unwrap().last().unwrap().clone();
+    assert!((last["psi_max"].as_f64().unwrap().cos() - 1e-3).abs() < 1e-8, "{last}");
+}
+
 #[test]
 fn the_isola_by_hand() {
     let folder = Folder::new();

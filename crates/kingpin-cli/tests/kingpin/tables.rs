@@ -20,14 +20,15 @@ fn real_wheels() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
         let straight = Folder::new().succeed(&format!("stability --wheel {file}/{wheel}.toml"));
         insta::assert_snapshot!(format!("stability_{wheel}"), straight.output);
-        let damper = Folder::new().succeed(&format!("damper --up-to v=3 -q --wheel {file}/{wheel}.toml"));
+        let damper = Folder::new()
+            .succeed(&format!("damper --up-to v=3 --small-motions -q --wheel {file}/{wheel}.toml"));
         insta::assert_snapshot!(format!("damper_{wheel}"), damper.output);
     }
 }
 
 #[test]
 fn damper() {
-    insta::assert_snapshot!(Folder::new().succeed("damper --up-to v=30 -q").output);
+    insta::assert_snapshot!(Folder::new().succeed("damper --up-to v=30 --small-motions -q").output);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Curves of Hopf points, and of folds, period doublings and torus bifurcations of cycles, in two parameters of the wheel.
 
-use super::{Along, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
+use super::{Along, HopfPoint};
 use crate::{KingpinError, RollingModel, Wheel};
 use arclength::branch::{Monitor, SpecialKind, Unlocated, WithParameters};
 use arclength::continuation::{Settings, Stop};
@@ -124,12 +124,15 @@ impl Wheel {
     ) -> Result<CycleCurve, KingpinError> {
         let (model, values) = self.in_plane(plane)?;
         model.check_forwards(orbit, &values)?;
-        let slowest = Monitor::new(SPEED_MONITOR, |point: &CycleLocusPoint| {
-            model.smallest_speed_ratio(&point.orbit, &point.values)
-        })
-        .until(&[SLOWEST_ON_CYCLES]);
         let curve = CycleLocus::of(&model);
-        let curve = if matches!(model, RollingModel::Tyre(_)) { curve.monitor(slowest) } else { curve };
+        let curve = match self.border_of_cycles() {
+            Some((words, end)) => {
+                let to_border =
+                    |point: &CycleLocusPoint| model.distance_from_border(&point.orbit, &point.values);
+                curve.monitor(Monitor::new(words, to_border).until(&[end]))
+            }
+            None => curve,
+        };
         let branch = curve
             .from_cycle(kind, orbit, &values)
             .along(plane[0].followed().name(), plane[0].range())

@@ -1,7 +1,7 @@
 //! Limit cycles of the rolling wheel along a parameter.
 
-use super::{Along, FRICTION_MONITOR, HopfPoint, SLOWEST_ON_CYCLES, SPEED_MONITOR};
-use crate::{KingpinError, RollingModel, Tyre, Wheel};
+use super::{Along, FRICTION_MONITOR, HopfPoint};
+use crate::{KingpinError, Tyre, Wheel};
 use arclength::branch::{Monitor, SpecialKind, Unlocated};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
@@ -121,16 +121,18 @@ impl Wheel {
         if let CycleStart::Orbit(orbit) = &start {
             model.check_forwards(orbit, &[along.convert(value)])?;
         }
-        let slowest = Monitor::new(SPEED_MONITOR, |point: &CyclePoint| {
-            model.smallest_speed_ratio(&point.orbit, &[point.value])
-        })
-        .until(&[SLOWEST_ON_CYCLES]);
         let used = Monitor::new(FRICTION_MONITOR, |point: &CyclePoint| {
             model.cycle_forces(&point.orbit, &[point.value]).friction_ratio_max()
         })
         .mark(&[1.0]);
         let cycles = Cycles::of(&model, start);
-        let cycles = if matches!(model, RollingModel::Tyre(_)) { cycles.monitor(slowest) } else { cycles };
+        let cycles = match self.border_of_cycles() {
+            Some((words, end)) => {
+                let to_border = |point: &CyclePoint| model.distance_from_border(&point.orbit, &[point.value]);
+                cycles.monitor(Monitor::new(words, to_border).until(&[end]))
+            }
+            None => cycles,
+        };
         // Under the law of a brush the ground never has to supply more than there is.
         let cycles = if self.tyre() == Tyre::Brush { cycles } else { cycles.monitor(used) };
         let mut branch = cycles

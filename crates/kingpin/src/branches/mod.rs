@@ -13,7 +13,7 @@ pub use curves::{CurveOptions, CycleCurve, HopfCurve};
 pub use cycles::{CycleOptions, WheelCycles};
 pub use hopf::{HopfPoint, HopfSearch, MotionBranch};
 
-use crate::{Key, KingpinError, Wheel};
+use crate::{Key, KingpinError, Tyre, Wheel};
 use arclength::branch::WithParameters;
 use arclength::continuation::Stop;
 
@@ -24,6 +24,14 @@ pub const SPEED_MONITOR: &str =
 
 /// What is recorded along branches of cycles, in words: where it is 1, a cycle is located.
 pub const FRICTION_MONITOR: &str = "the largest friction force over mu_s N";
+
+/// What ends branches and curves of cycles of a wheel with lateral elasticity only, in words: they are followed as long as this is
+/// above [`SMALLEST_COSINE`].
+pub const COSINE_MONITOR: &str =
+    "the smallest cos(psi) on the cycles, without which V does not follow from q, psi and Omega,";
+
+/// The smallest `cos(psi)` of cycles with lateral elasticity only, at which their branches and curves end.
+pub const SMALLEST_COSINE: f64 = 1e-3;
 
 /// The smallest `V1/v` of cycles of a wheel with a tyre, at which their branches and curves end.
 pub const SLOWEST_ON_CYCLES: f64 = 0.01;
@@ -42,6 +50,17 @@ pub struct Along {
     key: Key,
     start: f64,
     end: f64,
+}
+
+impl Wheel {
+    /// What ends branches of its cycles where its equations cease to hold, in words, and the value at which they end; nothing where
+    /// they always hold.
+    pub fn border_of_cycles(&self) -> Option<(&'static str, f64)> {
+        if self.tyre() != Tyre::Rigid {
+            return Some((SPEED_MONITOR, SLOWEST_ON_CYCLES));
+        }
+        self.has_lateral_elasticity_only().then_some((COSINE_MONITOR, SMALLEST_COSINE))
+    }
 }
 
 impl Along {

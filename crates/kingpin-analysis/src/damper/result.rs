@@ -1,0 +1,275 @@
+//! The smallest dampers as a result.
+
+use super::kicks::KickedWheels;
+use super::large_cycles::LargeCycles;
+use crate::description;
+use crate::neglected_dry_friction::NeglectedDryFriction;
+use crate::parameters::parameters_of;
+use kingpin::{CycleForces, Key, Wheel};
+use kingpin_report::numbers::{readable, significant};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
+use serde::Serialize;
+use std::io::{self, Write};
+
+/// The smallest dampers.
+#[derive(Debug, Serialize)]
+pub struct DamperResult {
+    /// The wheel without its dampers.
+    #[serde(skip)]
+    pub wheel: Wheel,
+    /// What the dampers are for.
+    pub requirement: &'static str,
+    /// The speed in m/s up to which the uniform motion is to be stable.
+    pub up_to: f64,
+    /// The smallest lateral damper alone, in N s/m; nothing where none was found that is enough.
+    pub c_q: Option<f64>,
+    /// The smallest damper about the king pin alone, in N m s/rad.
+    pub c_psi: Option<f64>,
+    /// The speeds that decide.
+    pub corner: Corner,
+    /// Both dampers together.
+    pub front: Front,
+    /// What it takes that no large cycle is found either, each damper alone; nothing where none was sought.
+    pub isola_free: Option<IsolaFree>,
+    /// Dry friction about the king pin that was left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction: Option<NeglectedDryFriction>,
+}
+
+/// Speeds in m/s at which the motion is unstable with a weaker damper; nothing where none is needed.
+#[derive(Debug, Serialize)]
+pub struct Corner {
+    /// Of the lateral damper.
+    pub c_q: Option<f64>,
+    /// Of the one about the king pin.
+    pub c_psi: Option<f64>,
+}
+
+/// What it takes that no large cycle is found.
+#[derive(Debug, Serialize)]
+pub struct IsolaFree {
+    /// The lateral damper alone; nothing where none is enough for small motions.
+    pub c_q: Option<WithoutCycles>,
+    /// The damper about the king pin alone.
+    pub c_psi: Option<WithoutCycles>,
+}
+
+/// The smallest damper with which no large cycle was found. What was searched is no proof that there is none.
+#[derive(Debug, Serialize)]
+pub struct WithoutCycles {
+    /// The damper in the unit of its key; nothing where there were cycles with every damper that was tried.
+    pub damping: Option<f64>,
+    /// Whether large cycles decide: they last longer than small ones are born.
+    pub decided_by_large_cycles: bool,
+    /// The cycle that lasts longest: where large cycles decide, there the last of them dies.
+    pub last_cycle: Option<LastCycleResult>,
+    /// Branches of cycles that were followed.
+    pub branches: usize,
+    /// Curves of folds that were followed.
+    pub curves: usize,
+    /// Largest damper that was tried.
+    pub largest: f64,
+    /// Why some branches and curves were not followed.
+    pub problems: Vec<String>,
+    /// What became of strong random kicks with that damper; nothing where none were.
+    pub kicked: Option<KickedWheels>,
+}
+
+/// A cycle at the largest damping at which one was found.
+#[derive(Debug, Serialize)]
+pub struct LastCycleResult {
+    /// Damping.
+    pub damping: f64,
+    /// Speed in m/s.
+    pub speed: f64,
+    /// Period in s.
+    pub period: f64,
+    /// Smallest caster angle in rad.
+    pub psi_min: f64,
+    /// Largest caster angle in rad.
+    pub psi_max: f64,
+    /// Largest friction force in N.
+    pub friction_max: Option<f64>,
+    /// Largest force on the king pin in N.
+    pub king_pin_force_max: Option<f64>,
+    /// What the damper takes, the mean over a period in W: the heat in it.
+    pub damper_power: Option<f64>,
+}
+
+impl WithoutCycles {
+    /// What was found of one damper.
+    pub(super) fn new(
+        damping: Option<f64>,
+        decisive: bool,
+        cycles: LargeCycles,
+        forces: Option<CycleForces>,
+        kicked: Option<KickedWheels>,
+    ) -> Self {
+        let known =
+            |value: fn(&CycleForces) -> f64| forces.as_ref().map(value).filter(|force| force.is_finite());
+        let last_cycle = cycles.last.as_ref().map(|last| LastCycleResult {
+            damping: last.damping,
+            speed: last.speed,
+            period: last.period,
+            psi_min: last.angles[0],
+            psi_max: last.angles[1],
+            friction_max: known(|forces| forces.friction_max),
+            king_pin_force_max: known(|forces| forces.king_pin_force_max),
+            damper_power: known(|forces| forces.damper_power),
+        });
+        Self {
+            damping,
+            decided_by_large_cycles: decisive,
+            last_cycle,
+            branches: cycles.branches,
+            curves: cycles.curves,
+            largest: cycles.largest,
+            problems: cycles.problems,
+            kicked,
+        }
+    }
+
+    /// What is said of it.
+    fn write(&self, key: Key, name: &str, out: &mut dyn Write) -> io::Result<()> {
+        let quantity = |damping: f64| description::quantity(key, damping);
+        match self.damping {
+            None => writeln!(
+                out,
+                "{name} alone: cycles with every damper that was tried, up to {}",
+                quantity(self.largest)
+            )?,
+            Some(damping) if !self.decided_by_large_cycles => {
+                writeln!(out, "{name} alone: {} at least, no large cycle lasts longer", quantity(damping))?;
+            }
+            Some(damping) => writeln!(out, "{name} alone: {} at least", quantity(damping))?,
+        }
+        if let Some(last) =
+            self.last_cycle.as_ref().filter(|_| self.damping.is_none() || self.decided_by_large_cycles)
+        {
+            write!(
+                out,
+                "  the last cycle: v = {} m/s, psi from {} to {} rad, period {} s",
+                readable(last.speed),
+                significant(last.psi_min, 4),
+                significant(last.psi_max, 4),
+                significant(last.period, 5)
+            )?;
+            if let (Some(force), Some(power)) = (last.king_pin_force_max, last.damper_power) {
+                write!(
+                    out,
+                    ", king-pin force {} N, {} W in the damper",
+                    significant(force, 3),
+                    significant(power, 3)
+                )?;
+            }
+            writeln!(out)?;
+        }
+        write!(
+            out,
+            "  {} branches of cycles and {} curves of folds were followed",
+            self.branches, self.curves
+        )?;
+        match &self.kicked {
+            Some(KickedWheels { kicks, returned, .. }) if returned == kicks => {
+                writeln!(out, "; all {kicks} strong random kicks return")?;
+            }
+            Some(KickedWheels { kicks, returned, ends, all_return }) => {
+                let ends: Vec<&str> = ends.iter().map(|fate| fate.0.name()).collect();
+                writeln!(
+                    out,
+                    "; {returned} of {kicks} strong random kicks return, the others end in {}",
+                    ends.join(", ")
+                )?;
+                match all_return {
+                    Some(damping) => writeln!(out, "  all return with {}", quantity(*damping))?,
+                    None => writeln!(out, "  with no stronger damper that was tried do all return")?,
+                }
+            }
+            None => writeln!(out)?,
+        }
+        for problem in &self.problems {
+            writeln!(out, "  not followed: {problem}")?;
+        }
+        Ok(())
+    }
+}
+
+/// What the dampers are for.
+pub(super) const REQUIREMENT: &str = "no shimmy is born: the uniform motion is stable at every speed";
+
+/// Pairs of dampers of which neither may be weaker.
+#[derive(Debug, Default, Serialize)]
+pub struct Front {
+    /// Lateral ones, in N s/m.
+    pub c_q: Vec<f64>,
+    /// The least beside each about the king pin, in N m s/rad.
+    pub c_psi: Vec<f64>,
+}
+
+impl Report for DamperResult {
+    fn schema(&self) -> Schema {
+        Schema::first("kingpin.damper")
+    }
+
+    fn parameters(&self) -> Parameters {
+        parameters_of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi])
+    }
+
+    fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let wheel = description::of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi]);
+        writeln!(out, "dampers for stability up to v = {} m/s at {wheel}\n", readable(self.up_to))?;
+        for (key, name, damping, speed) in [
+            (Key::CQ, "lateral damper", self.c_q, self.corner.c_q),
+            (Key::CPsi, "damper about the king pin", self.c_psi, self.corner.c_psi),
+        ] {
+            match (damping, speed) {
+                (None, _) => writeln!(out, "{name} alone: none was found that is enough")?,
+                (Some(_), None) => writeln!(out, "{name} alone: none is needed")?,
+                (Some(damping), Some(speed)) => writeln!(
+                    out,
+                    "{name} alone: {} at least; v = {} m/s decides",
+                    description::quantity(key, damping),
+                    readable(speed)
+                )?,
+            }
+        }
+        if self.front.c_q.len() > 1 {
+            writeln!(out, "\nboth together:\n")?;
+            let mut table = Table::new(["c_q (N s/m)", "c_psi (N m s/rad)"]);
+            for (c_q, c_psi) in self.front.c_q.iter().zip(&self.front.c_psi) {
+                table.row([(*c_q).into(), (*c_psi).into()]);
+            }
+            table.write(out)?;
+        }
+        match &self.isola_free {
+            None => writeln!(
+                out,
+                "\nsmall motions die out then; large cycles beside them (an isola) may take more and were not sought"
+            )?,
+            Some(isola_free) => {
+                writeln!(
+                    out,
+                    "\nsmall motions die out then; that no large cycle is found beside them (an isola) takes\n"
+                )?;
+                for (key, name, found) in [
+                    (Key::CQ, "lateral damper", &isola_free.c_q),
+                    (Key::CPsi, "damper about the king pin", &isola_free.c_psi),
+                ] {
+                    if let Some(found) = found {
+                        found.write(key, name, out)?;
+                    }
+                }
+                writeln!(out, "\nwhat was searched is no proof that there is none")?;
+            }
+        }
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
+    }
+
+    fn columns(&self) -> Columns {
+        Columns::new()
+            .numbers("c_q", self.front.c_q.iter().copied())
+            .unit("N s/m")
+            .numbers("c_psi", self.front.c_psi.iter().copied())
+            .unit("N m s/rad")
+    }
+}
