@@ -135,31 +135,46 @@ impl RollingModel {
 
     /// The largest forces along a cycle of this vector field.
     pub(crate) fn cycle_forces(&self, orbit: &Orbit, parameters: &[f64]) -> CycleForces {
-        let limit = self.wheel_at(parameters).map_or(f64::NAN, |wheel| wheel.static_limit());
-        if !self.determines_speed(orbit) {
-            let unknown = f64::NAN;
-            return CycleForces {
-                friction_max: unknown,
-                static_limit: limit,
-                king_pin_force_max: unknown,
-                damper_power: unknown,
-            };
-        }
-        let constants: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
-        // The squares are smooth where a force vanishes.
-        let largest = |components: fn(&Forces<Dual<f64, 1>>) -> [Dual<f64, 1>; 2]| {
-            let [_, largest] = orbit.range_of(|state| {
-                let [one, other] = components(&self.forces(state, &constants));
-                one * one + other * other
-            });
-            largest.sqrt()
+        let damper_power = if self.determines_speed(orbit) {
+            orbit.mean(|state| self.forces(state, parameters).damper_power)
+        } else {
+            f64::NAN
         };
         CycleForces {
-            friction_max: largest(|forces| forces.ground),
-            static_limit: limit,
-            king_pin_force_max: largest(|forces| forces.king_pin),
-            damper_power: orbit.mean(|state| self.forces(state, parameters).damper_power),
+            friction_max: self.largest(orbit, parameters, |forces| forces.ground),
+            static_limit: self.static_limit(parameters),
+            king_pin_force_max: self.largest(orbit, parameters, |forces| forces.king_pin),
+            damper_power,
         }
+    }
+
+    /// The largest friction force along a cycle over `mu_s N`; `None` where nothing presses the wheel down.
+    pub(crate) fn friction_ratio_max(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
+        let limit = self.static_limit(parameters);
+        (limit > 0.0).then(|| self.largest(orbit, parameters, |forces| forces.ground) / limit)
+    }
+
+    fn static_limit(&self, parameters: &[f64]) -> f64 {
+        self.wheel_at(parameters).map_or(f64::NAN, |wheel| wheel.static_limit())
+    }
+
+    /// The largest length of a force along a cycle; not a number where the states do not determine the speed.
+    fn largest(
+        &self,
+        orbit: &Orbit,
+        parameters: &[f64],
+        force: fn(&Forces<Dual<f64, 1>>) -> [Dual<f64, 1>; 2],
+    ) -> f64 {
+        if !self.determines_speed(orbit) {
+            return f64::NAN;
+        }
+        let constants: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        // The square is smooth where the force vanishes.
+        let [_, square] = orbit.range_of(|state| {
+            let [along, across] = force(&self.forces(state, &constants));
+            along * along + across * across
+        });
+        square.sqrt()
     }
 }
 

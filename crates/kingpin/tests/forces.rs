@@ -199,3 +199,40 @@ fn hopf_points_tell_the_stable_side_and_how_cycles_grow() {
         assert!(seen.contains(&mode), "{seen:?}");
     }
 }
+
+#[test]
+fn with_a_tyre_the_king_pin_bears_what_its_springs_give() {
+    let text = "tyre = \"linear\"\nsigma = 0.03\na = 0.01\nC_alpha = 400.0\nkappa = 0.003\nF_Az = -20.0\nr = 1.0\nc_u = 0.02\nc_q = 0.03";
+    let wheel = wheel(text);
+    let mut checked = 0;
+    for cycle in cycles(&wheel, (1.0, 40.0), &[]).iter().step_by(6) {
+        let wheel = wheel.with(Key::V, cycle.value).unwrap();
+        let forces = wheel.cycle_forces(&cycle.orbit).unwrap();
+        let get = |key| wheel.get(key);
+        let omega = wheel.towing_yaw_rate();
+        let (mut force, mut friction, mut damping) = (0.0_f64, 0.0_f64, 0.0);
+        for (_, state) in cycle.orbit.sample(SAMPLES) {
+            let [u, q, psi, forward, lateral, yaw_rate, deflection] = state[..] else {
+                panic!("seven states")
+            };
+            let (sine, cosine) = psi.sin_cos();
+            let across = lateral + get(Key::L) * yaw_rate;
+            let u_rate = forward * cosine + across * sine - get(Key::V) + omega * q;
+            let q_rate = across * cosine - forward * sine - omega * u;
+            let longitudinal = get(Key::KU) * u + get(Key::CU) * u_rate;
+            force = force.max(longitudinal.hypot(get(Key::KQ) * q + get(Key::CQ) * q_rate));
+            damping += get(Key::CU) * u_rate * u_rate + get(Key::CQ) * q_rate * q_rate;
+            // The lateral force of the linear law is a lower bound of the friction.
+            friction = friction.max((get(Key::CAlpha) * deflection / get(Key::Sigma)).abs());
+        }
+        assert!(
+            (forces.king_pin_force_max / force - 1.0).abs() < 2e-5,
+            "{} {force}",
+            forces.king_pin_force_max
+        );
+        assert!((forces.damper_power / (damping / SAMPLES as f64) - 1.0).abs() < 1e-7);
+        assert!(forces.friction_max >= friction && forces.friction_max < 1.1 * friction + 1.0);
+        checked += 1;
+    }
+    assert!(checked > 2, "{checked}");
+}

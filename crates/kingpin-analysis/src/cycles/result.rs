@@ -123,14 +123,14 @@ impl CyclesResult {
         let mut all = Vec::new();
         let mut branches = Vec::new();
         let mut rolling_limits = 0;
-        for (number, mut branch) in (1..).zip(followed) {
+        for (number, branch) in (1..).zip(followed) {
             let mut points = Vec::new();
             if let Some(hopf) = &branch.hopf {
                 points.push(at_hopf(number, hopf, branch.origin.clone())?);
             }
-            for cycle in std::mem::take(&mut branch.cycles.points) {
+            for (index, cycle) in branch.cycles.points.into_iter().enumerate() {
                 // Numbered along the whole result.
-                let label = if branch.cycles.is_rolling_limit(&cycle) {
+                let label = if branch.cycles.rolling_limits.contains(&index) {
                     rolling_limits += 1;
                     Some(format!("{ROLLING_LIMIT}{rolling_limits}"))
                 } else {

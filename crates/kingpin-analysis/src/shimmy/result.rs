@@ -156,26 +156,36 @@ impl ShimmyResult {
     }
 }
 
+/// What of a point decides where a branch is stable.
+#[derive(Clone, Copy)]
+struct Place {
+    value: f64,
+    stable: bool,
+    bifurcates: bool,
+}
+
+impl From<&&ShimmyPointResult> for Place {
+    fn from(point: &&ShimmyPointResult) -> Self {
+        Self { value: point.value, stable: point.stable == Some(true), bifurcates: point.is_bifurcation() }
+    }
+}
+
 /// The parts of a branch, as intervals of the parameter, in which it is stable, from bifurcation to bifurcation.
-fn stable_parts(points: &[&ShimmyPointResult]) -> Vec<[f64; 2]> {
-    let is_stable = |index: usize| points[index].stable == Some(true);
+fn stable_parts(places: &[Place]) -> Vec<[f64; 2]> {
     let mut parts: Vec<[f64; 2]> = Vec::new();
-    for (index, point) in points.iter().enumerate() {
-        let before = index > 0 && is_stable(index - 1);
-        let after = index + 1 < points.len() && is_stable(index + 1);
-        let ends = point.is_bifurcation();
+    let mut goes_on = false;
+    for pair in places.windows(2) {
+        let [one, other] = [pair[0], pair[1]];
+        // Between a stable motion and a bifurcation, or another stable motion, every one is stable.
+        let stable = (one.stable && (other.stable || other.bifurcates)) || (one.bifurcates && other.stable);
         match parts.last_mut() {
-            Some([_, end]) if before && (ends || is_stable(index)) => *end = point.value,
-            _ if is_stable(index) || (ends && after) => parts.push([point.value; 2]),
+            Some([_, end]) if stable && goes_on => *end = other.value,
+            _ if stable => parts.push([one.value, other.value]),
             _ => {}
         }
-        // A bifurcation between two stable stretches ends one and begins the other.
-        if ends && before && after {
-            parts.push([point.value; 2]);
-        }
+        goes_on = stable;
     }
-    let ordered = parts.into_iter().map(|[one, other]| [one.min(other), one.max(other)]);
-    ordered.collect()
+    parts.into_iter().map(|[one, other]| [one.min(other), one.max(other)]).collect()
 }
 
 /// Why a branch ends.
@@ -227,8 +237,9 @@ impl Report for ShimmyResult {
                 }
             }
             table.write(out)?;
+            let places: Vec<Place> = points.iter().map(Place::from).collect();
             let part = |[low, high]: [f64; 2]| format!("from {} to {}", readable(low), readable(high));
-            let parts: Vec<String> = stable_parts(&points).into_iter().map(part).collect();
+            let parts: Vec<String> = stable_parts(&places).into_iter().map(part).collect();
             match &parts[..] {
                 [] => writeln!(out, "\nno stable shimmy on it")?,
                 parts => {
@@ -298,5 +309,27 @@ impl Report for ShimmyResult {
             branch.ends.iter().for_each(|end| story.tell("end", end.clone()));
         }
         Some(story)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stable_parts_reach_from_bifurcation_to_bifurcation() {
+        let place = |value: f64, word: char| Place { value, stable: word == 's', bifurcates: word == 'b' };
+        let parts = |words: &str| {
+            let places: Vec<Place> =
+                words.chars().enumerate().map(|(index, word)| place(index as f64, word)).collect();
+            stable_parts(&places)
+        };
+        assert_eq!(parts("ubssbuu"), [[1.0, 4.0]]);
+        assert_eq!(parts("ssuuss"), [[0.0, 1.0], [4.0, 5.0]]);
+        assert_eq!(parts("ssbss"), [[0.0, 4.0]]);
+        assert_eq!(parts("uubu"), [[0.0; 2]; 0]);
+        // A branch that turns back.
+        let back = [place(2.0, 's'), place(1.0, 's'), place(0.5, 'b')];
+        assert_eq!(stable_parts(&back), [[0.5, 2.0]]);
     }
 }

@@ -33,17 +33,28 @@ pub struct WheelCycles {
     pub stops: [Option<Stop<CycleEnd>>; 2],
     /// Changes of test functions behind which no special cycle could be located.
     pub unlocated: Vec<Unlocated>,
-    /// Values that were asked for, as they are found.
-    asked: Vec<f64>,
+    /// Indices of the cycles whose largest friction force is `mu_s N`: on one side of them the wheel rolls, on the other it cannot.
+    pub rolling_limits: Vec<usize>,
 }
 
-impl WheelCycles {
-    /// Whether the branch was searched for this cycle because there the largest friction force is `mu_s N`: on one side of it the wheel
-    /// rolls, on the other it cannot.
-    pub fn is_rolling_limit(&self, cycle: &CyclePoint) -> bool {
-        cycle.label.is_some_and(|label| label.kind == SpecialKind::Requested)
-            && !self.asked.contains(&cycle.value)
+/// Takes the label of a requested value off the cycles that were not asked for: the friction monitor has its value there. The others
+/// are numbered anew. Returns the indices of the former.
+fn take_rolling_limits(points: &mut [CyclePoint], asked: &[f64]) -> Vec<usize> {
+    let mut rolling_limits = Vec::new();
+    let mut number = 0;
+    for (index, point) in points.iter_mut().enumerate() {
+        let Some(label) = point.label.as_mut().filter(|label| label.kind == SpecialKind::Requested) else {
+            continue;
+        };
+        if asked.contains(&point.value) {
+            number += 1;
+            label.number = number;
+        } else {
+            point.label = None;
+            rolling_limits.push(index);
+        }
     }
+    rolling_limits
 }
 
 impl HopfPoint {
@@ -122,7 +133,7 @@ impl Wheel {
             model.check_forwards(orbit, &[along.convert(value)])?;
         }
         let used = Monitor::new(FRICTION_MONITOR, |point: &CyclePoint| {
-            model.cycle_forces(&point.orbit, &[point.value]).friction_ratio_max()
+            model.friction_ratio_max(&point.orbit, &[point.value])
         })
         .mark(&[1.0]);
         let cycles = Cycles::of(&model, start);
@@ -148,6 +159,8 @@ impl Wheel {
             })
             .run()?;
         branch.points.iter_mut().for_each(complete);
+        let asked: Vec<f64> = options.at.iter().map(|&value| along.as_found(value)).collect();
+        let rolling_limits = take_rolling_limits(&mut branch.points, &asked);
         for missed in &mut branch.unlocated {
             missed.between.iter_mut().flatten().for_each(|value| *value = along.convert(*value));
         }
@@ -157,7 +170,7 @@ impl Wheel {
             points: branch.points,
             stops: branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop))),
             unlocated: branch.unlocated,
-            asked: options.at.iter().map(|&value| along.as_found(value)).collect(),
+            rolling_limits,
         })
     }
 }

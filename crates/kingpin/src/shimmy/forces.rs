@@ -3,13 +3,16 @@
 //! A period is sampled at equal intervals within each of its passages, between which forces jump: the largest value is that of the
 //! parabola through three neighbours, a mean is Simpson's.
 
+use super::PeriodicSliding;
 use super::error::{Refusal, ShimmyError};
 use super::passage::Passage;
-use super::{PeriodicSliding, SAMPLES_PER_PERIOD};
 use crate::forces::CycleForces;
 use crate::sliding::model::{Equations, SlipState, slips};
 use crate::sliding::{Contact, Regime};
 use arclength::control::Control;
+
+/// Samples of a period: the largest value of the parabola through three of them is then exact to about 1e-10.
+const SAMPLES: usize = 4000;
 
 /// Forces and powers along a periodic motion with sliding phases.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +77,7 @@ impl PeriodicSliding {
     /// Times between the ends of a passage, an odd number of them.
     fn inner_times(&self, passage: &Passage) -> Vec<f64> {
         let share = passage.duration() / self.period;
-        let half = (0.5 * share * SAMPLES_PER_PERIOD as f64).ceil().max(1.0) as usize;
+        let half = (0.5 * share * SAMPLES as f64).ceil().max(1.0) as usize;
         let intervals = 2 * half;
         let time = |index| passage.start + passage.duration() * index as f64 / intervals as f64;
         let inside = (1..intervals).map(time).filter(|time| passage.start < *time && *time < passage.end);

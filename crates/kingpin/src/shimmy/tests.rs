@@ -459,6 +459,7 @@ fn the_towing_gives_what_dampers_and_sliding_take() {
             longitudinal.hypot(get(Key::KQ) * q + get(Key::CQ) * q_rate)
         };
         let largest = history.states.iter().map(force).fold(0.0, f64::max);
+        // The history misses the largest value by the curvature over its interval at most.
         let difference = found.forces.king_pin_force_max / largest - 1.0;
         assert!((-1e-9..1e-6).contains(&difference), "{difference}");
     }
