@@ -211,7 +211,9 @@ impl AnalysisError for Error {
             Self::Continuation(error) => matches!(error, arclength::Error::Invalid { .. }),
             Self::Start(error) => error.is_bad_request(),
             Self::Report(error) => error.is_bad_request(),
-            Self::Identification(error) => !matches!(error, IdentificationError::NoStart(_)),
+            Self::Identification(error) => {
+                !matches!(error, IdentificationError::NoStart(_) | IdentificationError::ManyMinima { .. })
+            }
             Self::Invalid(_)
             | Self::Set { .. }
             | Self::Simulation(_)

@@ -16,6 +16,8 @@ use serde::Serialize;
 
 /// Wheels that are drawn.
 const DRAWS: usize = 1000;
+/// The first of them, for what takes longer.
+const DRAWS_WITH_FRICTION: usize = 250;
 /// Fewest of them from which an interval can be told.
 const FEWEST_DRAWS: usize = 200;
 /// Parts of the draws outside a 95 per cent interval, on either side.
@@ -56,7 +58,7 @@ pub struct Consequences {
 }
 
 impl Consequences {
-    /// Those of estimates for a wheel that has them; `half_width` is that of a 95 per cent interval in standard errors.
+    /// Those of estimates for a wheel that has them.
     ///
     /// # Errors
     /// A motion that cannot be followed, an interruption.
@@ -68,15 +70,16 @@ impl Consequences {
     ) -> Result<Self, Error> {
         let distribution = identified.distribution.as_ref();
         let drawn = distribution.map(|distribution| distribution.wheels(wheel, DRAWS)).unwrap_or_default();
-        let speed = |of: &(dyn Fn(&Wheel) -> f64 + Sync)| from_samples(of(wheel), &drawn, of);
-        let critical_speed = speed(&critical_speed);
+        let critical_speed = from_samples(wheel, &drawn, &critical_speed);
         crate::error::unless_stopped(control)?;
         control.done(0.05);
         let has_friction =
             wheel.get(Key::MF) > 0.0 || identified.estimates.iter().any(|estimate| estimate.key == Key::MF);
         let is_straight = wheel.get(Key::TurningRadius).is_infinite() && wheel.tyre() == Tyre::Rigid;
         let with_friction = |wheel: &Wheel| wheel.critical_speed_with_friction().unwrap_or(f64::INFINITY);
-        let critical_speed_with_friction = (has_friction && is_straight).then(|| speed(&with_friction));
+        let fewer = &drawn[..drawn.len().min(DRAWS_WITH_FRICTION)];
+        let critical_speed_with_friction =
+            (has_friction && is_straight).then(|| from_samples(wheel, fewer, &with_friction));
         crate::error::unless_stopped(control)?;
         control.done(0.15);
         let takes_blow = with_blow
@@ -99,7 +102,8 @@ fn critical_speed(wheel: &Wheel) -> f64 {
     wheel.critical_speed().map_or_else(always, |critical| critical.speed)
 }
 
-fn from_samples(value: f64, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sync)) -> Consequence {
+fn from_samples(wheel: &Wheel, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sync)) -> Consequence {
+    let value = of(wheel);
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     if drawn.len() < FEWEST_DRAWS {
         return Consequence { value: finite(value), lower: None, upper: None, method: None, without: None };

@@ -20,8 +20,6 @@ use std::path::{Path, PathBuf};
 const DIGITS_OF_ERROR: i32 = 2;
 /// Digits of what has no error.
 const DIGITS: usize = 4;
-/// Standard deviations of the noise from which on a motion is one.
-const MOVES: f64 = 3.0;
 /// Part of the range of a motion below which what is left is rounding.
 const EXACT: f64 = 1e-8;
 /// Probability below which residuals are larger than the noise that was given explains.
@@ -123,12 +121,6 @@ pub struct FittedColumnResult {
 }
 
 impl FittedColumnResult {
-    /// Whether the fitted motion cannot be told from rest in the noise.
-    fn stands_still(&self) -> bool {
-        let [low, high] = extremes(&self.fitted);
-        high - low < MOVES * self.sigma
-    }
-
     /// Whether the values are met so exactly that no instrument can have measured them: what is left is rounding, and no noise.
     fn is_met(&self) -> bool {
         let [low, high] = extremes(&self.fitted);
@@ -249,12 +241,6 @@ impl FitResult {
                     "{}: from t = {} s on the fitted motion takes more than the static friction; the wheel may have slid",
                     record.file,
                     readable(time)
-                ));
-            }
-            if record.columns.iter().all(FittedColumnResult::stands_still) {
-                warnings.push(format!(
-                    "{}: nothing moves there beyond the noise, so that it tells nothing; begin where the caster swings",
-                    record.file
                 ));
             }
             for column in record.columns.iter().filter(|column| !column.noise && !column.is_met()) {

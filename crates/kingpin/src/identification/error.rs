@@ -29,7 +29,7 @@ pub enum IdentificationError {
         problem: &'static str,
     },
     /// A state that the wheel does not have.
-    #[error("`{given}` is no free state of the wheel; allowed: {allowed}")]
+    #[error("`{given}` is no state that can be given here; allowed: {allowed}")]
     UnknownState {
         /// What was given.
         given: String,
@@ -62,6 +62,15 @@ pub enum IdentificationError {
     /// No motion could be followed with the values to start from.
     #[error("no motion can be followed with the values to start from: {0}; set other ones")]
     NoStart(#[source] SimulationError),
+    /// The smallest sum of squares could not be made out.
+    #[error(
+        "the sum of squares has many minima: {returns} times a smaller one lay beside the smallest; estimate fewer parameters, or add \
+         samples"
+    )]
+    ManyMinima {
+        /// How often.
+        returns: usize,
+    },
     /// The computation was stopped.
     #[error(transparent)]
     Interrupted(#[from] Interrupted),

@@ -3,7 +3,7 @@
 use super::distributions::{chi_squared_tail, half_width};
 use super::error::IdentificationError;
 use super::information::Information;
-use super::interval::{Interval, IntervalMethod, Profile};
+use super::interval::{Interval, IntervalMethod};
 use super::least_squares::Minimum;
 use super::problem::{Problem, Unknown};
 use super::propagation::JointDistribution;
@@ -11,11 +11,10 @@ use super::record::Record;
 use super::whiteness::Whiteness;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
-use arclength::control::{Control, Interrupted};
-use rayon::prelude::*;
+use arclength::control::Control;
 
 /// Correlation from which on two parameters are hardly told apart.
-const HARDLY_SEPARATED: f64 = 0.95;
+const HARDLY_SEPARATED: f64 = 0.99;
 
 /// An estimated parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +102,11 @@ pub struct Identified {
     pub distribution: Option<JointDistribution>,
 }
 
+/// The number of values less that of the unknowns that are not held by a bound.
+pub(super) fn degrees_of_freedom(problem: &Problem<'_>, minimum: &Minimum, bounds: &[[f64; 2]]) -> usize {
+    problem.count() - minimum.free(bounds).len()
+}
+
 /// The names of unknowns: `k`, `psi at the start of record 1`, `zero of psi in record 1`.
 pub(super) fn names_of(unknowns: &[Unknown], records: &[Record]) -> Vec<String> {
     let name = |unknown: &Unknown| match *unknown {
@@ -118,7 +122,7 @@ pub(super) fn names_of(unknowns: &[Unknown], records: &[Record]) -> Vec<String> 
     unknowns.iter().map(name).collect()
 }
 
-/// The result of a fit; `known` says that all deviations of the noise were given.
+/// The result of a fit with its intervals; `known` says that all deviations of the noise were given.
 ///
 /// # Errors
 /// A motion that cannot be followed, an interruption.
@@ -126,29 +130,14 @@ pub(super) fn identified(
     problem: &Problem<'_>,
     minimum: &Minimum,
     bounds: &[[f64; 2]],
+    intervals: Vec<Interval>,
     known: bool,
     control: &Control<'_>,
 ) -> Result<Identified, IdentificationError> {
     let count = problem.keys.len();
-    let free = minimum.free(bounds);
-    let information = Information::of(minimum, &free);
-    let degrees_of_freedom = problem.count() - free.len();
+    let information = Information::of(minimum, &minimum.free(bounds));
+    let degrees_of_freedom = degrees_of_freedom(problem, minimum, bounds);
     let freedom = if known { f64::INFINITY } else { degrees_of_freedom as f64 };
-    let half_width = half_width(freedom);
-    let counter = control.count(count);
-    let interval = |index: usize| -> Result<Interval, Interrupted> {
-        let error = information.covariance(index, index).map(f64::sqrt);
-        let linear = error.map(|error| {
-            let change = |other| information.covariance(index, other).unwrap_or(0.0) / error;
-            (error, (0..minimum.unknowns.len()).map(change).collect())
-        });
-        let scale = problem.scale(problem.unknowns[index], minimum.unknowns[index]);
-        let profile = Profile { problem, minimum, bounds, index, linear, scale, half_width };
-        let interval = profile.interval(control)?;
-        counter.advance(1);
-        Ok(interval)
-    };
-    let intervals: Vec<Interval> = (0..count).into_par_iter().map(interval).collect::<Result<_, _>>()?;
     let distribution = distribution(problem, minimum, &intervals, freedom);
     let groups: Vec<Vec<usize>> = information.undetermined();
     let is_undetermined = |index: usize| groups.iter().any(|group| group.contains(&index));

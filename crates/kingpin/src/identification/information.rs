@@ -5,7 +5,7 @@ use super::singular_values::{SingularValues, dot};
 
 /// Singular value of the scaled Jacobian, relative to the largest, below which a combination is not determined. Derivatives are known
 /// to about a hundredth of it.
-const SINGULAR: f64 = 1e-7;
+const SINGULAR: f64 = 1e-6;
 /// Share of an unknown in such a combination from which on it is not determined itself.
 const SHARE: f64 = 1e-3;
 

@@ -16,8 +16,6 @@ const FIRST_DAMPING: f64 = 1e-3;
 const MOST_DAMPING: f64 = 1e16;
 /// Cosine of the angle between residuals and columns from which on they are orthogonal.
 const ORTHOGONAL: f64 = 1e-11;
-/// A relative reduction of the sum of squares that is not worth a step.
-const NO_REDUCTION: f64 = 1e-13;
 /// A relative change of the unknowns that is rounding.
 const NO_CHANGE: f64 = 1e-14;
 
@@ -40,6 +38,8 @@ pub(super) struct Limits<'a> {
     pub bounds: &'a [[f64; 2]],
     /// Most steps.
     pub steps: usize,
+    /// A relative reduction of the sum of squares that is not worth a step.
+    pub tolerance: f64,
 }
 
 /// Where the sum of squares is smallest.
@@ -126,7 +126,9 @@ pub(super) fn minimise<R: Residuals>(
             let size_of_unknowns =
                 free.iter().map(|&index| (scales[index] * best.unknowns[index]).powi(2)).sum::<f64>();
             let is_rounding = dot(&step, &step).sqrt() <= NO_CHANGE * size_of_unknowns.sqrt();
-            if is_rounding || strength > MOST_DAMPING || (predicted <= NO_REDUCTION * size * size && !is_cut)
+            if is_rounding
+                || strength > MOST_DAMPING
+                || (predicted <= limits.tolerance * size * size && !is_cut)
             {
                 best.converged = strength <= MOST_DAMPING;
                 return Ok(best);
@@ -214,7 +216,7 @@ mod tests {
 
     #[test]
     fn the_bottom_of_a_curved_valley_is_found() {
-        let limits = Limits { bounds: &[ANYTHING; 2], steps: 200 };
+        let limits = Limits { bounds: &[ANYTHING; 2], steps: 200, tolerance: 1e-13 };
         let found = minimise(&rosenbrock(), &[-1.2, 1.0], &limits, &Control::none()).unwrap();
         assert!(found.converged);
         assert!(found.unknowns.iter().all(|x| (x - 1.0).abs() < 1e-12), "{:?}", found.unknowns);
@@ -223,7 +225,7 @@ mod tests {
     #[test]
     fn a_bound_holds() {
         // On x <= 0.5 the smallest value lies at x = 0.5, y = 0.25.
-        let limits = Limits { bounds: &[[-5.0, 0.5], ANYTHING], steps: 200 };
+        let limits = Limits { bounds: &[[-5.0, 0.5], ANYTHING], steps: 200, tolerance: 1e-13 };
         let found = minimise(&rosenbrock(), &[-1.2, 1.0], &limits, &Control::none()).unwrap();
         assert!((found.unknowns[0] - 0.5).abs() < 1e-12 && (found.unknowns[1] - 0.25).abs() < 1e-8);
         assert_eq!(found.free(limits.bounds), [1]);
@@ -246,7 +248,7 @@ mod tests {
                 ]
             },
         );
-        let limits = Limits { bounds: &[ANYTHING; 2], steps: 500 };
+        let limits = Limits { bounds: &[ANYTHING; 2], steps: 500, tolerance: 1e-13 };
         let found = minimise(&problem, &[500.0, 0.0001], &limits, &Control::none()).unwrap();
         assert!(found.converged);
         assert!((found.unknowns[0] / 238.942_129_18 - 1.0).abs() < 1e-9);

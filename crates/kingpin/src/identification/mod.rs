@@ -40,13 +40,19 @@ use information::Information;
 use least_squares::{Limits, Minimum, minimise};
 use problem::{Problem, bounds, unknowns};
 
+/// How often a smaller sum of squares that is found beside the smallest one is gone on from.
+const MOST_RETURNS: usize = 10;
 /// Most repetitions of the fit for the deviations of the noise, and their relative change at which it ends.
 const MOST_REPETITIONS: usize = 30;
 const DEVIATION_TOLERANCE: f64 = 1e-5;
 /// Smallest deviation of a column, as a part of how far its values spread: that of a motion without noise is the error of the integration.
 const SMALLEST_DEVIATION: f64 = 1e-12;
+/// Samples from which on noise is told from motion.
+const ENOUGH_TO_TELL_NOISE: usize = 30;
 /// Steps of a repeated fit.
 const STEPS: usize = 100;
+/// Relative reduction of the sum of squares that is not worth a step of it.
+const TOLERANCE: f64 = 1e-12;
 
 /// What is to be learned from which records.
 ///
@@ -182,11 +188,24 @@ impl Identification {
         Ok(())
     }
 
+    /// That every record is more than noise, where there are samples enough to tell.
+    fn check_motion(&self) -> Result<(), IdentificationError> {
+        for (index, record) in self.records.iter().enumerate() {
+            let is_noise = |column: &Column| Whiteness::of(&column.values).is_white();
+            if record.times.len() >= ENOUGH_TO_TELL_NOISE && record.columns.iter().all(is_noise) {
+                let problem = "its values are noise: nothing moves; begin where the caster swings".to_owned();
+                return Err(IdentificationError::Record { record: index, problem });
+            }
+        }
+        Ok(())
+    }
+
     /// Estimates the parameters.
     ///
     /// # Errors
-    /// Too few values, no motion that can be followed, an interruption.
+    /// A record that is nothing but noise, too few values, no motion that can be followed, an interruption.
     pub fn run(&self, control: &Control<'_>) -> Result<Identified, IdentificationError> {
+        self.check_motion()?;
         let unknowns = unknowns(&self.records, &self.keys, &self.starts, &self.offsets)?;
         let mut problem = Problem {
             records: &self.records,
@@ -205,16 +224,28 @@ impl Identification {
         }
         let limits: Vec<[f64; 2]> = unknowns.iter().map(|&unknown| bounds(unknown)).collect();
         let mut minimum = start::search(&problem, &control.part(0.0..0.5))?;
-        for _ in 0..MOST_REPETITIONS {
-            let change = self.estimate_deviations(&mut problem, &minimum, &limits);
-            let limits = Limits { bounds: &limits, steps: STEPS };
-            minimum = minimise(&problem, &minimum.unknowns, &limits, &control.quiet())?;
-            if change < DEVIATION_TOLERANCE {
-                break;
+        let known = self.is_deviation_known();
+        for _ in 0..MOST_RETURNS {
+            for _ in 0..MOST_REPETITIONS {
+                let change = self.estimate_deviations(&mut problem, &minimum, &limits);
+                let limits = Limits { bounds: &limits, steps: STEPS, tolerance: TOLERANCE };
+                minimum = minimise(&problem, &minimum.unknowns, &limits, &control.quiet())?;
+                if change < DEVIATION_TOLERANCE {
+                    break;
+                }
+            }
+            let freedom = identified::degrees_of_freedom(&problem, &minimum, &limits) as f64;
+            let half_width = distributions::half_width(if known { f64::INFINITY } else { freedom });
+            let part = control.part(0.5..1.0);
+            let (intervals, better) = interval::intervals(&problem, &minimum, &limits, half_width, &part)?;
+            match better {
+                Some(better) => minimum = better,
+                None => {
+                    return identified::identified(&problem, &minimum, &limits, intervals, known, control);
+                }
             }
         }
-        let known = self.is_deviation_known();
-        identified::identified(&problem, &minimum, &limits, known, &control.part(0.5..1.0))
+        Err(IdentificationError::ManyMinima { returns: MOST_RETURNS })
     }
 
     /// Whether the deviations of all columns were given.

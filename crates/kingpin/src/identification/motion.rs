@@ -30,9 +30,9 @@ type Varied = Dual<f64, CHUNK>;
 
 /// Relative tolerance of motions, and of the variational equations.
 const TOLERANCE: f64 = 1e-11;
-const VARIATIONAL_TOLERANCE: f64 = 1e-10;
+const VARIATIONAL_TOLERANCE: f64 = 1e-8;
 /// Absolute tolerance of derivatives, in units of the scale of their direction.
-const ABSOLUTE_TOLERANCE_OF_DERIVATIVES: f64 = 1e-9;
+const ABSOLUTE_TOLERANCE_OF_DERIVATIVES: f64 = 1e-8;
 /// Stands for no friction about the king pin where that is estimated, in N m.
 const VANISHING_FRICTION: f64 = 1e-100;
 /// Index of the caster angle and of the yaw rate among the states of a wheel with dry friction.

@@ -110,6 +110,11 @@ impl Problem<'_> {
         if value == 0.0 { typical } else { value.abs() }
     }
 
+    /// Whether dry friction acts about the king pin in any of the records, or might.
+    pub(super) fn has_dry_friction(&self) -> bool {
+        self.keys.contains(&Key::MF) || self.records.iter().any(|record| record.wheel.get(Key::MF) > 0.0)
+    }
+
     /// The number of measured values that count.
     pub(super) fn count(&self) -> usize {
         self.records.iter().zip(&self.samples).map(|(record, &samples)| record.values_in(samples)).sum()

@@ -1,8 +1,8 @@
 //! Where the search for the unknowns begins.
 //!
-//! Over many swings the sum of squares has a minimum near every stiffness with which the phases differ by whole swings. So the first
-//! swing is fitted first, then twice as much, and so on to the whole records; and unless the residuals are noise then, the same is
-//! done from stiffnesses up to 64 times as small and as large, and the best of all is taken.
+//! Over many swings the sum of squares has a minimum near every stiffness with which the phases differ by whole swings. So unless the
+//! values to start from lead to residuals that are noise, the first swing is fitted first, then twice as much, and so on to the whole
+//! records, from stiffnesses up to 64 times as small and as large too; and the best of all is taken.
 
 use super::least_squares::{Limits, Minimum, Residuals, minimise};
 use super::problem::{Problem, Unknown, bounds, typical};
@@ -14,9 +14,11 @@ use arclength::control::Control;
 use rayon::prelude::*;
 
 /// Factors by which stiffnesses are changed.
-const FACTORS: [f64; 6] = [0.25, 4.0, 0.0625, 16.0, 1.0 / 64.0, 64.0];
+const FACTORS: [f64; 7] = [1.0, 0.25, 4.0, 0.0625, 16.0, 1.0 / 64.0, 64.0];
 /// Keys that are.
 const STIFFNESSES: [Key; 5] = [Key::K, Key::KQ, Key::KU, Key::KPsi, Key::CAlpha];
+/// Factor by which a parameter may change on the way.
+const REACH: f64 = 16.0;
 /// Part of its typical size at which a damping or friction that is zero begins.
 const SMALL: f64 = 0.01;
 /// Samples through which a parabola is laid for the value and the slope at the start, and part of a record that it takes at most.
@@ -24,18 +26,23 @@ const FIRST_SAMPLES: usize = 7;
 const FIRST_PART: f64 = 0.05;
 /// Zeros after which a first swing has been made.
 const ZEROS_OF_A_SWING: usize = 3;
+/// Standard deviations of the noise by which one minimum has to be better than another.
+const FAR_BETTER: f64 = 5.0;
 /// Part of their spread within which values are met by the right motion only.
 const EXACT: f64 = 1e-6;
 /// Steps from swing to swing, and to the end.
 const STEPS_ON_THE_WAY: usize = 12;
 const STEPS: usize = 200;
+/// Relative reductions of the sum of squares that are not worth a step then.
+const TOLERANCE_ON_THE_WAY: f64 = 1e-3;
+const TOLERANCE: f64 = 1e-8;
 
 /// The unknowns with the smallest sum of squares that was found.
 ///
 /// # Errors
 /// No motion can be followed from any start; an interruption.
 pub(super) fn search(problem: &Problem<'_>, control: &Control<'_>) -> Result<Minimum, SimulationError> {
-    let first = grow(problem, 1.0, control).and_then(|found| finish(problem, &found, control));
+    let first = first_values(problem, 1.0).and_then(|values| finish(problem, &values, control));
     if let Ok(minimum) = &first
         && minimum.converged
         && (is_noise(problem, minimum) || is_exact(minimum))
@@ -45,7 +52,7 @@ pub(super) fn search(problem: &Problem<'_>, control: &Control<'_>) -> Result<Min
     control.check()?;
     control.done(0.2);
     let varies = problem.keys.iter().any(|key| STIFFNESSES.contains(key));
-    let factors = if varies { &FACTORS[..] } else { &[] };
+    let factors = if varies { &FACTORS[..] } else { &FACTORS[..1] };
     let counter = control.part(0.2..0.9);
     let counter = counter.count(FACTORS.len());
     let others = factors.par_iter().filter_map(|&factor| {
@@ -58,18 +65,31 @@ pub(super) fn search(problem: &Problem<'_>, control: &Control<'_>) -> Result<Min
     let best = others.min_by(|one, other| sum(one).total_cmp(&sum(other)));
     control.check()?;
     match (first, best) {
-        (Ok(first), Some(other)) if sum(&first) <= sum(&other) => Ok(first),
-        (_, Some(other)) => finish(problem, &other, control),
+        (Ok(first), Some(other)) if !is_far_better(&other, &first) => Ok(first),
+        (_, Some(other)) => finish(problem, &other.unknowns, control),
         (first, None) => first,
     }
+}
+
+/// Whether a minimum is better than another by more than noise can make it: records of few samples a swing fit several stiffnesses, and then
+/// the one that was supposed is nearest.
+fn is_far_better(other: &Minimum, first: &Minimum) -> bool {
+    let (better, worse) = (other.sum_of_squares(), first.sum_of_squares());
+    let freedom = other.residuals.len().saturating_sub(other.unknowns.len()).max(1) as f64;
+    worse - better > FAR_BETTER * FAR_BETTER * better / freedom
 }
 
 /// Fits the first swing, and then more and more, with the stiffnesses to start from multiplied by a factor; a few steps each.
 fn grow(problem: &Problem<'_>, factor: f64, control: &Control<'_>) -> Result<Minimum, SimulationError> {
     let control = &control.quiet();
-    let limits: Vec<[f64; 2]> = problem.unknowns.iter().map(|&unknown| bounds(unknown)).collect();
-    let limits = Limits { bounds: &limits, steps: STEPS_ON_THE_WAY };
     let mut values = first_values(problem, factor)?;
+    let limits: Vec<[f64; 2]> = problem
+        .unknowns
+        .iter()
+        .zip(&values)
+        .map(|(&unknown, &value)| reach(problem, unknown, value))
+        .collect();
+    let limits = Limits { bounds: &limits, steps: STEPS_ON_THE_WAY, tolerance: TOLERANCE_ON_THE_WAY };
     let mut part = problem.clone();
     part.samples = problem.records.iter().map(|record| samples_of_a_swing(record, problem)).collect();
     loop {
@@ -84,10 +104,24 @@ fn grow(problem: &Problem<'_>, factor: f64, control: &Control<'_>) -> Result<Min
     }
 }
 
+/// How far an unknown may go on the way: the little that a part of the records says of it could lead it anywhere.
+fn reach(problem: &Problem<'_>, unknown: Unknown, value: f64) -> [f64; 2] {
+    let [low, high] = bounds(unknown);
+    let Unknown::Parameter(key) = unknown else { return [low, high] };
+    let lowest = if low > 0.0 { (value / REACH).max(low) } else { low };
+    let highest = REACH * value.abs().max(typical(&problem.records[0].wheel, key));
+    [lowest, highest.min(high)]
+}
+
 /// Goes on until the smallest sum of squares is reached.
-fn finish(problem: &Problem<'_>, found: &Minimum, control: &Control<'_>) -> Result<Minimum, SimulationError> {
+fn finish(problem: &Problem<'_>, values: &[f64], control: &Control<'_>) -> Result<Minimum, SimulationError> {
     let limits: Vec<[f64; 2]> = problem.unknowns.iter().map(|&unknown| bounds(unknown)).collect();
-    minimise(problem, &found.unknowns, &Limits { bounds: &limits, steps: STEPS }, &control.quiet())
+    minimise(
+        problem,
+        values,
+        &Limits { bounds: &limits, steps: STEPS, tolerance: TOLERANCE },
+        &control.quiet(),
+    )
 }
 
 /// Whether the residuals are too small for noise of an instrument: they are in units of how far the values spread.
@@ -161,7 +195,8 @@ fn value_and_slope(times: &[f64], values: &[f64]) -> [f64; 2] {
     let powers = |power: i32| times.iter().map(|time| ((time - times[0]) / span).powi(power)).collect();
     let parabola = Polynomial { columns: (0..3).map(powers).collect(), values };
     // A linear problem, of which every step is the last.
-    let limits = Limits { bounds: &[[f64::NEG_INFINITY, f64::INFINITY]; 3], steps: STEPS };
+    let limits =
+        Limits { bounds: &[[f64::NEG_INFINITY, f64::INFINITY]; 3], steps: STEPS, tolerance: TOLERANCE };
     match minimise(&parabola, &[values[0], 0.0, 0.0], &limits, &Control::none()) {
         Ok(minimum) => [minimum.unknowns[0], minimum.unknowns[1] / span],
         Err(_) => [values[0], (values[1] - values[0]) / (times[1] - times[0])],

@@ -91,16 +91,16 @@ fn derivatives_of_smooth_motions_are_those_of_differences() {
     let keys = [Key::K, Key::CQ, Key::CPsi, Key::V, Key::L, Key::MC];
     let elastic = wheel(&[("c_q", "0.2"), ("c_psi", "0.002"), ("c_u", "0.3")]);
     let error = error_of_derivatives(&elastic, &keys, &[0.001, -0.002, 0.3, 4.0, 5.0], 0.4, &[]);
-    assert!(error < 1e-6, "{error}");
+    assert!(error < 1e-5, "{error}");
     let lateral = wheel(&[("k_u", "inf"), ("r", "inf"), ("c_q", "0.2"), ("c_psi", "0.002")]);
     let error =
         error_of_derivatives(&lateral, &[Key::KQ, Key::CQ, Key::CPsi, Key::V], &[0.001, 0.2, 1.0], 0.4, &[]);
-    assert!(error < 1e-6, "{error}");
+    assert!(error < 1e-5, "{error}");
     let tyre =
         wheel(&[("tyre", "linear"), ("sigma", "0.05"), ("C_alpha", "500"), ("r", "inf"), ("c_psi", "0.002")]);
     let start = [0.001, -0.002, 0.2, 4.0, 0.0, 1.0, 0.001];
     let error = error_of_derivatives(&tyre, &[Key::K, Key::Sigma, Key::CAlpha, Key::CPsi], &start, 0.4, &[]);
-    assert!(error < 1e-6, "{error}");
+    assert!(error < 1e-5, "{error}");
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn derivatives_hold_through_swings_and_rests() {
         assert!(sticks >= 3, "{path}: {sticks} rests in {} phases", phases.len());
         let events: Vec<f64> = phases.iter().map(|phase| phase.end).collect();
         let error = error_of_derivatives(&dry, &keys, &start, 1.0, &events);
-        assert!(error < 1e-6, "{path}: {error}");
+        assert!(error < 1e-5, "{path}: {error}");
     }
 }
 
