@@ -48,7 +48,7 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "KEY=VALUE")]
     sigma: Vec<Assignment>,
 
-    /// Do not look for the smallest unsafe blow, which takes longest
+    /// Do not look for the largest safe blow, which takes longest
     #[arg(long)]
     no_blow: bool,
 

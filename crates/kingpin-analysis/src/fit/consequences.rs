@@ -1,15 +1,16 @@
-//! What follows from estimated parameters, with what is left uncertain of it: the critical speeds, and the smallest blow that is not
+//! What follows from estimated parameters, with what is left uncertain of it: the critical speeds, and the largest blow that is
 //! safe.
 //!
 //! Critical speeds are cheap and may not exist at all, so they are computed for many wheels whose parameters are drawn from the joint
 //! distribution of the estimates. A safe blow takes many motions; its interval is that of the delta method, with differences over
 //! the whole intervals of the parameters in place of derivatives.
 
-use crate::classification::Classification;
+use crate::classification::{Classification, Contact};
 use crate::disturbance::DisturbanceRequest;
 use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::identification::{Identified, JointDistribution};
+use kingpin::simulation::SimulationError;
 use kingpin::{Key, Tyre, Wheel};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -48,10 +49,13 @@ pub struct Consequences {
     /// in straight towing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_speed_with_friction: Option<Consequence>,
-    /// Smallest of the blows in N s that were found from which the wheel does not return, at the speed of the wheel; the estimate is the largest that
-    /// returned before it.
+    /// Largest blow in N s from which the wheel returns, in the direction in which fewer return, at the speed of the wheel: the last before the first that
+    /// does not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safe_blow: Option<Consequence>,
+    /// `rolling` or `sliding`: how the wheel goes on after a blow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact: Option<&'static str>,
     /// Largest blow in N s that was tried.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_blow: Option<f64>,
@@ -86,10 +90,19 @@ impl Consequences {
             && wheel.tyre() == Tyre::Rigid
             && wheel.get(Key::V) > 0.0
             && wheel.uniform_motion().is_ok();
+        let contact = Classification::default().contact_by_load(wheel);
+        let largest = DisturbanceRequest::default().largest(wheel);
+        let disturbance = DisturbanceRequest { largest: Some(largest), ..DisturbanceRequest::default() };
+        let rest = control.part(0.15..1.0);
         let blow =
-            takes_blow.then(|| safe_blow(wheel, distribution, &control.part(0.15..1.0))).transpose()?;
-        let largest_blow = blow.as_ref().map(|_| DisturbanceRequest::default().largest(wheel));
-        Ok(Self { critical_speed, critical_speed_with_friction, safe_blow: blow, largest_blow })
+            takes_blow.then(|| safe_blow(wheel, &disturbance, contact, distribution, &rest)).transpose()?;
+        Ok(Self {
+            critical_speed,
+            critical_speed_with_friction,
+            largest_blow: blow.as_ref().map(|_| largest),
+            contact: blow.as_ref().map(|_| contact.model().name()),
+            safe_blow: blow,
+        })
     }
 }
 
@@ -121,18 +134,28 @@ fn from_samples(wheel: &Wheel, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sy
     }
 }
 
-/// The largest blow that returned, in the direction in which fewer do; nothing where all that were tried return.
-fn largest_returning(wheel: &Wheel, control: &Control<'_>) -> Result<Option<f64>, Error> {
-    let disturbance = DisturbanceRequest::default();
-    let classification = Classification::default();
-    let settings = classification.settings(wheel)?;
-    let edges = disturbance.edges(wheel, classification.model(), settings, control)?;
+/// The largest blow that returned, in the direction in which fewer do; nothing where all that were tried return, and where a wheel that
+/// may slide has no uniform motion to return to.
+fn largest_returning(
+    wheel: &Wheel,
+    disturbance: &DisturbanceRequest,
+    contact: Contact,
+    control: &Control<'_>,
+) -> Result<Option<f64>, Error> {
+    let settings = Classification::default().settings(wheel)?;
+    let edges = match disturbance.edges(wheel, contact.model(), settings, control) {
+        Ok(edges) => edges,
+        Err(SimulationError::UniformMotionSlides { .. }) => return Ok(None),
+        Err(error) => return Err(error.into()),
+    };
     let edges = edges.into_iter().flatten().filter(|edge| !edge.is_undecided());
     Ok(edges.map(|edge| edge.returns.abs()).min_by(f64::total_cmp))
 }
 
 fn safe_blow(
     wheel: &Wheel,
+    disturbance: &DisturbanceRequest,
+    contact: Contact,
     distribution: Option<&JointDistribution>,
     control: &Control<'_>,
 ) -> Result<Consequence, Error> {
@@ -142,7 +165,7 @@ fn safe_blow(
     let blows: Vec<Option<f64>> = wheels
         .par_iter()
         .map(|wheel| {
-            let blow = largest_returning(wheel, &control.quiet());
+            let blow = largest_returning(wheel, disturbance, contact, &control.quiet());
             counter.advance(1);
             blow
         })

@@ -1,6 +1,6 @@
 //! The picture of a fit: what was measured and what was fitted, and below it what is left over.
 
-use super::result::{FitResult, FittedColumnResult, FittedRecordResult, residuals};
+use super::fitted::{FittedColumnResult, FittedRecordResult, residuals};
 use kingpin_figure::{Axis, Figure, Legend, Line, Marker, Markers, Panel, palette};
 use kingpin_report::history::{drawn, extremes};
 use kingpin_report::numbers::readable;
@@ -15,17 +15,14 @@ const BAND: f64 = 2.0;
 const MOST_COLUMNS: usize = 2;
 
 /// The picture.
-pub(super) fn figure(result: &FitResult) -> Figure {
-    let all: Vec<(&FittedRecordResult, &FittedColumnResult)> = result
-        .records
-        .iter()
-        .flat_map(|record| record.columns.iter().map(move |column| (record, column)))
-        .collect();
+pub(super) fn figure(records: &[FittedRecordResult]) -> Figure {
+    let all: Vec<(&FittedRecordResult, &FittedColumnResult)> =
+        records.iter().flat_map(|record| record.columns.iter().map(move |column| (record, column))).collect();
     let side_by_side = all.len().clamp(1, MOST_COLUMNS);
     let rows = all.len().div_ceil(side_by_side);
     let figure = if side_by_side == 1 { Figure::single_column() } else { Figure::double_column() };
     let description =
-        format!("Measured and fitted motions of {} records, and what is left over", result.records.len());
+        format!("Measured and fitted motions of {} records, and what is left over", records.len());
     let mut figure =
         figure.columns(side_by_side).height_mm(2.0 * HEIGHT_OF_ROW * rows as f64).description(description);
     for pair in all.chunks(side_by_side) {

@@ -1,83 +1,23 @@
 //! Estimates, and what follows from them, as a result.
 
 use super::consequences::{Consequence, Consequences};
+use super::estimate::{DIGITS, DIGITS_OF_ERROR, EstimateResult, rounded};
+use super::fitted::{FittedColumnResult, FittedRecordResult, fitted_record, residuals};
 use super::picture;
 use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
-use arclength::control::Control;
-use kingpin::identification::{Estimate, FittedColumn, FittedRecord, Identified, NotSeparated, Record};
-use kingpin::{Key, Tyre, Wheel};
+use kingpin::identification::{Identified, NotSeparated, Record};
+use kingpin::{Key, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::history::extremes;
 use kingpin_report::numbers::{readable, significant};
-use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Table, number};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Significant digits of a standard error.
-const DIGITS_OF_ERROR: i32 = 2;
-/// Digits of what has no error.
-const DIGITS: usize = 4;
-/// Part of the range of a motion below which what is left is rounding.
-const EXACT: f64 = 1e-8;
 /// Probability below which residuals are larger than the noise that was given explains.
 const UNBELIEVABLE: f64 = 0.01;
-
-/// An estimated parameter with its 95 per cent confidence interval.
-#[derive(Debug, Serialize)]
-pub struct EstimateResult {
-    /// Its key.
-    pub key: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Its value; nothing where the records do not determine it.
-    pub value: Option<f64>,
-    /// Its standard error; nothing at a bound, and where the value is not determined.
-    pub standard_error: Option<f64>,
-    /// Lower end of the interval; nothing where none was found.
-    pub lower: Option<f64>,
-    /// Upper end of the interval; nothing where none was found.
-    pub upper: Option<f64>,
-    /// Whether the lower end is the smallest value that the parameter may have: then the interval is one-sided.
-    pub reaches_lower_bound: bool,
-    /// How the interval was found: `linear` by the standard error, `profile` by fits with the parameter held.
-    pub method: &'static str,
-}
-
-impl EstimateResult {
-    fn new(estimate: &Estimate) -> Self {
-        let Estimate { key, value, standard_error, interval } = *estimate;
-        Self {
-            key: key.name(),
-            unit: key.unit(),
-            value,
-            standard_error,
-            lower: interval.lower,
-            upper: interval.upper,
-            reaches_lower_bound: interval.reaches_lower_bound,
-            method: interval.method.name(),
-        }
-    }
-
-    /// The size of what is uncertain of it.
-    fn uncertainty(&self) -> Option<f64> {
-        let width = || Some((self.upper? - self.lower?) / 4.0);
-        self.standard_error.or_else(width)
-    }
-
-    fn interval(&self) -> String {
-        let end = |end: f64| rounded(end, self.uncertainty());
-        match (self.lower, self.upper) {
-            (_, Some(upper)) if self.reaches_lower_bound => format!("at most {}", end(upper)),
-            (Some(lower), Some(upper)) => format!("{} to {}", end(lower), end(upper)),
-            (Some(lower), None) if !self.reaches_lower_bound => format!("at least {}", end(lower)),
-            (None, Some(upper)) => format!("at most {}", end(upper)),
-            _ => "unknown".to_owned(),
-        }
-    }
-}
 
 /// Correlations of the estimates.
 #[derive(Debug, Serialize)]
@@ -95,59 +35,6 @@ pub struct NotSeparatedResult {
     pub keys: Vec<&'static str>,
     /// The correlation of two that are hardly told apart; nothing where the information matrix is singular.
     pub correlation: Option<f64>,
-}
-
-/// A measured state with what was fitted to it.
-#[derive(Debug, Serialize)]
-pub struct FittedColumnResult {
-    /// Its name.
-    pub state: String,
-    /// Its unit.
-    pub unit: &'static str,
-    /// Standard deviation of the noise: that of the residuals, unless it was given.
-    pub sigma: f64,
-    /// What the instrument shows where the state is zero.
-    pub offset: f64,
-    /// Correlation of each residual with the next.
-    pub correlation_with_next: f64,
-    /// Probability that noise is as correlated as the residuals (Ljung and Box).
-    pub whiteness: f64,
-    /// Whether the residuals may be noise.
-    pub noise: bool,
-    /// The measured values.
-    pub measured: Vec<f64>,
-    /// The fitted ones.
-    pub fitted: Vec<f64>,
-}
-
-impl FittedColumnResult {
-    /// Whether the values are met so exactly that no instrument can have measured them: what is left is rounding, and no noise.
-    fn is_met(&self) -> bool {
-        let [low, high] = extremes(&self.fitted);
-        self.sigma < EXACT * (high - low)
-    }
-}
-
-/// A record with what was fitted to it.
-#[derive(Debug, Serialize)]
-pub struct FittedRecordResult {
-    /// Its file.
-    pub file: String,
-    /// Towing speed in m/s.
-    pub v: f64,
-    /// Radius of the path of the towing point in m.
-    #[serde(with = "number")]
-    pub r: f64,
-    /// Number of samples.
-    pub samples: usize,
-    /// The states at the first sample.
-    pub start: NamedNumbers,
-    /// Time in s, in the record, from which on the fitted motion takes more than the static friction; nothing where it does not.
-    pub rolling_lost_at: Option<f64>,
-    /// Times in s.
-    pub t: Vec<f64>,
-    /// The measured states.
-    pub columns: Vec<FittedColumnResult>,
 }
 
 /// Estimates and what follows from them.
@@ -260,67 +147,6 @@ impl FitResult {
     }
 }
 
-fn fitted_record(file: &Path, record: &Record, fitted: FittedRecord) -> Result<FittedRecordResult, Error> {
-    let names = fitted.wheel.free_states();
-    let start = names.iter().zip(&fitted.start).map(|(name, value)| ((*name).to_owned(), *value)).collect();
-    let first = record.times[0];
-    let duration = record.times[record.times.len() - 1] - first;
-    let rolling_lost_at = match <[f64; 5]>::try_from(fitted.start.as_slice()) {
-        Ok(start) if fitted.wheel.tyre() == Tyre::Rigid => fitted
-            .wheel
-            .simulate_from(&start, duration, 2, &Control::none())?
-            .rolling_lost_at
-            .map(|time| first + time),
-        _ => None,
-    };
-    let columns = record.columns.iter().zip(fitted.columns).map(|(measured, fitted)| {
-        let FittedColumn { state, values, offset, deviation, whiteness } = fitted;
-        FittedColumnResult {
-            unit: unit(&state),
-            state,
-            sigma: deviation,
-            offset,
-            correlation_with_next: whiteness.correlation_with_next,
-            whiteness: whiteness.probability,
-            noise: whiteness.is_white(),
-            measured: measured.values.clone(),
-            fitted: values,
-        }
-    });
-    Ok(FittedRecordResult {
-        file: file.display().to_string(),
-        v: fitted.wheel.get(Key::V),
-        r: fitted.wheel.get(Key::TurningRadius),
-        samples: record.times.len(),
-        start: NamedNumbers(start),
-        rolling_lost_at,
-        t: record.times.clone(),
-        columns: columns.collect(),
-    })
-}
-
-/// The unit of a state.
-pub(super) fn unit(state: &str) -> &'static str {
-    match state {
-        "psi" => "rad",
-        "Omega" => "rad/s",
-        "V" | "V1" | "V2" => "m/s",
-        _ => "m",
-    }
-}
-
-/// A number rounded to the digits that its uncertainty leaves.
-fn rounded(value: f64, uncertainty: Option<f64>) -> String {
-    let size = |value: f64| value.abs().log10().floor() as i32;
-    match uncertainty {
-        Some(error) if error > 0.0 && error.is_finite() && value != 0.0 => {
-            let digits = size(value) - size(error) + DIGITS_OF_ERROR;
-            significant(value, digits.clamp(DIGITS_OF_ERROR, 12) as usize)
-        }
-        _ => significant(value, DIGITS),
-    }
-}
-
 impl Report for FitResult {
     fn schema(&self) -> Schema {
         Schema::first("kingpin.fit")
@@ -382,13 +208,8 @@ impl Report for FitResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        Ok(Some(picture::figure(self)))
+        Ok(Some(picture::figure(&self.records)))
     }
-}
-
-/// What is measured less what is fitted.
-pub(super) fn residuals(column: &FittedColumnResult) -> Vec<f64> {
-    column.measured.iter().zip(&column.fitted).map(|(measured, fitted)| measured - fitted).collect()
 }
 
 impl FitResult {
@@ -479,7 +300,9 @@ impl FitResult {
         }
         if let Some(blow) = &consequences.safe_blow {
             let largest = consequences.largest_blow.map(readable).unwrap_or_default();
-            let name = format!("smallest unsafe blow at v = {} m/s", readable(self.wheel.get(Key::V)));
+            let speed = readable(self.wheel.get(Key::V));
+            let contact = consequences.contact.unwrap_or_default();
+            let name = format!("largest safe blow at v = {speed} m/s, {contact}");
             tell(&name, "N s", blow, &format!("none up to {largest} N s"), out)?;
         }
         Ok(())
