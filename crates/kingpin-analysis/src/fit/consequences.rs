@@ -53,6 +53,9 @@ pub struct Consequences {
     /// does not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safe_blow: Option<Consequence>,
+    /// Why no blow could be told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub safe_blow_failure: Option<String>,
     /// `rolling` or `sliding`: how the wheel goes on after a blow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub contact: Option<&'static str>,
@@ -94,14 +97,19 @@ impl Consequences {
         let largest = DisturbanceRequest::default().largest(wheel);
         let disturbance = DisturbanceRequest { largest: Some(largest), ..DisturbanceRequest::default() };
         let rest = control.part(0.15..1.0);
-        let blow =
-            takes_blow.then(|| safe_blow(wheel, &disturbance, contact, distribution, &rest)).transpose()?;
+        let blow = takes_blow.then(|| safe_blow(wheel, &disturbance, contact, distribution, &rest));
+        let (blow, blow_failure) = match blow {
+            // What the records say stands, whatever becomes of a wheel that is hit.
+            Some(Err(error)) if !matches!(error, Error::Stopped) => (None, Some(error.to_string())),
+            blow => (blow.transpose()?, None),
+        };
         Ok(Self {
             critical_speed,
             critical_speed_with_friction,
             largest_blow: blow.as_ref().map(|_| largest),
             contact: blow.as_ref().map(|_| contact.model().name()),
             safe_blow: blow,
+            safe_blow_failure: blow_failure,
         })
     }
 }

@@ -6,34 +6,27 @@ use kingpin_report::history::{drawn, extremes};
 use kingpin_report::numbers::readable;
 
 /// Height of the panels of a record in mm.
-const HEIGHT_OF_ROW: f64 = 42.0;
+const HEIGHT_OF_ROW: f64 = 44.0;
 /// Diameter of a measured point, in points.
-const POINT: f64 = 1.6;
+const POINT: f64 = 1.0;
+/// Width of a fitted curve, in points: it is seen around the measured ones.
+const WIDTH: f64 = 1.8;
 /// Standard deviations between which noise mostly lies.
 const BAND: f64 = 2.0;
-/// Most records side by side.
-const MOST_COLUMNS: usize = 2;
-
 /// The picture.
 pub(super) fn figure(records: &[FittedRecordResult]) -> Figure {
     let all: Vec<(&FittedRecordResult, &FittedColumnResult)> =
         records.iter().flat_map(|record| record.columns.iter().map(move |column| (record, column))).collect();
-    let side_by_side = all.len().clamp(1, MOST_COLUMNS);
-    let rows = all.len().div_ceil(side_by_side);
-    let figure = if side_by_side == 1 { Figure::single_column() } else { Figure::double_column() };
     let description =
         format!("Measured and fitted motions of {} records, and what is left over", records.len());
-    let mut figure =
-        figure.columns(side_by_side).height_mm(2.0 * HEIGHT_OF_ROW * rows as f64).description(description);
-    for pair in all.chunks(side_by_side) {
-        for (record, column) in pair {
-            figure = figure.panel(motion(record, column));
-        }
-        for (record, column) in pair {
-            figure = figure.panel(left_over(record, column));
-        }
-    }
-    figure
+    // One motion stands above what is left of it, several each beside it.
+    let is_one = all.len() == 1;
+    let figure = if is_one { Figure::single_column() } else { Figure::double_column() };
+    let (columns, rows) = if is_one { (1, 2) } else { (2, all.len()) };
+    let figure = figure.columns(columns).height_mm(HEIGHT_OF_ROW * rows as f64).description(description);
+    all.into_iter().fold(figure, |figure, (record, column)| {
+        figure.panel(motion(record, column, is_one)).panel(left_over(record, column))
+    })
 }
 
 fn label(column: &FittedColumnResult) -> String {
@@ -52,15 +45,16 @@ fn times(record: &FittedRecordResult) -> Axis {
     Axis::new("$t$ (s)").limits(record.t[0], end)
 }
 
-fn motion(record: &FittedRecordResult, column: &FittedColumnResult) -> Panel {
+fn motion(record: &FittedRecordResult, column: &FittedColumnResult, is_above: bool) -> Panel {
+    let time = if is_above { times(record).without_labels() } else { times(record) };
     let measured = record.t.iter().copied().zip(column.measured.iter().copied());
-    Panel::new(times(record).without_labels(), Axis::new(label(column)))
+    Panel::new(time, Axis::new(label(column)))
         .title(format!("{}, $v$ = {} m/s", record.file.replace('$', "\\$"), readable(record.v)))
         .legend(Legend::Below)
         .markers(
             Markers::new(measured, Marker::default().color(palette::GREY).size(POINT)).legend("measured"),
         )
-        .curve(Line::new(drawn(&record.t, &column.fitted)).color(palette::BLUE).legend("fitted"))
+        .curve(Line::new(drawn(&record.t, &column.fitted)).color(palette::BLUE).width(WIDTH).legend("fitted"))
 }
 
 fn left_over(record: &FittedRecordResult, column: &FittedColumnResult) -> Panel {

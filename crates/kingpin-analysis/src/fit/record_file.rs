@@ -51,15 +51,21 @@ pub(super) fn read(path: &Path, states: &[&str], wanted: &[String]) -> Result<Re
     };
     let bytes =
         std::fs::read(path).map_err(|source| Error::UnreadableRecord { path: path.to_owned(), source })?;
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        failure(line, None, format!("these are no comma-separated values: {error}"))
+    let text = String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes));
+    let (comments, rows): (Vec<_>, Vec<_>) =
+        (1..).zip(text.lines()).partition(|(_, line)| line.trim_start().starts_with('#'));
+    // The line of the file in which a line without the comments stands.
+    let line_of = |position: Option<&csv::Position>| {
+        let index = position.map_or(0, |position| position.line().saturating_sub(1) as usize);
+        rows.get(index).or(rows.last()).map_or(1, |(line, _)| *line)
     };
-    let mut reader =
-        ReaderBuilder::new().trim(Trim::All).flexible(true).comment(Some(b'#')).from_reader(text);
+    let unreadable = |error: csv::Error| {
+        failure(line_of(error.position()), None, format!("these are no comma-separated values: {error}"))
+    };
+    let values_alone: String = rows.iter().map(|(_, line)| format!("{line}\n")).collect();
+    let mut reader = ReaderBuilder::new().trim(Trim::All).flexible(true).from_reader(values_alone.as_bytes());
     let header = reader.headers().map_err(unreadable)?.clone();
-    let first_line = header.position().map_or(1, csv::Position::line);
+    let first_line = line_of(header.position());
     let places = places(&header, states, wanted)
         .map_err(|(column, problem)| failure(first_line, column.as_deref(), problem))?;
     let mut times: Vec<f64> = Vec::new();
@@ -67,7 +73,7 @@ pub(super) fn read(path: &Path, states: &[&str], wanted: &[String]) -> Result<Re
     let mut last = first_line;
     for row in reader.records() {
         let row = row.map_err(unreadable)?;
-        last = row.position().map_or(last + 1, csv::Position::line);
+        last = line_of(row.position());
         let number = |name: &str, place: usize| {
             let text = row.get(place).unwrap_or_default();
             let number = text.parse().ok().filter(|number: &f64| number.is_finite());
@@ -102,7 +108,7 @@ pub(super) fn read(path: &Path, states: &[&str], wanted: &[String]) -> Result<Re
     Ok(RecordFile {
         columns: columns.collect(),
         times,
-        settings: settings(text),
+        settings: settings(comments.iter().map(|(_, line)| *line)),
         passed_over: places.passed_over,
     })
 }
@@ -170,9 +176,8 @@ fn places(
 }
 
 /// The parameters in comments `# key = value`.
-fn settings(text: &[u8]) -> Vec<Assignment> {
-    let text = String::from_utf8_lossy(text);
-    let comments = text.lines().filter_map(|line| line.trim_start().strip_prefix('#'));
+fn settings<'a>(comments: impl Iterator<Item = &'a str>) -> Vec<Assignment> {
+    let comments = comments.filter_map(|line| line.trim_start().strip_prefix('#'));
     let settings = comments.filter_map(|comment| {
         let (key, value) = comment.split_once('=')?;
         let (key, value) = (key.trim(), value.trim());

@@ -122,6 +122,9 @@ impl FitResult {
                 self.undetermined.join(", ")
             ));
         }
+        if let Some(failure) = self.consequences.as_ref().and_then(|found| found.safe_blow_failure.as_ref()) {
+            warnings.push(format!("the largest safe blow is not known: {failure}"));
+        }
         for record in &self.records {
             if let Some(time) = record.rolling_lost_at {
                 warnings.push(format!(
@@ -321,6 +324,9 @@ fn tell(
     let width = lower.zip(*upper).map(|(lower, upper)| (upper - lower) / 4.0);
     let text = |value: f64| rounded(value, width);
     let value = value.map_or_else(|| nothing.to_owned(), |value| format!("{} {unit}", text(value)));
+    if *without == Some(1.0) {
+        return writeln!(out, "{name}: {value}, for all samples of the estimates");
+    }
     let how = match *method {
         Some("samples") => "by samples of the estimates",
         Some(_) => "by the delta method, with differences",

@@ -130,7 +130,7 @@ fn what_is_wrong_with_a_record_is_told_with_its_place() {
             "nothing.csv: line 1: no column is a state; the columns are: t, angle; allowed: u, q, psi, V, Omega",
         ),
         ("absent.csv", "absent.csv: "),
-        ("decay.csv --states q", "decay.csv: line 4, column q: there is no such column"),
+        ("decay.csv --states q", "decay.csv: line 3, column q: there is no such column"),
         ("decay.csv --estimate stiffness", "--estimate stiffness: "),
         ("decay.csv --estimate mu_s", "mu_s cannot be estimated"),
         ("decay.csv:k=7", "decay.csv: k is estimated and cannot be 7 for one record"),
