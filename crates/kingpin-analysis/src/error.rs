@@ -4,6 +4,7 @@ use arclength::control::Interrupted;
 use arclength::integration::IntegrationError;
 use arclength_analysis::{AnalysisError, Control, InvalidField};
 use kingpin::KingpinError;
+use kingpin::identification::IdentificationError;
 use kingpin::shimmy::ShimmyError;
 use kingpin::simulation::SimulationError;
 use kingpin_figure::FigureError;
@@ -36,6 +37,41 @@ pub enum Error {
     /// A periodic motion with sliding phases could not be found or followed.
     #[error(transparent)]
     Shimmy(ShimmyError),
+    /// Parameters could not be estimated.
+    #[error(transparent)]
+    Identification(IdentificationError),
+    /// A file of a record could not be read.
+    #[error("{}: {source}", path.display())]
+    UnreadableRecord {
+        /// The file.
+        path: PathBuf,
+        /// The cause.
+        source: std::io::Error,
+    },
+    /// A file of a record that cannot be used.
+    #[error(
+        "{}: line {line}{}: {problem}",
+        path.display(),
+        column.as_ref().map(|column| format!(", column {column}")).unwrap_or_default()
+    )]
+    RecordFile {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The name of the column, where it is one that is at fault.
+        column: Option<String>,
+        /// What is wrong, and what is allowed.
+        problem: String,
+    },
+    /// A record that cannot be used.
+    #[error("{}: {problem}", path.display())]
+    Record {
+        /// Its file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: String,
+    },
     /// A continuation failed.
     #[error(transparent)]
     Continuation(#[from] arclength::Error),
@@ -146,6 +182,16 @@ impl From<ShimmyError> for Error {
     }
 }
 
+impl From<IdentificationError> for Error {
+    fn from(error: IdentificationError) -> Self {
+        match error {
+            IdentificationError::Interrupted(interrupted) => interrupted.into(),
+            IdentificationError::Wheel(error) => error.into(),
+            error => Self::Identification(error),
+        }
+    }
+}
+
 impl From<IntegrationError> for Error {
     fn from(error: IntegrationError) -> Self {
         match error {
@@ -165,7 +211,16 @@ impl AnalysisError for Error {
             Self::Continuation(error) => matches!(error, arclength::Error::Invalid { .. }),
             Self::Start(error) => error.is_bad_request(),
             Self::Report(error) => error.is_bad_request(),
-            Self::Invalid(_) | Self::Set { .. } | Self::Simulation(_) | Self::Journal { .. } => true,
+            Self::Identification(error) => {
+                !matches!(error, IdentificationError::NoStart(_) | IdentificationError::ManyMinima { .. })
+            }
+            Self::Invalid(_)
+            | Self::Set { .. }
+            | Self::Simulation(_)
+            | Self::UnreadableRecord { .. }
+            | Self::RecordFile { .. }
+            | Self::Record { .. }
+            | Self::Journal { .. } => true,
             Self::Shimmy(_)
             | Self::Integration(_)
             | Self::NothingFound(_)

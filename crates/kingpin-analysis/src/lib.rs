@@ -15,6 +15,7 @@ pub mod damper;
 mod description;
 mod disturbance;
 mod error;
+pub mod fit;
 mod folder;
 mod forces;
 pub mod hopf;

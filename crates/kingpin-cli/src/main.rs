@@ -6,6 +6,7 @@ mod classification_options;
 mod cycles;
 mod damper;
 mod disturbance_options;
+mod fit;
 mod folder_options;
 mod hopf;
 mod locus;
@@ -52,6 +53,7 @@ enum Command {
     SafeKick(safe_kick::SafeKick),
     Margin(margin::Margin),
     Damper(damper::Damper),
+    Fit(fit::Fit),
 }
 
 impl Command {
@@ -72,6 +74,7 @@ impl Command {
             Self::SafeKick(command) => command.run(),
             Self::Margin(command) => command.run(),
             Self::Damper(command) => command.run(),
+            Self::Fit(command) => command.run(),
         }
     }
 }

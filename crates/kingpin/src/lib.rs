@@ -36,6 +36,7 @@ pub mod ensemble;
 pub mod error;
 mod forces;
 mod hurwitz;
+pub mod identification;
 mod keys;
 pub mod lateral;
 pub mod linear_stability;

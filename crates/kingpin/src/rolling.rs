@@ -118,6 +118,11 @@ impl RollingWheel {
         self.active.wheel()
     }
 
+    /// The body at these values of the active keys.
+    pub(crate) fn body<T: Scalar>(&self, parameters: &[T]) -> Body<T> {
+        self.active.body(parameters)
+    }
+
     /// The active keys, in the order of the parameters.
     pub fn active(&self) -> &[Key] {
         self.active.keys()

@@ -260,6 +260,28 @@ impl Wheel {
             .map_err(|source| KingpinError::InFile { path: path.to_owned(), source: Box::new(source) })
     }
 
+    /// The wheel as TOML, which [`from_toml`](Self::from_toml) reads back; what follows from other parameters is left to follow.
+    ///
+    /// ```
+    /// use kingpin::Wheel;
+    /// let wheel = Wheel::from_toml("v = 3.5\nr = inf\nM_f = 1e-3")?;
+    /// assert_eq!(Wheel::from_toml(&wheel.to_toml())?, wheel);
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn to_toml(&self) -> String {
+        let follows = |key: Key| match key {
+            Key::MuD => !self.sliding_friction_is_set,
+            Key::TP => !self.pneumatic_trail_is_set,
+            _ => false,
+        };
+        let tyre = self.tyre.map(|tyre| format!("{} = \"{tyre}\"\n", Tyre::KEY));
+        let lines = self.parameters().filter(|&(key, _)| !follows(key)).map(|(key, value)| {
+            let unit = if key.unit() == "1" { String::new() } else { format!("{}: ", key.unit()) };
+            format!("{key} = {value:?} # {unit}{}\n", key.meaning())
+        });
+        tyre.into_iter().chain(lines).collect()
+    }
+
     /// That there is no dry friction about the king pin, with which something is not computed.
     pub(crate) fn check_without_dry_friction(
         &self,

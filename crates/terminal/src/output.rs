@@ -104,8 +104,20 @@ impl Output {
     /// # Errors
     /// What the writers say.
     pub fn deliver<R: Report>(&self, result: &R) -> Result<(), Failure> {
+        self.deliver_with(result, None)
+    }
+
+    /// The same with other files beside them.
+    ///
+    /// # Errors
+    /// What the writers say.
+    pub fn deliver_with<R: Report>(
+        &self,
+        result: &R,
+        others: impl IntoIterator<Item = Result<Staged, ReportError>>,
+    ) -> Result<(), Failure> {
         let stage = |(path, format): &(PathBuf, FileFormat)| Staged::result(result, path, *format);
-        publish(self.files.iter().map(stage), self.quiet)?;
+        publish(self.files.iter().map(stage).chain(others), self.quiet)?;
         if self.quiet && !self.files.is_empty() {
             return Ok(());
         }

@@ -6,6 +6,7 @@ mod branches;
 mod curves;
 mod dry_friction;
 mod files;
+mod fit;
 mod forces;
 mod formats;
 #[cfg(unix)]
