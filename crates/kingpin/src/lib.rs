@@ -39,6 +39,7 @@ mod hurwitz;
 mod keys;
 pub mod lateral;
 pub mod linear_stability;
+mod origin;
 pub mod parameters;
 pub mod plane;
 pub mod rolling;

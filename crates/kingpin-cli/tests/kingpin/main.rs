@@ -8,6 +8,7 @@ mod dry_friction;
 mod files;
 mod forces;
 mod formats;
+mod headings;
 #[cfg(unix)]
 mod interruption;
 mod lateral;
