@@ -247,6 +247,7 @@ impl ReportAnalysis {
             wheel: self.request.wheel.clone(),
             x: SampledInterval::new("v", self.fastest / CHART[0] as f64, self.fastest, CHART[0]),
             y: SampledInterval::new("l", lengths[0], lengths[1], CHART[1]),
+            overlay: Vec::new(),
         };
         let chart = request.validate()?.run(control)?;
         let caption = format!(

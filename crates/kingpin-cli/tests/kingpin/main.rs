@@ -13,6 +13,7 @@ mod headings;
 mod interruption;
 mod lateral;
 mod long_values;
+mod overlays;
 mod shimmy;
 mod studies;
 mod tables;
