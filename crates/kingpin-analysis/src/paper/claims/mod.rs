@@ -45,8 +45,8 @@ pub(super) fn all(computed: &Computed, tasks: &Tasks<'_>) -> Result<Vec<Claim>, 
         Box::new(|| cycles::of_the_basin(computed.branches)),
         Box::new(large_motions::beyond_the_cycles),
         Box::new(|| cycles::of_the_radius(computed.branches)),
-        Box::new(|| friction_of_cycles::claims(computed.branches)),
         Box::new(|| large_motions::directions(computed.branches)),
+        Box::new(|| friction_of_cycles::claims(computed.branches)),
     ];
     let found: Vec<Vec<Claim>> = groups
         .par_iter()
