@@ -4,6 +4,14 @@ use kingpin::Key;
 
 /// Symbol and unit of a parameter, `$J_{w\xi}$ (kg m$^2$)`.
 pub(crate) fn of(key: Key) -> String {
+    match key.unit() {
+        "1" => symbol(key),
+        unit => format!("{} ({})", symbol(key), unit.replace("^2", "$^2$")),
+    }
+}
+
+/// The symbol of a parameter, `$J_{w\xi}$`.
+pub(crate) fn symbol(key: Key) -> String {
     let symbol = match key.symbol().split_once('_') {
         Some((letter, index)) => {
             // Greek indices are variables, letters name things.
@@ -13,10 +21,7 @@ pub(crate) fn of(key: Key) -> String {
         }
         None => key.symbol().chars().map(command).collect(),
     };
-    match key.unit() {
-        "1" => format!("${symbol}$"),
-        unit => format!("${symbol}$ ({})", unit.replace("^2", "$^2$")),
-    }
+    format!("${symbol}$")
 }
 
 /// The markup for a character of a symbol.

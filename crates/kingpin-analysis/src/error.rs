@@ -24,12 +24,14 @@ pub enum Error {
     #[error(transparent)]
     Wheel(KingpinError),
     /// A parameter that is set.
-    #[error("set {given}: {source}")]
+    #[error("{field} {given}: {source}")]
     Set {
+        /// The field of the request in which it is.
+        field: &'static str,
         /// What was given.
         given: String,
         /// What is wrong with it.
-        source: KingpinError,
+        source: Box<KingpinError>,
     },
     /// A simulation could not be run.
     #[error(transparent)]
@@ -235,7 +237,7 @@ impl AnalysisError for Error {
     fn message(&self, name: &dyn Fn(&str) -> String) -> String {
         match self {
             Self::Invalid(field) => field.message(name),
-            Self::Set { given, source } => format!("{} {given}: {source}", name("set")),
+            Self::Set { field, given, source } => format!("{} {given}: {source}", name(field)),
             Self::Start(error) => error.message(name),
             Self::Report(error) => error.message(name),
             other => other.to_string(),

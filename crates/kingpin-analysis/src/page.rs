@@ -14,7 +14,7 @@ impl PageFigure<'_> {
         let Self { number, svg, caption } = self;
         format!(
             "<figure id=\"figure{number}\">\n<div class=\"picture\">{}</div>\n<figcaption><b>Figure {number}.</b> {caption} \
-             <span class=\"files\">Files: figure{number}.svg, figure{number}.png, figure{number}.csv.</span></figcaption>\n</figure>\n",
+             <span class=\"files\">Files: figure{number}.svg, figure{number}.png, figure{number}.pdf, figure{number}.csv.</span></figcaption>\n</figure>\n",
             own_names(svg, *number)
         )
     }

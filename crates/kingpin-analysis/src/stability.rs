@@ -111,7 +111,12 @@ impl Report for StabilityResult {
                 readable(speed),
                 readable(yaw_rate)
             ),
-            _ if self.stable.is_none() => writeln!(out, "no critical speed was found"),
+            _ if self.stable.is_none() => {
+                writeln!(
+                    out,
+                    "no critical speed was found; whether it is stable at every speed or at none is undecided"
+                )
+            }
             _ => {
                 let always = if self.stable == Some(true) { "stable" } else { "unstable" };
                 let where_it_is = if straight { "" } else { " at which the motion exists" };

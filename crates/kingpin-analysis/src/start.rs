@@ -41,9 +41,10 @@ impl LabelledPoint {
         let labels = file.labels();
         let missing = || reference.no_such_label(&labels);
         let is_wanted = |label: &Option<String>| label.as_ref() == Some(&reference.label);
+        let name = reference.path.file_name().unwrap_or_default().to_string_lossy();
         let at = |wheel: Wheel, values: &[(Key, f64)]| {
             let wheel = values.iter().try_fold(wheel, |wheel, &(key, value)| wheel.with(key, value));
-            wheel.map_err(|error| reference.failure(error.to_string()))
+            wheel.map(|wheel| wheel.from_file(&name)).map_err(|error| reference.failure(error.to_string()))
         };
         match file {
             ResultFile::Hopf(result) => {

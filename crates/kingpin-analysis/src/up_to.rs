@@ -14,7 +14,11 @@ pub(crate) fn speed(wheel: &Wheel, Assignment { key, value }: &Assignment) -> Re
         return Err(Error::invalid(&["up_to"], given(), "not a speed", "v=VALUE, in m/s"));
     }
     let mut fastest = *wheel;
-    fastest.set(key, value).map_err(|source| Error::Set { given: given(), source })?;
+    fastest.set(key, value).map_err(|source| Error::Set {
+        field: "set",
+        given: given(),
+        source: Box::new(source),
+    })?;
     let speed = fastest.get(Key::V);
     if speed <= 0.0 {
         return Err(Error::invalid(&["up_to"], given(), "no speed", "a speed above 0, in m/s"));

@@ -32,7 +32,11 @@ impl WheelRequest {
     /// What is wrong with a parameter.
     pub fn change(&self, mut wheel: Wheel) -> Result<Wheel, Error> {
         for Assignment { key, value } in &self.set {
-            wheel.set(key, value).map_err(|source| Error::Set { given: format!("{key}={value}"), source })?;
+            wheel.set(key, value).map_err(|source| Error::Set {
+                field: "set",
+                given: format!("{key}={value}"),
+                source: Box::new(source),
+            })?;
         }
         wheel.check()?;
         Ok(wheel)

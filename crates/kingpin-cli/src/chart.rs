@@ -1,7 +1,7 @@
 //! `kingpin chart`: stability of the uniform motion over two parameters.
 
 use crate::wheel_options::{WheelOptions, parameter_help};
-use arclength_analysis::SampledInterval;
+use arclength_analysis::{Assignment, SampledInterval};
 use clap::Args;
 use kingpin_analysis::chart::ChartRequest;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
@@ -20,6 +20,10 @@ pub(crate) struct Chart {
     #[arg(long, value_name = "KEY=A:B:N", default_value_t = ChartRequest::default().y)]
     y: SampledInterval,
 
+    /// Draw the limits for several values of a third parameter; repeatable, for example --overlay r=0.5,1,3,inf
+    #[arg(long, value_name = "KEY=A,B,C")]
+    overlay: Vec<Assignment>,
+
     #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
@@ -32,7 +36,12 @@ impl Chart {
     /// # Errors
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
-        let request = ChartRequest { wheel: self.wheel.request(), x: self.x.clone(), y: self.y.clone() };
+        let request = ChartRequest {
+            wheel: self.wheel.request(),
+            x: self.x.clone(),
+            y: self.y.clone(),
+            overlay: self.overlay.clone(),
+        };
         let analysis = request.validate()?;
         let output = self.output.prepare()?;
         output.warn_of(analysis.warnings());

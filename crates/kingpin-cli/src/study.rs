@@ -1,6 +1,7 @@
 //! `kingpin study`: what goes beyond the paper, each study with its figures, data and findings.
 
 use crate::folder_options::FolderOptions;
+use crate::wheel_options::WheelOptions;
 use clap::{Args, ValueEnum};
 use kingpin_analysis::studies::{StudyName, StudyRequest};
 use kingpin_terminal::{Failure, ProgressDisplay};
@@ -18,6 +19,8 @@ pub(crate) struct StudyCommand {
     #[arg(short, long, value_name = "DIR", default_value_os_t = StudyRequest::default().out)]
     out: PathBuf,
 
+    #[command(flatten)]
+    wheel: WheelOptions,
     #[command(flatten)]
     options: FolderOptions,
 }
@@ -59,7 +62,8 @@ impl StudyCommand {
     /// Why it failed.
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.options.prepare()?;
-        let request = StudyRequest { studies: self.name.studies(), out: self.out.clone() };
+        let request =
+            StudyRequest { studies: self.name.studies(), wheel: self.wheel.request(), out: self.out.clone() };
         let progress = ProgressDisplay::bar("study", output.is_quiet());
         let (result, _) = output.watch(progress, |control| request.run(control));
         output.deliver(&result?)

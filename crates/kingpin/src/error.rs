@@ -98,13 +98,12 @@ pub enum NoUniformMotion {
 #[non_exhaustive]
 pub enum KingpinError {
     /// A key that is in no table.
-    #[error("{}unknown key `{given}`; the nearest known key is `{nearest}` ({}, {})",
-        prefix(.position), .nearest.meaning(), .nearest.unit())]
+    #[error("{}unknown key `{given}`; {}", prefix(.position), told(.given, .suggestions))]
     UnknownKey {
         /// What was given.
         given: String,
-        /// The known key with the nearest name.
-        nearest: Key,
+        /// The known keys that may be meant, the likeliest first.
+        suggestions: Vec<Key>,
         /// Where in a file.
         position: Option<Position>,
     },
@@ -348,12 +347,24 @@ impl KingpinError {
     pub(crate) fn at(self, place: Position) -> Self {
         let position = Some(place);
         match self {
-            Self::UnknownKey { given, nearest, .. } => Self::UnknownKey { given, nearest, position },
+            Self::UnknownKey { given, suggestions, .. } => Self::UnknownKey { given, suggestions, position },
             Self::NotANumber { key, given, .. } => Self::NotANumber { key, given, position },
             Self::OutOfRange { key, value, .. } => Self::OutOfRange { key, value, position },
             Self::UnknownTyre { given, .. } => Self::UnknownTyre { given, position },
             other => other,
         }
+    }
+}
+
+/// The keys that may be meant, with what they mean.
+fn told(given: &str, suggestions: &[Key]) -> String {
+    // The law of the tyre is a word, and no key of a number.
+    let is_tyre = ["tyre", "tire"].into_iter().any(|word| given.to_lowercase().contains(word));
+    let tyre = is_tyre.then(|| format!("`{}` (law of the tyre: rigid, linear, brush)", Tyre::KEY));
+    let keys = suggestions.iter().map(|key| format!("`{key}` ({}, {})", key.meaning(), key.unit()));
+    match tyre.into_iter().chain(keys).collect::<Vec<_>>().as_slice() {
+        [nearest] => format!("the nearest known key is {nearest}"),
+        several => format!("it may be {}", several.join(", or ")),
     }
 }
 

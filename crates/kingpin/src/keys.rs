@@ -5,11 +5,32 @@ use crate::error::KingpinError;
 use crate::parameters::{Key, Tyre};
 use std::str::FromStr;
 
+/// Words that the meanings of the parameters do not have, each with one that they have.
+const OTHER_WORDS: [(&str, &str); 13] = [
+    ("arm", "caster length"),
+    ("damper", "damping"),
+    ("dry", "dry"),
+    ("load", "vertical force"),
+    ("moi", "inertia"),
+    ("offset", "caster length"),
+    ("spring", "stiffness"),
+    ("stiff", "stiffness"),
+    ("tire", "tyre"),
+    ("torque", "moment"),
+    ("trail", "caster length"),
+    ("velocity", "speed"),
+    ("weight", "vertical force"),
+];
+
+/// Most keys that are named where one is not known.
+const SUGGESTED: usize = 4;
+
 impl Key {
-    /// The key whose name is nearest to what was given: fewest edits when case and underscores are disregarded,
-    /// then fewest edits with them. Where that is another name altogether, the key whose meaning begins with the words given, or has
-    /// them.
-    pub fn nearest(given: &str) -> Key {
+    /// The keys that may be meant by what was given, the likeliest first, at most four and at least one.
+    ///
+    /// That is the key whose name is nearest: fewest edits when case and underscores are disregarded, then fewest edits with them. Where
+    /// that is another name altogether, it is those whose meaning has most of the words given.
+    pub fn suggestions(given: &str) -> Vec<Key> {
         /// Characters that are looked at: no key has as many.
         const LOOKED_AT: usize = 40;
         let given = &given.chars().take(LOOKED_AT).collect::<String>();
@@ -17,21 +38,59 @@ impl Key {
         let distance =
             |key: &Key| (edit_distance(&plain(given), &plain(key.name())), edit_distance(given, key.name()));
         let nearest = Self::ALL.into_iter().min_by_key(distance).unwrap_or(Key::V);
-        if 2 * distance(&nearest).0 <= plain(given).chars().count() {
-            return nearest;
+        let shorter = plain(given).chars().count().min(plain(nearest.name()).len() + 1);
+        let is_near = 2 * distance(&nearest).0 <= shorter;
+        if is_near && !Self::ALL.into_iter().any(|key| key.words_of_meaning().any(|word| word == given)) {
+            return vec![nearest];
         }
-        let by_meaning = Self::ALL.into_iter().filter_map(|key| Some((key.place_in_meaning(given)?, key)));
-        by_meaning.min_by_key(|(place, _)| *place).map_or(nearest, |(_, key)| key)
+        let by_meaning = Self::by_meaning(given);
+        if by_meaning.is_empty() { vec![nearest] } else { by_meaning }
     }
 
-    /// Where in the meaning of the key the first of some words stands, if all of them do.
+    /// The words of the meaning of the key, without what is said of special values.
+    fn words_of_meaning(self) -> impl Iterator<Item = &'static str> {
+        self.meaning()
+            .split(';')
+            .take(1)
+            .flat_map(|part| part.split(|letter: char| !letter.is_alphanumeric()))
+    }
+
+    /// The keys whose meaning has the most of some words; first those in which the words stand first.
+    fn by_meaning(given: &str) -> Vec<Key> {
+        let mut separated = String::new();
+        for letter in given.chars() {
+            let begins_word = letter.is_uppercase() && separated.ends_with(char::is_lowercase);
+            separated.extend(begins_word.then_some('_').into_iter().chain([letter]));
+        }
+        let separated = separated.to_lowercase();
+        let words: Vec<&str> = separated.split(|letter: char| !letter.is_alphanumeric()).collect();
+        let mut found: Vec<(usize, usize, Key)> = Self::ALL
+            .into_iter()
+            .map(|key| {
+                let places: Vec<usize> = words.iter().filter_map(|word| key.place_in_meaning(word)).collect();
+                (places.len(), places.into_iter().min().unwrap_or(0), key)
+            })
+            .collect();
+        let most = found.iter().map(|(count, ..)| *count).max().unwrap_or(0);
+        found.retain(|(count, ..)| *count == most && most > 0);
+        found.sort_by_key(|(_, place, _)| *place);
+        found.into_iter().map(|(.., key)| key).take(SUGGESTED).collect()
+    }
+
+    /// Where in the meaning of the key a word stands, or one of the same meaning, counted in words.
     fn place_in_meaning(self, given: &str) -> Option<usize> {
-        /// Words as short as these stand everywhere.
-        const SHORT: usize = 3;
-        let given = given.to_lowercase();
-        let words = given.split(|letter: char| !letter.is_alphanumeric()).filter(|word| word.len() > SHORT);
-        let places: Option<Vec<usize>> = words.map(|word| self.meaning().find(word)).collect();
-        places?.into_iter().min()
+        /// Shorter words stand everywhere.
+        const SHORTEST: usize = 4;
+        let has = |given: &str, exactly: bool| {
+            let mut words = self.words_of_meaning();
+            words.position(|word| if exactly { word == given } else { word.starts_with(given) })
+        };
+        let itself = if given.len() < SHORTEST { None } else { has(given, false) };
+        itself.or_else(|| {
+            let (_, other) = OTHER_WORDS.into_iter().find(|(word, _)| given.starts_with(word))?;
+            let places: Option<Vec<usize>> = other.split(' ').map(|word| has(word, true)).collect();
+            places?.into_iter().min()
+        })
     }
 
     /// That no two of the keys set the same parameter.
@@ -56,7 +115,7 @@ impl FromStr for Key {
         }
         Self::ALL.into_iter().find(|key| key.name() == given).ok_or_else(|| KingpinError::UnknownKey {
             given: given.to_owned(),
-            nearest: Self::nearest(given),
+            suggestions: Self::suggestions(given),
             position: None,
         })
     }
@@ -103,18 +162,38 @@ mod tests {
             ("vv", Key::V),
             ("faz", Key::FAz),
         ] {
-            assert_eq!(Key::nearest(given), nearest, "{given}");
+            assert_eq!(Key::suggestions(given), [nearest], "{given}");
         }
         for (given, meant) in [
-            ("stiffness", Key::K),
-            ("lateral_stiffness", Key::KQ),
-            ("caster_length", Key::L),
-            ("towing_speed", Key::V),
-            ("wheel radius", Key::WheelRadius),
-            ("mass_of_the_caster", Key::MC),
-            ("gravity", Key::G),
+            ("stiffness", vec![Key::K, Key::KU, Key::KQ, Key::KPsi]),
+            ("lateral_stiffness", vec![Key::KQ]),
+            ("spring", vec![Key::K, Key::KU, Key::KQ, Key::KPsi]),
+            ("caster_length", vec![Key::L]),
+            ("casterLength", vec![Key::L]),
+            ("speed", vec![Key::V]),
+            ("towing_speed", vec![Key::V]),
+            ("velocity", vec![Key::V]),
+            ("damping", vec![Key::CU, Key::CQ, Key::CPsi]),
+            ("damper", vec![Key::CU, Key::CQ, Key::CPsi]),
+            ("rotational_damper", vec![Key::CPsi]),
+            ("trail", vec![Key::L, Key::TP]),
+            ("pneumatic_trail", vec![Key::TP]),
+            ("radius", vec![Key::WheelRadius, Key::TurningRadius]),
+            ("wheel radius", vec![Key::WheelRadius]),
+            ("turning_radius", vec![Key::TurningRadius]),
+            ("friction", vec![Key::MuS, Key::MuD, Key::MF]),
+            ("dry_friction", vec![Key::MF]),
+            ("static_friction", vec![Key::MuS]),
+            ("mass", vec![Key::MW, Key::MC]),
+            ("mass_of_the_caster", vec![Key::MC]),
+            ("inertia", vec![Key::JWxi, Key::JWzeta, Key::JCz]),
+            ("load", vec![Key::FAz]),
+            ("vertical_load", vec![Key::FAz]),
+            ("gravity", vec![Key::G, Key::JCz]),
+            ("relaxation", vec![Key::Sigma]),
+            ("cornering_stiffness", vec![Key::CAlpha]),
         ] {
-            assert_eq!(Key::nearest(given), meant, "{given}");
+            assert_eq!(Key::suggestions(given), meant, "{given}");
         }
         assert_eq!(edit_distance("kitten", "sitting"), 3);
     }

@@ -40,6 +40,7 @@ pub mod identification;
 mod keys;
 pub mod lateral;
 pub mod linear_stability;
+mod origin;
 pub mod parameters;
 pub mod plane;
 pub mod rolling;

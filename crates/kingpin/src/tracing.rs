@@ -3,7 +3,7 @@
 //! Starting points are the zeros on the edges of a coarse grid; from each the curve is followed both ways with
 //! pseudo-arclength steps: a predictor along the tangent, Newton's method back to the zero set along the gradient
 //! (Allgower and Georg, *Introduction to Numerical Continuation Methods*, chapter 3). Only the starting points depend on
-//! the grid, so a closed curve or a strip narrower than a cell may be missed.
+//! the grid, so a closed curve inside a cell may be missed, and a strip narrower than one, unless the function ends there.
 
 use arclength::control::{Control, Interrupted};
 
@@ -22,6 +22,8 @@ const LARGEST_TURN: f64 = 0.1;
 const CORRECTION: f64 = 1e-13;
 /// Newton's method, and the bisection at a starting point, give up after so many steps.
 const CORRECTIONS: usize = 8;
+/// The edge of the domain of the function is looked for by so many halvings of an edge of the grid.
+const HALVINGS: usize = 16;
 /// Half the distance of the points from which the gradient is taken.
 const DIFFERENCE: f64 = 1e-6;
 /// A starting point nearer than this to a curve lies on it.
@@ -84,16 +86,36 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
                     }
                     let value = nodes[row * (CELLS + 1) + column];
                     let next = nodes[(row + up) * (CELLS + 1) + column + right];
-                    if let (Some(value), Some(next)) = (value, next)
-                        && (value < 0.0) != (next < 0.0)
-                    {
-                        let ends = [[at(column), at(row)], [at(column + right), at(row + up)]];
-                        zeros.extend(self.zero_between(ends, value));
+                    let ends = [[at(column), at(row)], [at(column + right), at(row + up)]];
+                    match (value, next) {
+                        (Some(value), Some(next)) if (value < 0.0) != (next < 0.0) => {
+                            zeros.extend(self.zero_between(ends, value));
+                        }
+                        (Some(value), None) => zeros.extend(self.zero_before_the_edge(ends, value)),
+                        (None, Some(next)) => {
+                            zeros.extend(self.zero_before_the_edge([ends[1], ends[0]], next));
+                        }
+                        _ => {}
                     }
                 }
             }
         }
         Ok(zeros)
+    }
+
+    /// A zero on the way from a point to another where the function has no value.
+    fn zero_before_the_edge(&self, [mut inside, mut outside]: [Point; 2], value: f64) -> Option<Point> {
+        for _ in 0..HALVINGS {
+            let middle = [0.5 * (inside[0] + outside[0]), 0.5 * (inside[1] + outside[1])];
+            match (self.function)(middle) {
+                Some(other) if (other < 0.0) != (value < 0.0) => {
+                    return self.zero_between([inside, middle], value);
+                }
+                Some(_) => inside = middle,
+                None => outside = middle,
+            }
+        }
+        None
     }
 
     /// Bisection until Newton's method takes over.
@@ -228,6 +250,17 @@ mod tests {
             .map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]))
             .sum();
         assert!((length - 0.6 * std::f64::consts::PI).abs() < 1e-4, "{length}");
+    }
+
+    /// Between two rows of the grid, of which one lies outside of the domain.
+    #[test]
+    fn a_curve_close_to_the_edge_of_the_domain_is_found() {
+        let strip = |[_, y]: Point| (y > 0.401).then_some(y - 0.405);
+        let curves = trace_zero_set(strip, &Control::none()).unwrap();
+        let [line] = &curves[..] else { panic!("{} curves", curves.len()) };
+        assert!(line.points.iter().all(|[_, y]| (y - 0.405).abs() < 1e-12));
+        let [first, last] = [line.points[0][0], line.points[line.points.len() - 1][0]];
+        assert!((last - first).abs() > 1.0 - 1e-6, "{first} {last}");
     }
 
     #[test]

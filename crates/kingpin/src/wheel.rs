@@ -1,6 +1,7 @@
 //! A wheel: named, validated parameters, read from TOML and overridden one by one.
 
 use crate::error::{KingpinError, Position};
+use crate::origin::Origin;
 use crate::parameters::{Key, STORED, Tyre};
 use std::path::Path;
 use toml::de::{DeTable, DeValue};
@@ -24,13 +25,15 @@ pub(crate) const HALF_LENGTHS_PER_TRAIL: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Wheel {
     values: [f64; STORED],
-    /// Whether `mu_d` was given; otherwise it is kept at or below `mu_s`.
-    sliding_friction_is_set: bool,
     /// What was said of the tyre; nothing is a rigid one.
     tyre: Option<Tyre>,
-    /// Whether `t_p` was given; otherwise it is `a/3`.
-    pneumatic_trail_is_set: bool,
+    /// Where the values come from. Unless they were set, `mu_d` is kept at or below `mu_s`, and `t_p` at `a/3`.
+    origin: Origin,
 }
+
+/// What says which body a wheel has.
+const BODY: [Key; 9] =
+    [Key::MW, Key::MC, Key::JWxi, Key::JWzeta, Key::JCz, Key::WheelRadius, Key::LC, Key::KU, Key::KQ];
 
 impl PartialEq for Wheel {
     /// Wheels with the same values are the same, whether these were set or not.
@@ -45,7 +48,7 @@ impl Default for Wheel {
         for (value, key) in values.iter_mut().zip(Key::ALL) {
             *value = key.default_value();
         }
-        Self { values, sliding_friction_is_set: false, tyre: None, pneumatic_trail_is_set: false }
+        Self { values, tyre: None, origin: Origin::default() }
     }
 }
 
@@ -100,6 +103,7 @@ impl Wheel {
         if !key.allowed().contains(value) {
             return Err(KingpinError::OutOfRange { key, value, position: None });
         }
+        let before = self.values;
         match key {
             Key::Curvature => {
                 // A curvature below that of the largest radius is taken for straight.
@@ -109,12 +113,12 @@ impl Wheel {
             }
             _ => key.sets().iter().for_each(|&stored| self.values[stored as usize] = value),
         }
-        self.sliding_friction_is_set |= key == Key::MuD;
-        if !self.sliding_friction_is_set {
+        let values = self.values;
+        self.origin.note(key, |stored| before[stored as usize] != values[stored as usize]);
+        if !self.origin.is_set(Key::MuD) {
             self.values[Key::MuD as usize] = Key::MuD.default_value().min(self.get(Key::MuS));
         }
-        self.pneumatic_trail_is_set |= key == Key::TP;
-        if !self.pneumatic_trail_is_set {
+        if !self.origin.is_set(Key::TP) {
             self.values[Key::TP as usize] = self.get(Key::HalfContactLength) / HALF_LENGTHS_PER_TRAIL;
         }
         Ok(())
@@ -196,7 +200,7 @@ impl Wheel {
 
     /// Whether `t_p` is `a/3` because it was not set.
     pub(crate) fn pneumatic_trail_follows(&self) -> bool {
-        !self.pneumatic_trail_is_set
+        !self.origin.is_set(Key::TP)
     }
 
     /// Reads a wheel from TOML: `key = value` lines. Keys that are absent keep the value of the default wheel; `k` and
@@ -256,8 +260,40 @@ impl Wheel {
         let path = path.as_ref();
         let text = std::fs::read_to_string(path)
             .map_err(|source| KingpinError::Unreadable { path: path.to_owned(), source })?;
-        Self::from_toml(&text)
-            .map_err(|source| KingpinError::InFile { path: path.to_owned(), source: Box::new(source) })
+        let wheel = Self::from_toml(&text)
+            .map_err(|source| KingpinError::InFile { path: path.to_owned(), source: Box::new(source) })?;
+        Ok(wheel.from_file(&path.file_name().unwrap_or_default().to_string_lossy()))
+    }
+
+    /// The wheel as that of a file with this name: what is set from now on is told as [changed](Self::is_changed).
+    #[must_use]
+    pub fn from_file(mut self, name: &str) -> Self {
+        self.origin.is_file(name);
+        self
+    }
+
+    /// The name of the file that the wheel is from; nothing where it is from none.
+    pub fn file_name(&self) -> Option<&str> {
+        self.origin.file_name()
+    }
+
+    /// Whether a stored parameter was changed since the file was read that the wheel is from; where it is from none, whether it
+    /// differs from that of the paper's wheel.
+    pub fn is_changed(&self, key: Key) -> bool {
+        match self.file_name() {
+            Some(_) => self.origin.is_changed(key),
+            None => self.get(key) != key.default_value(),
+        }
+    }
+
+    /// What was not set of masses, moments of inertia, lengths and stiffnesses, and so is that of the paper's wheel.
+    pub fn left_to_the_paper(&self) -> impl Iterator<Item = Key> {
+        BODY.into_iter().filter(|key| !self.origin.is_set(*key))
+    }
+
+    /// Whether `k` was set, and `k_u` or `k_q` too, both in a file or both after it.
+    pub fn stiffness_is_given_twice(&self) -> bool {
+        self.origin.stiffness_is_given_twice()
     }
 
     /// The wheel as TOML, which [`from_toml`](Self::from_toml) reads back; what follows from other parameters is left to follow.
@@ -306,7 +342,7 @@ impl Wheel {
 
     /// Whether `mu_d` is `mu_s` because it was not set.
     pub(crate) fn sliding_friction_follows_static(&self) -> bool {
-        !self.sliding_friction_is_set && self.get(Key::MuS) < Key::MuD.default_value()
+        !self.origin.is_set(Key::MuD) && self.get(Key::MuS) < Key::MuD.default_value()
     }
 
     /// Whether any of the three dampers acts.

@@ -11,11 +11,13 @@ pub struct Parameters {
     pub words: Vec<(String, String)>,
     /// Those that are numbers.
     pub numbers: NamedNumbers,
+    /// What is worth knowing of how they were given; not in JSON.
+    pub remarks: Vec<String>,
 }
 
 impl From<NamedNumbers> for Parameters {
     fn from(numbers: NamedNumbers) -> Self {
-        Self { words: Vec::new(), numbers }
+        Self { numbers, ..Self::default() }
     }
 }
 
@@ -70,7 +72,11 @@ mod tests {
     #[test]
     fn numbers_and_words_are_read_back() {
         let numbers = NamedNumbers(vec![("r".to_owned(), f64::INFINITY), ("l".to_owned(), 0.1)]);
-        let parameters = Parameters { words: vec![("tyre".to_owned(), "brush".to_owned())], numbers };
+        let parameters = Parameters {
+            words: vec![("tyre".to_owned(), "brush".to_owned())],
+            numbers,
+            ..Parameters::default()
+        };
         let text = serde_json::to_string(&parameters).unwrap();
         assert_eq!(text, r#"{"tyre":"brush","r":"inf","l":0.1}"#);
         assert_eq!(serde_json::from_str::<Parameters>(&text).unwrap(), parameters);

@@ -99,7 +99,7 @@ impl Output {
         (outcome, interruption)
     }
 
-    /// Writes the files, all or none, then standard output; the latter not where there are files and quiet was asked for.
+    /// Warns of what is worth knowing of the parameters, writes the files, all or none, then standard output; the latter not where there are files and quiet was asked for.
     ///
     /// # Errors
     /// What the writers say.
@@ -116,6 +116,7 @@ impl Output {
         result: &R,
         others: impl IntoIterator<Item = Result<Staged, ReportError>>,
     ) -> Result<(), Failure> {
+        self.warn_of(&result.parameters().remarks);
         let stage = |(path, format): &(PathBuf, FileFormat)| Staged::result(result, path, *format);
         publish(self.files.iter().map(stage).chain(others), self.quiet)?;
         if self.quiet && !self.files.is_empty() {

@@ -1,15 +1,19 @@
 //! What a stability chart is asked for by, and how it is computed.
 
+use super::overlay::{Overlay, wheels};
 use super::result::ChartResult;
 use crate::axis::{axis, conversion};
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
-use arclength_analysis::{Control, SampledInterval};
-use kingpin::{Plane, Wheel};
+use arclength_analysis::{Assignment, Control, SampledInterval};
+use kingpin::{Key, Plane, Wheel};
 use serde::{Deserialize, Serialize};
 
 /// Most points of a chart; with everything that is written of them they take about a gigabyte of memory.
 const MOST_POINTS: usize = 10_000_000;
+
+/// Part of the time that the chart itself takes where there are overlays, roughly.
+const HALF: f64 = 0.5;
 
 /// A stability chart over any two parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,6 +26,8 @@ pub struct ChartRequest {
     pub x: SampledInterval,
     /// Parameter upwards.
     pub y: SampledInterval,
+    /// Third parameters with lists of values, `r=0.5,1,inf`, for each of which the limits are drawn over the chart.
+    pub overlay: Vec<Assignment>,
 }
 
 impl Default for ChartRequest {
@@ -30,6 +36,7 @@ impl Default for ChartRequest {
             wheel: WheelRequest::default(),
             x: SampledInterval::new("v", 0.1, 12.0, 240),
             y: SampledInterval::new("l", 0.02, 0.3, 141),
+            overlay: Vec::new(),
         }
     }
 }
@@ -40,6 +47,8 @@ pub struct ChartAnalysis {
     wheel: Wheel,
     plane: Plane,
     points: [usize; 2],
+    /// The wheels of the overlays, with the parameter in which they differ and its value.
+    overlays: Vec<(Key, f64, Wheel)>,
     warnings: Vec<String>,
 }
 
@@ -64,7 +73,8 @@ impl ChartRequest {
         }
         let axes = [(&self.x.interval, plane.x()), (&self.y.interval, plane.y())];
         let warnings = axes.into_iter().filter_map(|(interval, axis)| conversion(interval, axis)).collect();
-        Ok(ChartAnalysis { wheel, plane, points, warnings })
+        let overlays = wheels(&self.overlay, &wheel, &plane)?;
+        Ok(ChartAnalysis { wheel, plane, points, overlays, warnings })
     }
 }
 
@@ -79,7 +89,14 @@ impl ChartAnalysis {
     /// # Errors
     /// [`Error::Wheel`], and [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<ChartResult, Error> {
-        let chart = self.wheel.growth_rate_chart(&self.plane, self.points, control)?;
-        ChartResult::new(self.wheel, self.plane, chart, &control.quiet())
+        let on_the_way = if self.overlays.is_empty() { 1.0 } else { HALF };
+        let chart = self.wheel.growth_rate_chart(&self.plane, self.points, &control.part(0.0..on_the_way))?;
+        let part = |index: usize| HALF + (1.0 - HALF) * index as f64 / self.overlays.len() as f64;
+        let mut overlays = Vec::with_capacity(self.overlays.len());
+        for (index, (key, value, wheel)) in self.overlays.iter().enumerate() {
+            let control = control.part(part(index)..part(index + 1));
+            overlays.push(Overlay::trace(*key, *value, wheel, &self.plane, &control)?);
+        }
+        ChartResult::new(self.wheel, self.plane, chart, overlays, &control.quiet())
     }
 }

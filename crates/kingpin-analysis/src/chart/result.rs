@@ -1,26 +1,27 @@
 //! A stability chart as a result.
 
+use super::overlay::{COLORS, LimitPoint, Overlay, points_of};
 use crate::axis_label;
 use crate::description;
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
 use arclength_analysis::Control;
-use kingpin::{Axis, Curve, GrowthRateChart, Plane, Wheel};
-use kingpin_figure::{ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette};
+use kingpin::{Axis, GrowthRateChart, Plane, Wheel};
+use kingpin_figure::{
+    CategoryMap, ColorMap, Dash, Figure, FigureError, Grid, HeatMap, Legend, LegendEntry, Line, Panel,
+    palette,
+};
 use kingpin_report::numbers::{readable, significant};
-use kingpin_report::{Columns, Parameters, Report, Schema};
+use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
+use std::iter::repeat_n;
 
 /// Most characters across and down in the chart that is printed.
 const PRINTED: [usize; 2] = [72, 24];
 /// Part of the growth rates whose absolute values the colours resolve; the others have the colours of the ends.
 const RESOLVED_PART: f64 = 0.85;
-
-fn points_of(curves: Vec<Curve>) -> Vec<Vec<[f64; 2]>> {
-    curves.into_iter().map(|curve| curve.points).collect()
-}
 
 /// An axis of the grid.
 #[derive(Debug, Serialize)]
@@ -62,6 +63,9 @@ pub struct ChartResult {
     pub stability_boundary: Vec<Vec<[f64; 2]>>,
     /// The limit of rolling, as curves of points.
     pub rolling_limit: Vec<Vec<[f64; 2]>>,
+    /// The limits with other values of a third parameter.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub overlays: Vec<Overlay>,
     /// Dry friction about the king pin that was left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dry_friction: Option<NeglectedDryFriction>,
@@ -76,6 +80,7 @@ impl ChartResult {
         wheel: Wheel,
         plane: Plane,
         chart: GrowthRateChart,
+        overlays: Vec<Overlay>,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
         let GrowthRateChart { x, y, growth_rate, stable, rolls } = chart;
@@ -88,6 +93,7 @@ impl ChartResult {
             rolls,
             stability_boundary: points_of(wheel.stability_boundary(&plane, control)?),
             rolling_limit: points_of(wheel.rolling_limit(&plane, control)?),
+            overlays,
             dry_friction: NeglectedDryFriction::of(&wheel, &[plane.x().key(), plane.y().key()]),
             plane,
         })
@@ -164,23 +170,70 @@ impl Report for ChartResult {
         if undecided > 0 {
             writeln!(out, "? undecided, at {undecided} points: rounding could make it stable or unstable")?;
         }
+        self.write_overlays(out)?;
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
 
+    /// The grid row by row, then the points of the limits of every overlay.
     fn columns(&self) -> Columns {
         let [x, y] = [&self.x.values, &self.y.values];
-        Columns::new()
-            .numbers(self.x.key, y.iter().flat_map(|_| x.iter().copied()))
+        let limits: Vec<LimitPoint<'_>> = self.overlays.iter().flat_map(Overlay::points).collect();
+        let (grid, points) = (self.growth_rate.len(), limits.len());
+        let columns = Columns::new()
+            .numbers(
+                self.x.key,
+                y.iter().flat_map(|_| x.iter().copied()).chain(limits.iter().map(|point| point.at[0])),
+            )
             .unit(self.x.unit)
-            .numbers(self.y.key, y.iter().flat_map(|&y| x.iter().map(move |_| y)))
+            .numbers(
+                self.y.key,
+                y.iter()
+                    .flat_map(|&y| x.iter().map(move |_| y))
+                    .chain(limits.iter().map(|point| point.at[1])),
+            )
             .unit(self.y.unit)
-            .optional_numbers("growth_rate", self.growth_rate.iter().copied())
+            .optional_numbers("growth_rate", self.growth_rate.iter().copied().chain(repeat_n(None, points)))
             .unit("1/s")
-            .booleans("stable", self.stable.iter().copied())
-            .booleans("rolls", self.rolls.iter().copied())
+            .booleans("stable", self.stable.iter().copied().chain(repeat_n(None, points)))
+            .booleans("rolls", self.rolls.iter().copied().map(Some).chain(repeat_n(None, points)));
+        if self.overlays.is_empty() {
+            return columns;
+        }
+        let texts = |text: fn(&LimitPoint<'_>) -> String| {
+            repeat_n(None, grid).chain(limits.iter().map(move |point| Some(text(point))))
+        };
+        columns
+            .texts("limit", texts(|point| point.limit.to_owned()))
+            .texts("overlay", texts(|point| point.overlay.key.name().to_owned()))
+            .optional_numbers(
+                "overlay_value",
+                repeat_n(None, grid).chain(limits.iter().map(|point| Some(point.overlay.value))),
+            )
+            .texts("curve", texts(|point| point.curve.to_string()))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
+        let axes = [self.plane.x(), self.plane.y()].map(|axis| {
+            kingpin_figure::Axis::new(axis_label::of(axis.key())).limits(axis.start(), axis.end())
+        });
+        let [x, y] = axes;
+        let panel = Panel::new(x, y).legend(Legend::Below);
+        let panel = if self.overlays.is_empty() { self.growth_rates(panel)? } else { self.limits(panel)? };
+        let what =
+            if self.overlays.is_empty() { "Growth rate" } else { "Limits of stability and of rolling" };
+        let description = format!(
+            "{what} of the uniform motion at {} against {} and {}",
+            description::of(&self.wheel, &self.keys()),
+            self.x.key,
+            self.y.key
+        );
+        Ok(Some(Figure::single_column().description(description).panel(panel)))
+    }
+}
+
+impl ChartResult {
+    /// The growth rate in colours, with both limits.
+    fn growth_rates(&self, mut panel: Panel) -> Result<Panel, FigureError> {
         let rates: Vec<f64> = self.growth_rate.iter().map(|rate| rate.unwrap_or(f64::NAN)).collect();
         let mut map = HeatMap::new(Grid::new(self.x.values.clone(), self.y.values.clone())?, rates)?
             .color_map(ColorMap::Diverging)
@@ -188,11 +241,7 @@ impl Report for ChartResult {
         if let Some(limit) = self.color_limit() {
             map = map.limits(-limit, limit);
         }
-        let axes = [self.plane.x(), self.plane.y()].map(|axis| {
-            kingpin_figure::Axis::new(axis_label::of(axis.key())).limits(axis.start(), axis.end())
-        });
-        let [x, y] = axes;
-        let mut panel = Panel::new(x, y).map(map).legend(Legend::Below);
+        panel = panel.map(map);
         for (index, curve) in self.stability_boundary.iter().enumerate() {
             let line = Line::new(curve.iter().copied()).color(palette::BLACK);
             panel = panel.curve(if index == 0 { line.legend("limit of stability") } else { line });
@@ -201,12 +250,62 @@ impl Report for ChartResult {
             let line = Line::new(curve.iter().copied()).dashed().color(palette::BLACK);
             panel = panel.curve(if index == 0 { line.legend("limit of rolling") } else { line });
         }
-        let description = format!(
-            "Growth rate of the uniform motion at {} against {} and {}",
-            description::of(&self.wheel, &self.keys()),
-            self.x.key,
-            self.y.key
-        );
-        Ok(Some(Figure::single_column().description(description).panel(panel)))
+        Ok(panel)
+    }
+
+    /// The limits of every overlay, over where the wheel itself is stable.
+    fn limits(&self, mut panel: Panel) -> Result<Panel, FigureError> {
+        let grid = Grid::new(self.x.values.clone(), self.y.values.clone())?;
+        let cells: Vec<usize> = self.stable.iter().map(|stable| usize::from(*stable != Some(true))).collect();
+        let shade = palette::SKY_BLUE.lightened(0.65);
+        panel = panel.map(CategoryMap::new(grid, cells, [("stable", shade)])?);
+        // A load changes nothing of the stability: then there is one limit for all.
+        let same = |overlay: &Overlay| overlay.stability_boundary == self.stability_boundary;
+        let is_shared = self.overlays.iter().all(same);
+        if is_shared {
+            for curve in &self.stability_boundary {
+                panel = panel.curve(Line::new(curve.iter().copied()).color(palette::BLACK));
+            }
+        }
+        for (overlay, color) in self.overlays.iter().zip(COLORS.into_iter().cycle()) {
+            panel = panel.curves(overlay.lines(color, is_shared));
+        }
+        for (name, dash) in [("limit of stability", Dash::Solid), ("limit of rolling", Dash::Dashed)] {
+            panel = panel.legend_entry(LegendEntry::line(name, palette::BLACK, dash));
+        }
+        Ok(panel)
+    }
+
+    /// How far the limits of every overlay reach.
+    fn write_overlays(&self, out: &mut dyn Write) -> io::Result<()> {
+        if self.overlays.is_empty() {
+            return Ok(());
+        }
+        let reach = |curves: &[Vec<[f64; 2]>]| {
+            let values = || curves.iter().flatten().map(|[x, _]| *x);
+            match curves.is_empty() {
+                true => "none here".to_owned(),
+                false => format!(
+                    "{} to {} {}",
+                    significant(values().fold(f64::INFINITY, f64::min), 4),
+                    significant(values().fold(f64::NEG_INFINITY, f64::max), 4),
+                    self.x.unit
+                ),
+            }
+        };
+        writeln!(out)?;
+        let mut table = Table::new([
+            "".to_owned(),
+            format!("limit of stability, {}", self.x.key),
+            format!("limit of rolling, {}", self.x.key),
+        ]);
+        for overlay in &self.overlays {
+            table.row([
+                overlay.name().into(),
+                reach(&overlay.stability_boundary).into(),
+                reach(&overlay.rolling_limit).into(),
+            ]);
+        }
+        table.write(out)
     }
 }

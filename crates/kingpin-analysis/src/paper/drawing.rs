@@ -15,15 +15,17 @@ pub(super) struct Drawing {
     pub caption: String,
 }
 
-/// A figure in both its formats.
+/// A figure in all its formats.
 pub(super) struct Pictures {
     pub svg: String,
     pub png: Vec<u8>,
+    pub pdf: Vec<u8>,
 }
 
 impl Drawing {
     pub(super) fn pictures(&self) -> Result<Pictures, Error> {
-        let (svg, png) = rayon::join(|| self.figure.to_svg(), || self.figure.to_png(DPI));
-        Ok(Pictures { svg: svg?, png: png? })
+        let vectors = || (self.figure.to_svg(), self.figure.to_pdf());
+        let ((svg, pdf), png) = rayon::join(vectors, || self.figure.to_png(DPI));
+        Ok(Pictures { svg: svg?, png: png?, pdf })
     }
 }

@@ -74,10 +74,11 @@ impl PaperRequest {
             let page = page(&figures, &claims, &parameters_of_the_wheel());
             contents.push(("report.html".to_owned(), page.into_bytes()));
         }
-        for (drawing, Pictures { svg, png }) in drawings.iter().zip(pictures) {
+        for (drawing, Pictures { svg, png, pdf }) in drawings.iter().zip(pictures) {
             let name = |ending: &str| format!("figure{}.{ending}", drawing.number);
             contents.push((name("svg"), svg.into_bytes()));
             contents.push((name("png"), png));
+            contents.push((name("pdf"), pdf));
             contents.push((name("csv"), drawing.data.to_csv().into_bytes()));
         }
         Ok(PaperResult { files: folder::write(&self.out, &contents)?, claims })

@@ -5,7 +5,7 @@ use super::data::{Cell, Data};
 use super::diagrams_in_space::{beyond_rolling_legend, stability_word};
 use super::drawing::Drawing;
 use super::rolling_limit::HEAVIEST;
-use super::wheel::{radius_color, radius_label};
+use super::wheel::{RADII, radius_color, radius_label};
 use crate::error::Error;
 use arclength::branch::{Labelled, SpecialKind};
 use arclength::cycle::CyclePoint;
@@ -14,11 +14,16 @@ use kingpin_figure::{
     Panel, Stability, palette,
 };
 
+/// Speeds at which the uniform motion is computed.
+const SPEEDS: usize = 36;
+
 pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
     let mut panel = Panel::new(
         Axis::new("$v$ (m/s)").limits(0.0, FASTEST),
         Axis::new("extremes of $\\psi-\\psi_0$ (rad)").limits(-0.8, 0.8),
     )
+    .tag("(b)")
+    .title("limit cycles")
     .legend(Legend::Below)
     .curve(Line::new([(0.0, 0.0), (FASTEST, 0.0)]).color(palette::GREY).width(0.6));
     let mut data = Data::new(&[
@@ -32,6 +37,41 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         ("stability", ""),
         ("friction_max", "N"),
     ]);
+    let mut motions = Panel::new(
+        Axis::new("$v$ (m/s)").limits(0.0, FASTEST).without_labels(),
+        Axis::new("").limits(-0.6, RADII.len() as f64 - 0.4).ticks(
+            (0..).zip(RADII).map(|(place, radius): (u8, f64)| (f64::from(place), radius_label(radius))),
+        ),
+    )
+    .tag("(a)")
+    .title("uniform motion");
+    for (place, branch) in branches.of_figure_6().enumerate() {
+        let (place, color) = (place as f64, radius_color(branch.radius));
+        let along = uniform_motions(branch)?;
+        for &Uniform { speed, angle, friction, stability } in &along {
+            data.push([
+                "uniform motion".into(),
+                branch.radius.into(),
+                speed.into(),
+                0.0.into(),
+                0.0.into(),
+                angle.into(),
+                Cell::Empty,
+                match stability {
+                    Stability::Stable => "stable",
+                    Stability::Unstable => "unstable",
+                    Stability::Changes => "Hopf point",
+                }
+                .into(),
+                friction.into(),
+            ]);
+        }
+        let line = along.iter().map(|motion| ((motion.speed, place), motion.stability));
+        motions = motions.curve(Curve::new(line).color(color));
+        let hopf = branch.hopf.iter().map(|hopf| (hopf.value, place));
+        motions =
+            motions.markers(Markers::new(hopf, Marker::new(MarkerShape::Circle).size(3.6).color(color)));
+    }
     for branch in branches.of_figure_6() {
         let radius = branch.radius;
         let color = radius_color(radius);
@@ -83,11 +123,13 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
     panel = panel.legend_entry(LegendEntry::marker("torus bifurcation", torus_marker(palette::BLACK)));
     panel = panel.legend_entry(LegendEntry::line(beyond_rolling_legend(), palette::BLACK, Dash::Dotted));
     let figure = Figure::single_column()
-        .height_mm(84.0)
+        .row_weights([1.0, 3.0])
+        .height_mm(112.0)
         .description("Extremes of the caster angle of the limit cycles against the towing speed for several turning radii")
+        .panel(motions)
         .panel(panel);
     let caption = format!(
-        "Limit cycles at <i>l</i> = {FIGURE_6_LENGTH} m for several turning radii: largest and smallest deviation of the caster angle \
+        "Turning radii at <i>l</i> = {FIGURE_6_LENGTH} m: (a) the uniform motion, (b) its limit cycles, largest and smallest deviation of the caster angle \
          from that of the uniform motion. The branch of straight running (<i>r</i> = ∞), which has no Hopf point, was reached by \
          following a cycle in 1/<i>r</i> to zero. Dashed: unstable; dotted: cycles that ask the ground for more than the static friction under {} N, the largest load of \
          figure 4. At a torus bifurcation a pair of multipliers \
@@ -95,6 +137,30 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         HEAVIEST.abs()
     );
     Ok(Drawing { number: 6, figure, data, caption })
+}
+
+/// A uniform motion; where the stability changes it is the Hopf point.
+struct Uniform {
+    speed: f64,
+    angle: f64,
+    friction: f64,
+    stability: Stability,
+}
+
+/// The uniform motions along the figure.
+fn uniform_motions(branch: &Branch) -> Result<Vec<Uniform>, Error> {
+    let hopf = branch.hopf.as_ref().map(|hopf| hopf.value).filter(|speed| *speed < FASTEST);
+    let mut speeds: Vec<f64> = (1..=SPEEDS).map(|index| FASTEST * index as f64 / SPEEDS as f64).collect();
+    speeds.extend(hopf);
+    speeds.sort_by(f64::total_cmp);
+    let motion = |speed: f64| {
+        let motion = branch.wheel(speed)?.uniform_motion()?;
+        let changes = hopf == Some(speed);
+        let stability =
+            if changes { Stability::Changes } else { Stability::from(motion.is_stable() == Some(true)) };
+        Ok(Uniform { speed, angle: motion.psi(), friction: motion.contact_force().friction(), stability })
+    };
+    speeds.into_iter().map(motion).collect()
 }
 
 fn is_torus(cycle: &CyclePoint) -> bool {

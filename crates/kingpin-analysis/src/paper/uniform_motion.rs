@@ -59,7 +59,8 @@ impl UniformMotions {
 
     pub(super) fn drawing(&self) -> Drawing {
         let speed = || Axis::new("$v$ (m/s)").limits(0.0, FASTEST);
-        let newton = self.newton.iter().step_by(3).map(|motion| (speed_of(motion), 1e18 * motion.u()));
+        let newton =
+            self.newton.iter().step_by(8).map(|motion| (speed_of(motion), 1e3 * beyond_rounding(motion.u())));
         let figure = Figure::single_column()
             .height_mm(112.0)
             .description(
@@ -72,13 +73,13 @@ impl UniformMotions {
                     .curve(self.branch(0.0, |motion| 1e3 * motion.q())),
             )
             .panel(
-                Panel::new(speed().without_labels(), Axis::new("$u_0$ ($10^{-18}$ m)"))
+                Panel::new(speed().without_labels(), Axis::new("$u_0$ (mm)").limits(-1.0, 1.0))
                     .tag("(b)")
-                    .curve(self.branch(0.0, |motion| 1e18 * motion.u()))
+                    .curve(self.branch(0.0, |motion| 1e3 * beyond_rounding(motion.u())))
                     .markers(
                         Markers::new(
                             newton,
-                            Marker::new(MarkerShape::Circle).size(1.6).color(palette::VERMILION),
+                            Marker::new(MarkerShape::Circle).size(2.0).color(palette::VERMILION),
                         )
                         .legend("Newton's method"),
                     ),
@@ -101,18 +102,18 @@ impl UniformMotions {
             data.push([
                 speed_of(motion).into(),
                 motion.q().into(),
-                motion.u().into(),
+                beyond_rounding(motion.u()).into(),
                 motion.psi().into(),
                 motion.forward_speed().into(),
-                newton.u().into(),
+                beyond_rounding(newton.u()).into(),
                 stability_word(motion.is_stable()).into(),
             ]);
         }
         let caption = format!(
             "Uniform motion at <i>l</i> = {CASTER_LENGTH} m, <i>r</i> = {RADIUS} m: lateral displacement <i>q</i><sub>0</sub>, \
              longitudinal displacement <i>u</i><sub>0</sub> and caster angle <i>ψ</i><sub>0</sub>, from the closed form; \
-             dashed where unstable (beyond {:.4} m/s). The dots in (b) are what Newton's method finds, at most \
-             {} m.",
+             dashed where unstable (beyond {:.4} m/s). In (b) it is zero exactly; the dots are what Newton's method finds, zero but \
+             for rounding (at most {} m).",
             self.critical_speed,
             number(self.largest_longitudinal_displacement(), 2)
         );
@@ -132,6 +133,11 @@ impl UniformMotions {
         });
         Branch::new(std::iter::once(start).chain(points)).color(palette::BLUE).into()
     }
+}
+
+/// A displacement in m without what rounding can make of zero, a unit in the last place of the caster length.
+fn beyond_rounding(displacement: f64) -> f64 {
+    if displacement.abs() <= f64::EPSILON * CASTER_LENGTH { 0.0 } else { displacement }
 }
 
 fn speed_of(motion: &UniformMotion) -> f64 {

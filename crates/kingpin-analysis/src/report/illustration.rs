@@ -18,6 +18,7 @@ pub(super) struct Illustration {
 pub(super) struct Pictures {
     pub svg: String,
     pub png: Vec<u8>,
+    pub pdf: Vec<u8>,
     pub csv: Vec<u8>,
 }
 
@@ -29,9 +30,10 @@ impl Illustration {
     }
 
     pub(super) fn pictures(&self) -> Result<Pictures, Error> {
-        let (svg, png) = rayon::join(|| self.figure.to_svg(), || self.figure.to_png(DPI));
+        let vectors = || (self.figure.to_svg(), self.figure.to_pdf());
+        let ((svg, pdf), png) = rayon::join(vectors, || self.figure.to_png(DPI));
         let mut csv = Vec::new();
         self.data.write_csv(&mut csv).map_err(|source| ReportError::Encoding { format: "CSV", source })?;
-        Ok(Pictures { svg: svg?, png: png?, csv })
+        Ok(Pictures { svg: svg?, png: png?, pdf, csv })
     }
 }

@@ -2,29 +2,15 @@
 
 use super::illustration::Illustration;
 use crate::axis_label;
+use crate::chart::{COLORS, LimitPoint, Overlay};
 use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::{Axis as Interval, Key, Plane, Wheel};
-use kingpin_figure::{
-    Axis, Color, Dash, Figure, Legend, LegendEntry, Line, Marker, MarkerShape, Markers, Panel, palette,
-};
+use kingpin_figure::{Axis, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Markers, Panel, palette};
 use kingpin_report::Columns;
-use kingpin_report::numbers::readable;
 
 /// Radii in m of the circles, beside that of the wheel.
 const RADII: [f64; 4] = [1.0, 2.0, 5.0, f64::INFINITY];
-const COLORS: [Color; 5] =
-    [palette::VERMILION, palette::BLUE, palette::GREEN, palette::PURPLE, palette::ORANGE];
-
-/// A point of a limit.
-struct Place {
-    limit: &'static str,
-    radius: f64,
-    curve: u64,
-    speed: f64,
-    length: f64,
-}
-
 /// Traces the limits up to a speed over caster lengths.
 ///
 /// # Errors
@@ -42,7 +28,7 @@ pub(super) fn illustration(
     if !radii.contains(&own) {
         radii.push(own);
     }
-    let mut places = Vec::new();
+    let mut overlays = Vec::new();
     let mut panel = Panel::new(
         Axis::new(axis_label::of(Key::V)).limits(0.0, fastest),
         Axis::new(axis_label::of(Key::L)).limits(lengths[0], lengths[1]),
@@ -52,30 +38,13 @@ pub(super) fn illustration(
         let part = |index: usize| index as f64 / radii.len() as f64;
         let control = control.part(part(index)..part(index + 1));
         let wheel = wheel.with(Key::TurningRadius, radius)?;
-        let limits = [
-            ("stability", wheel.stability_boundary(&plane, &control)?),
-            ("rolling", wheel.rolling_limit(&plane, &control)?),
-        ];
-        let name = if radius.is_infinite() {
-            "$r=\\infty$".to_owned()
-        } else {
-            format!("$r={}$ m", readable(radius))
-        };
-        panel = panel.legend_entry(LegendEntry::line(name, color, Dash::Solid));
-        for (limit, curves) in limits {
-            for (number, curve) in (1..).zip(curves) {
-                let line = Line::new(curve.points.iter().copied()).color(color);
-                let line = if limit == "rolling" { line.dashed() } else { line };
-                panel = panel.curve(line);
-                places.extend(curve.points.iter().map(|[speed, length]| Place {
-                    limit,
-                    radius,
-                    curve: number,
-                    speed: *speed,
-                    length: *length,
-                }));
-            }
-        }
+        let overlay = Overlay::trace(Key::TurningRadius, radius, &wheel, &plane, &control)?;
+        panel = panel.curves(overlay.lines(color, false)).legend_entry(LegendEntry::line(
+            overlay.label(),
+            color,
+            Dash::Solid,
+        ));
+        overlays.push(overlay);
     }
     let here = (wheel.get(Key::V), wheel.get(Key::L));
     let marker = Marker::new(MarkerShape::Diamond).color(palette::BLACK);
@@ -87,15 +56,16 @@ pub(super) fn illustration(
     let figure = Figure::single_column()
         .description("Limits of stability and of rolling over speed and caster length for several circles")
         .panel(panel);
-    let numbers = |quantity: fn(&Place) -> f64| places.iter().map(quantity);
+    let points: Vec<LimitPoint<'_>> = overlays.iter().flat_map(Overlay::points).collect();
+    let numbers = |quantity: fn(&LimitPoint<'_>) -> f64| points.iter().map(quantity);
     let data = Columns::new()
-        .texts("limit", places.iter().map(|place| Some(place.limit.to_owned())))
-        .numbers("r", numbers(|place| place.radius))
+        .texts("limit", points.iter().map(|point| Some(point.limit.to_owned())))
+        .numbers("r", numbers(|point| point.overlay.value))
         .unit("m")
-        .counts("curve", places.iter().map(|place| place.curve))
-        .numbers("v", numbers(|place| place.speed))
+        .counts("curve", points.iter().map(|point| point.curve))
+        .numbers("v", numbers(|point| point.at[0]))
         .unit("m/s")
-        .numbers("l", numbers(|place| place.length))
+        .numbers("l", numbers(|point| point.at[1]))
         .unit("m");
     let caption = "Limits of stability (solid) and of rolling (dashed) on several circles; a circle without a solid line has no change of \
                    stability here. The diamond is the wheel.";

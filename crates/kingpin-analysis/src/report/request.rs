@@ -144,10 +144,11 @@ impl ReportAnalysis {
             .collect();
         let page = page(&self.name(), &self.wheel, &found.findings, &figures);
         let mut contents = vec![("report.html".to_owned(), page.into_bytes())];
-        for (number, Pictures { svg, png, csv }) in (1_u8..).zip(pictures) {
+        for (number, Pictures { svg, png, pdf, csv }) in (1_u8..).zip(pictures) {
             let name = |ending: &str| format!("figure{number}.{ending}");
             contents.push((name("svg"), svg.into_bytes()));
             contents.push((name("png"), png));
+            contents.push((name("pdf"), pdf));
             contents.push((name("csv"), csv));
         }
         let files = folder::write(&self.request.out, &contents)?;
@@ -246,6 +247,7 @@ impl ReportAnalysis {
             wheel: self.request.wheel.clone(),
             x: SampledInterval::new("v", self.fastest / CHART[0] as f64, self.fastest, CHART[0]),
             y: SampledInterval::new("l", lengths[0], lengths[1], CHART[1]),
+            overlay: Vec::new(),
         };
         let chart = request.validate()?.run(control)?;
         let caption = format!(

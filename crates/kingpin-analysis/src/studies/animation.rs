@@ -5,9 +5,9 @@
 
 use crate::error::Error;
 use arclength_analysis::Control;
-use kingpin::Key;
 use kingpin::shimmy::PeriodicSliding;
 use kingpin::sliding::Contact;
+use kingpin::{Key, Wheel};
 use std::fmt::Write;
 
 /// How much slower than the motion the picture is.
@@ -22,8 +22,8 @@ const MARKS: f64 = 110.0;
 const LANES: f64 = 75.0;
 /// Lines of marks on either side of the path of the towing point.
 const LANES_BESIDE: i32 = 7;
-/// Length of the force arrow in pixels for one N.
-const FORCE: f64 = 0.6;
+/// Length of the force arrow in pixels where all the static friction is used.
+const FORCE: f64 = 62.5;
 /// Width of the wheel, part of its diameter.
 const WIDTH: f64 = 0.28;
 
@@ -73,10 +73,11 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Error> {
     let path: Vec<String> = (0..=FRAMES).map(|index| pair(contact_point(index))).collect();
     let color = |index: usize| if slides(history.times[index]) { "#d55e00" } else { "#0072b2" }.to_owned();
     let shown = |index: usize, sliding: bool| u8::from(slides(history.times[index]) == sliding).to_string();
+    let of_force = FORCE / (wheel.get(Key::MuS) * wheel.normal_force());
     let arrow = |index: usize| {
         let [along, across] = history.friction[index];
         // Across is along e2 = (sin psi, cos psi), upwards in the frame of the wheel.
-        format!("M0 0 L{:.1} {:.1}", FORCE * along, -FORCE * across)
+        format!("M0 0 L{:.1} {:.1}", of_force * along, -of_force * across)
     };
 
     let mut svg = String::new();
@@ -141,19 +142,28 @@ pub(super) fn animation(motion: &PeriodicSliding) -> Result<String, Error> {
         line("</text>".into());
     }
     line(format!(
-        "<text x=\"16\" y=\"{}\">v = {} m/s, r = {} m, load {} N, {SLOWER} times slower; cross: towing point</text>",
+        "<text x=\"16\" y=\"{}\">v = {} m/s, {}, load {} N, {SLOWER} times slower; cross: towing point</text>",
         height - 14.0,
         wheel.get(Key::V),
-        wheel.get(Key::TurningRadius),
+        path_of(wheel),
         -wheel.get(Key::FAz)
     ));
     line("</svg>".into());
     Ok(svg)
 }
 
-/// The marks on the ground, which turn about the centre of the curve.
+/// The path of the towing point in words.
+fn path_of(wheel: &Wheel) -> String {
+    let radius = wheel.get(Key::TurningRadius);
+    if radius.is_infinite() { "straight".to_owned() } else { format!("r = {radius} m") }
+}
+
+/// The marks on the ground, which turn about the centre of the curve, or pass on a straight path.
 fn ground(motion: &PeriodicSliding, duration: &str, scale: f64) -> Vec<String> {
     let radius = motion.wheel.get(Key::TurningRadius);
+    if radius.is_infinite() {
+        return straight_ground(motion.wheel.get(Key::V) * motion.period * scale, duration);
+    }
     let turned = motion.wheel.towing_yaw_rate() * motion.period;
     let marks = (turned * radius * scale / MARKS).round().max(1.0);
     let spacing = turned / marks;
@@ -171,6 +181,27 @@ fn ground(motion: &PeriodicSliding, duration: &str, scale: f64) -> Vec<String> {
             let end = |angle: f64| (distance * angle.sin(), center + distance * angle.cos());
             let middle = index as f64 * spacing;
             lines.push(format!("<path d=\"M{} L{}\"/>", pair(end(middle - half)), pair(end(middle + half))));
+        }
+    }
+    lines.push("</g>".into());
+    lines
+}
+
+/// The marks that pass a way in pixels during a period.
+fn straight_ground(way: f64, duration: &str) -> Vec<String> {
+    let marks = (way / MARKS).round().max(1.0);
+    let spacing = way / marks;
+    let seen = (1.2 * SIZE.0 / spacing).ceil() as i64;
+    let mut lines = vec![format!(
+        "<g stroke=\"#ccc\" stroke-width=\"2\" fill=\"none\"><animateTransform attributeName=\"transform\" type=\"translate\" \
+         dur=\"{duration}s\" repeatCount=\"indefinite\" values=\"0 0;{:.1} 0\"/>",
+        -way
+    )];
+    for index in -seen..=seen + marks as i64 {
+        for lane in -LANES_BESIDE..=LANES_BESIDE {
+            let (middle, height) = (index as f64 * spacing, LANES * f64::from(lane));
+            let end = |part: f64| pair((middle + part * spacing, height));
+            lines.push(format!("<path d=\"M{} L{}\"/>", end(-0.2), end(0.2)));
         }
     }
     lines.push("</g>".into());

@@ -4,6 +4,7 @@ use super::study::Study;
 use super::{basin, damping, isola, sliding, step_steer};
 use crate::error::Error;
 use arclength_analysis::Control;
+use kingpin::Wheel;
 use serde::{Deserialize, Serialize};
 
 /// The studies.
@@ -48,14 +49,19 @@ impl StudyName {
         }
     }
 
-    /// Computes and draws the study. The control is told the part that is done.
+    /// Whether it can be about another wheel than the paper's.
+    pub const fn takes_a_wheel(self) -> bool {
+        matches!(self, Self::Isola | Self::Sliding)
+    }
+
+    /// Computes and draws the study, of a wheel where it takes one. The control is told the part that is done.
     ///
     /// # Errors
     /// What could not be computed; [`Error::Stopped`].
-    pub(super) fn compute(self, control: &Control<'_>) -> Result<Study, Error> {
+    pub(super) fn compute(self, wheel: Option<&Wheel>, control: &Control<'_>) -> Result<Study, Error> {
         match self {
-            Self::Isola => isola::study(control),
-            Self::Sliding => sliding::study(control),
+            Self::Isola => isola::study(wheel, control),
+            Self::Sliding => sliding::study(wheel, control),
             Self::Damping => damping::study(control),
             Self::Basin => basin::study(control),
             Self::StepSteer => step_steer::study(control),

@@ -2,6 +2,9 @@
 
 use super::name::StudyName;
 use super::study::Finding;
+use crate::description;
+use crate::parameters::parameters_of;
+use kingpin::Wheel;
 use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -10,6 +13,8 @@ use std::path::PathBuf;
 /// What was found, and where the figures are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StudyResult {
+    /// The wheel that was given, if one was.
+    pub wheel: Option<Wheel>,
     /// The findings of every study.
     pub findings: Vec<(StudyName, Finding)>,
     /// The files that were written.
@@ -51,11 +56,14 @@ impl Report for StudyResult {
     }
 
     fn parameters(&self) -> Parameters {
-        // Every study has its own wheels; the quantities say which.
-        Parameters::default()
+        // Otherwise every study has its own wheels; the quantities say which.
+        self.wheel.as_ref().map_or_else(Parameters::default, |wheel| parameters_of(wheel, &[]))
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
+        if let Some(wheel) = &self.wheel {
+            writeln!(out, "wheel at {}\n", description::of(wheel, &[]))?;
+        }
         let mut study = None;
         let mut table = Table::new(["", "", ""]);
         for (name, finding) in &self.findings {

@@ -6,39 +6,100 @@
 
 use super::animation;
 use super::study::{Drawing, Finding, Study};
-use super::wheel::wheel;
+use super::wheel::{rounded, wheel};
 use crate::error::{Error, unless_stopped};
 use arclength::continuation::Settings;
 use arclength::cycle::CyclePoint;
 use arclength_analysis::Control;
 use kingpin::branches::{Along, CycleOptions, HopfPoint};
 use kingpin::shimmy::{
-    PeriodicSliding, SlidingBranch, SlidingBranchOptions, SlidingMotionSearch, SlidingRole,
+    PeriodicSliding, ShimmyError, SlidingBranch, SlidingBranchOptions, SlidingMotionSearch, SlidingRole,
 };
 use kingpin::{Key, Wheel};
 use kingpin_figure::{
     Axis, Branch, Figure, Legend, Line, Marker, MarkerShape, Markers, Panel, Region, Stability, palette,
 };
 use kingpin_report::Columns;
+use kingpin_report::numbers::readable;
 
-/// Vertical force on the king pin in N.
+/// Vertical force on the king pin in N of the paper's wheel here.
 const LOAD: f64 = -100.0;
-/// Damping in both directions in N s/m: none, and some.
+/// What the dampers in both directions are raised by in N s/m: nothing, and some; that of another wheel is scaled with the square root of
+/// stiffness and rolling mass.
 const DAMPINGS: [f64; 2] = [0.0, 0.1];
-/// Speed in m/s at which the shimmy is sought, and the angle in rad at which the caster is released.
+/// Speed in m/s at which the shimmy is sought, and those over which the motions are followed: for the paper's wheel, and for another as
+/// parts of its critical speed, or where it has none of its own speed.
 const START: f64 = 8.4;
+const SPEEDS: (f64, f64) = (7.0, 9.6);
+const STARTS_AT: f64 = 0.995;
+const PARTS: (f64, f64) = (0.83, 1.14);
+const PARTS_OF_OWN: (f64, f64) = (0.5, 2.0);
+/// The angle in rad at which the caster is released, and the time in s in which it settles.
 const RELEASE_ANGLE: f64 = 1.2;
 const SETTLING_TIME: f64 = 25.0;
-/// Speeds in m/s over which the motions are followed.
-const SPEEDS: (f64, f64) = (7.0, 9.6);
 /// Where a grazing is, is found to this part of the size of the motion.
 const SMALLEST_STEP: f64 = 3e-5;
 /// Samples of a period between which the friction force of a cycle is looked at.
 const FORCE_SAMPLES: usize = 400;
 
+/// The wheel, and where its motions are looked at.
+#[derive(Clone, Copy)]
+struct Subject {
+    wheel: Wheel,
+    start: f64,
+    speeds: (f64, f64),
+    /// What the dampers are raised by.
+    damping: f64,
+}
+
+impl Subject {
+    /// Without further damping, and with some: of the wheel that is given, or of the paper's.
+    fn both(given: Option<&Wheel>) -> Result<[Self; 2], Error> {
+        let Some(given) = given else {
+            let wheel = wheel(&[(Key::FAz, LOAD)])?;
+            return Ok(DAMPINGS.map(|damping| Self { wheel, start: START, speeds: SPEEDS, damping }));
+        };
+        let (reference, parts) = match given.critical_speed() {
+            Some(critical) => (critical.speed, PARTS),
+            None => (given.get(Key::V), PARTS_OF_OWN),
+        };
+        let impedance = |wheel: &Wheel| {
+            let spin = wheel.get(Key::JWxi) / wheel.get(Key::WheelRadius).powi(2);
+            (wheel.get(Key::KQ) * (wheel.get(Key::MW) + wheel.get(Key::MC) + spin)).sqrt()
+        };
+        let scale = impedance(given) / impedance(&Wheel::default());
+        Ok(DAMPINGS.map(|damping| Self {
+            wheel: *given,
+            start: (1e3 * STARTS_AT * reference).round() / 1e3,
+            speeds: (rounded(parts.0 * reference), rounded(parts.1 * reference)),
+            damping: if damping == 0.0 { 0.0 } else { rounded(damping * scale) },
+        }))
+    }
+
+    /// The wheel at a speed, with its dampers raised.
+    fn at(&self, speed: f64) -> Result<Wheel, Error> {
+        let raised = |key: Key| self.wheel.get(key) + self.damping;
+        Ok(self.wheel.with(Key::V, speed)?.with(Key::CU, raised(Key::CU))?.with(Key::CQ, raised(Key::CQ))?)
+    }
+
+    /// The lateral damping in N s/m.
+    fn lateral_damping(&self) -> f64 {
+        self.wheel.get(Key::CQ) + self.damping
+    }
+
+    /// The dampers in words.
+    fn dampers(&self) -> String {
+        let [along, across] = [Key::CU, Key::CQ].map(|key| self.wheel.get(key) + self.damping);
+        match along == across {
+            true => format!("c_u = c_q = {} N s/m", readable(across)),
+            false => format!("c_u = {} N s/m, c_q = {} N s/m", readable(along), readable(across)),
+        }
+    }
+}
+
 /// Motions along the speed with one damping.
 struct Motions {
-    damping: f64,
+    subject: Subject,
     at_start: PeriodicSliding,
     shimmy: SlidingBranch,
     /// Where the uniform motion loses its stability within the speeds, and the cycles born there.
@@ -48,33 +109,38 @@ struct Motions {
     friction: Vec<f64>,
 }
 
-fn loaded(speed: f64, damping: f64) -> Result<Wheel, Error> {
-    Ok(wheel(&[(Key::V, speed), (Key::FAz, LOAD), (Key::CU, damping), (Key::CQ, damping)])?)
-}
-
-pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
-    let [first, second] = DAMPINGS;
+pub(super) fn study(given: Option<&Wheel>, control: &Control<'_>) -> Result<Study, Error> {
+    let [first, second] = Subject::both(given)?;
     let (bare, damped) =
         rayon::join(|| Motions::compute(first, control), || Motions::compute(second, control));
     let all = [bare?, damped?];
     unless_stopped(control)?;
     control.done(0.9);
-    let findings = all.iter().flat_map(Motions::findings).collect();
+    let findings = all.iter().map(Motions::findings).collect::<Result<Vec<_>, _>>()?.concat();
     let animation = animation::animation(&all[0].at_start)?;
     Ok(Study { findings, drawings: vec![drawing(&all)?], pictures: vec![("animation.svg", animation)] })
 }
 
 impl Motions {
-    fn compute(damping: f64, control: &Control<'_>) -> Result<Self, Error> {
-        let wheel = loaded(START, damping)?;
+    fn compute(subject: Subject, control: &Control<'_>) -> Result<Self, Error> {
+        let wheel = subject.at(subject.start)?;
         let start = wheel.perturbed_uniform_motion(&[("psi", RELEASE_ANGLE)])?;
         let search = SlidingMotionSearch { settling_time: SETTLING_TIME, ..SlidingMotionSearch::default() };
-        let at_start = wheel.sliding_motion(&start, &search, &control.quiet())?;
-        let along = Along::new(Key::V, SPEEDS.0, SPEEDS.1)?;
+        let at_start = wheel.sliding_motion(&start, &search, &control.quiet()).map_err(|error| match error {
+            ShimmyError::Interrupted(interrupted) => interrupted.into(),
+            // What a search that succeeds needs is wrong, or there is no such motion.
+            other => Error::NothingFound(format!(
+                "no shimmy with sliding phases was found at {}, v = {} m/s: the caster was released {RELEASE_ANGLE} rad from the uniform \
+                 motion and the motion followed for {SETTLING_TIME} s: {other}",
+                subject.dampers(),
+                subject.start
+            )),
+        })?;
+        let along = Along::new(Key::V, subject.speeds.0, subject.speeds.1)?;
         let mut options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
         options.settings.smallest_step = SMALLEST_STEP;
         let shimmy = at_start.along(along, &options, &control.quiet(), |_, _| control.flow())?;
-        let slower = loaded(SPEEDS.0, damping)?;
+        let slower = subject.at(subject.speeds.0)?;
         let hopf = slower.hopf_points(along, &control.quiet())?.points.into_iter().next();
         let settings =
             Settings { largest_parameter_change: 0.02, predictor_error: 0.005, ..Settings::default() };
@@ -84,8 +150,8 @@ impl Motions {
             None => Vec::new(),
         };
         cycles.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let friction = cycles.iter().map(|cycle| friction(cycle, damping)).collect::<Result<_, Error>>()?;
-        Ok(Self { damping, at_start, shimmy, hopf, cycles, friction })
+        let friction = cycles.iter().map(|cycle| friction(cycle, &subject)).collect::<Result<_, Error>>()?;
+        Ok(Self { subject, at_start, shimmy, hopf, cycles, friction })
     }
 
     /// The smallest and largest speed of stable shimmy on the branch.
@@ -97,9 +163,20 @@ impl Motions {
         })
     }
 
-    /// The smaller one of a speed and that at which the uniform motion loses its stability.
-    fn limit(&self, speed: f64) -> f64 {
-        self.hopf.as_ref().map_or(speed, |hopf| speed.min(hopf.value))
+    /// The speeds at which both the shimmy and the uniform motion are stable.
+    fn both_stable(&self) -> Result<Option<[f64; 2]>, Error> {
+        let Some([low, high]) = self.stable_range() else { return Ok(None) };
+        let is_stable = |speed: f64| -> Result<bool, Error> {
+            Ok(self.subject.at(speed)?.uniform_motion()?.is_stable() == Some(true))
+        };
+        let hopf = self.hopf.as_ref().map_or(f64::NAN, |hopf| hopf.value);
+        let (slow, fast) = match (is_stable(low)?, low < hopf && hopf < high) {
+            (true, false) => (low, high),
+            (true, true) => (low, hopf),
+            (false, true) => (hopf, high),
+            (false, false) => return Ok(None),
+        };
+        Ok(Some([slow, fast]))
     }
 
     /// The speed below which the unstable cycle of ideal rolling asks for more than the static friction, by
@@ -115,11 +192,11 @@ impl Motions {
             .next()
     }
 
-    fn findings(&self) -> Vec<Finding> {
-        let dampers = format!("c_u = c_q = {} N s/m", self.damping);
+    fn findings(&self) -> Result<Vec<Finding>, Error> {
+        let (dampers, start) = (self.subject.dampers(), self.subject.start);
         let mut findings = Vec::new();
         let mut find = |what: String, value: f64, unit| findings.push(Finding::new(what, value, unit));
-        find(format!("{dampers}: shimmy at v = {START} m/s, period"), self.at_start.period, "s");
+        find(format!("{dampers}: shimmy at v = {start} m/s, period"), self.at_start.period, "s");
         find("  largest psi".into(), self.at_start.psi_max, "rad");
         find("  smallest psi".into(), self.at_start.psi_min, "rad");
         find("  part of the period in which it slides".into(), self.at_start.sliding_fraction(), "");
@@ -131,31 +208,34 @@ impl Motions {
         if let Some([low, high]) = self.stable_range() {
             find("  stable shimmy from v".into(), low, "m/s");
             find("    to v".into(), high, "m/s");
-            find("  both shimmy and uniform motion stable, width in v".into(), self.limit(high) - low, "m/s");
+            if let Some([low, high]) = self.both_stable()? {
+                find("  both shimmy and uniform motion stable, width in v".into(), high - low, "m/s");
+            }
         }
         if let Some(speed) = self.rolling_ends() {
             find("  the unstable cycle needs more than static friction below v".into(), speed, "m/s");
         }
-        findings
+        Ok(findings)
     }
 
-    fn panel(&self, tag: &str, legend: Legend) -> Result<Panel, Error> {
+    fn panel(&self, tag: &str, angles: (f64, f64), legend: Legend) -> Result<Panel, Error> {
+        let speeds = self.subject.speeds;
+        let angles = [angles.0, angles.1];
         let mut panel = Panel::new(
-            Axis::new("$v$ (m/s)").limits(SPEEDS.0, SPEEDS.1),
-            Axis::new("extremes of $\\psi$ (rad)").limits(-3.3, 1.6),
+            Axis::new("$v$ (m/s)").limits(speeds.0, speeds.1),
+            Axis::new("extremes of $\\psi$ (rad)").limits(angles[0], angles[1]),
         )
         .tag(tag)
         .legend(legend);
-        if let Some([low, high]) = self.stable_range() {
-            let right = self.limit(high);
-            let corners = [(low, -3.3), (right, -3.3), (right, 1.6), (low, 1.6)];
+        if let Some([low, right]) = self.both_stable()? {
+            let corners = [(low, angles[0]), (right, angles[0]), (right, angles[1]), (low, angles[1])];
             panel = panel
                 .region(Region::new(corners).fill(palette::SKY_BLUE.lightened(0.75)).legend("both stable"));
         }
         let mut uniform = Vec::new();
         for index in 0..=100 {
-            let speed = SPEEDS.0 + (SPEEDS.1 - SPEEDS.0) * f64::from(index) / 100.0;
-            let motion = loaded(speed, self.damping)?.uniform_motion()?;
+            let speed = speeds.0 + (speeds.1 - speeds.0) * f64::from(index) / 100.0;
+            let motion = self.subject.at(speed)?.uniform_motion()?;
             uniform.push(((speed, motion.psi()), Stability::from(motion.is_stable() == Some(true))));
         }
         let hopf: Vec<(f64, f64)> = self.hopf.iter().map(|hopf| (hopf.value, hopf.state[2])).collect();
@@ -194,8 +274,8 @@ impl Motions {
 }
 
 /// The largest friction force along a cycle over the static limit.
-fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Error> {
-    let wheel = loaded(cycle.value, damping)?;
+fn friction(cycle: &CyclePoint, subject: &Subject) -> Result<f64, Error> {
+    let wheel = subject.at(cycle.value)?;
     let initial: [f64; 5] = std::array::from_fn(|index| cycle.orbit.states[index]);
     let history = wheel.simulate_from(&initial, cycle.period, FORCE_SAMPLES, &Control::none())?;
     let largest = history.friction_force().into_iter().fold(0.0, f64::max);
@@ -204,19 +284,39 @@ fn friction(cycle: &CyclePoint, damping: f64) -> Result<f64, Error> {
 
 fn drawing(all: &[Motions; 2]) -> Result<Drawing, Error> {
     let [bare, damped] = all;
-    let title = |motions: &Motions| match motions.damping {
-        0.0 => "no dampers".to_owned(),
-        damping => format!("$c_u=c_q={damping}$ N s/m"),
+    let title = |motions: &Motions| match motions.subject.at(motions.subject.start)?.is_damped() {
+        false => Ok("no dampers".to_owned()),
+        true => Ok::<_, Error>(
+            motions
+                .subject
+                .dampers()
+                .replace("c_u = c_q = ", "$c_u=c_q$ = ")
+                .replace("c_u =", "$c_u$ =")
+                .replace(" c_q =", " $c_q$ ="),
+        ),
     };
+    let angles = angles(all);
     let figure = Figure::double_column()
         .columns(2)
         .height_mm(92.0)
         .description(
             "Extremes of the caster angle against the speed: uniform motion, unstable cycle, large shimmy",
         )
-        .panel(bare.panel("(a)", Legend::Below)?.title(title(bare)))
-        .panel(damped.panel("(b)", Legend::Below)?.title(title(damped)));
+        .panel(bare.panel("(a)", angles, Legend::Below)?.title(title(bare)?))
+        .panel(damped.panel("(b)", angles, Legend::Below)?.title(title(damped)?));
     Ok(Drawing { number: 8, figure, data: data(all) })
+}
+
+/// The caster angles that are shown: all, with some room.
+fn angles(all: &[Motions; 2]) -> (f64, f64) {
+    let of_shimmy = all.iter().flat_map(|motions| &motions.shimmy.points);
+    let of_cycles = all.iter().flat_map(|motions| &motions.cycles);
+    let ranges = of_shimmy
+        .map(|point| (point.motion.psi_min, point.motion.psi_max))
+        .chain(of_cycles.map(|cycle| (cycle.min[2], cycle.max[2])));
+    let (low, high) = ranges.fold((0.0_f64, 0.0_f64), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+    let room = 0.08 * (high - low);
+    (low - room, high + room)
 }
 
 fn data(all: &[Motions; 2]) -> Columns {
@@ -232,7 +332,7 @@ fn data(all: &[Motions; 2]) -> Columns {
             let slides = Some(motion.sliding_fraction());
             rows.push((
                 "shimmy",
-                motions.damping,
+                motions.subject.lateral_damping(),
                 [point.value, motion.period, motion.psi_max, motion.psi_min],
                 slides,
                 None,
@@ -242,7 +342,7 @@ fn data(all: &[Motions; 2]) -> Columns {
         for (cycle, &friction) in motions.cycles.iter().zip(&motions.friction) {
             rows.push((
                 "rolling cycle",
-                motions.damping,
+                motions.subject.lateral_damping(),
                 [cycle.value, cycle.period, cycle.max[2], cycle.min[2]],
                 None,
                 Some(friction),

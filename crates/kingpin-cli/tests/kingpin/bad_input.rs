@@ -5,7 +5,7 @@ use std::process::Command;
 
 /// Runs the program, which must fail with the exit code, and a message with all the words, without a file.
 #[track_caller]
-fn fails(arguments: &str, exit_code: i32, words: &[&str]) {
+pub(crate) fn fails(arguments: &str, exit_code: i32, words: &[&str]) {
     fails_in(&Folder::new(), arguments, exit_code, words);
 }
 

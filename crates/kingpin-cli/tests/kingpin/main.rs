@@ -9,10 +9,12 @@ mod files;
 mod fit;
 mod forces;
 mod formats;
+mod headings;
 #[cfg(unix)]
 mod interruption;
 mod lateral;
 mod long_values;
+mod overlays;
 mod shimmy;
 mod studies;
 mod tables;

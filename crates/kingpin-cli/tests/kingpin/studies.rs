@@ -30,6 +30,93 @@ fn the_isola_has_the_folds_of_the_reference() {
     }
 }
 
+/// Twice as long, as heavy and four times as stiff: time runs twice as fast, and dampers are twice as strong.
+#[test]
+fn the_isola_of_a_similar_wheel_is_similar() {
+    let folder = Folder::new();
+    let similar = "l = 0.08\nl_c = 0.024\nR = 0.08\nm_w = 0.3519\nm_c = 0.0668\nJ_wxi = 1.852e-4\nJ_wzeta = 9.52e-5\n\
+                   J_Cz = 1.392e-5\nk = 400\nr = inf\n";
+    std::fs::write(folder.path("similar.toml"), similar).unwrap();
+    let findings = folder.json("study isola --quiet --wheel similar.toml");
+    let near = |start: &str, reference: f64| {
+        let found = value(&findings, start);
+        assert!((found / reference - 1.0).abs() < 1e-7, "{start}: {found}, not {reference}");
+    };
+    near("lower fold of the isola at c_q = 0.2", 4.0 * 0.047780593);
+    near("upper fold of the isola at c_q = 0.2", 4.0 * 14.0025055);
+    near("Hopf point at c_q = 0.1", 4.0 * 0.788629146229695);
+    assert_eq!(findings["parameters"]["k_q"], 400.0);
+}
+
+#[test]
+fn where_there_is_no_isola_that_is_said_with_what_was_searched() {
+    let folder = Folder::new();
+    // Longer than critical: no damper is needed, nothing can be detached.
+    let run = folder.run("study isola --quiet -s l=0.08");
+    assert_eq!(run.exit_code, 1);
+    assert!(
+        run.messages.contains("no isola") && run.messages.contains("stable at every speed"),
+        "{}",
+        run.messages
+    );
+    // The cycles of the trolley end where its Hopf points meet.
+    let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+    let run = folder.run(&format!("study isola --quiet --wheel {wheels}/trolley.toml"));
+    assert_eq!(run.exit_code, 1);
+    for word in
+        ["no isola was found", "from c_q = 5", "Searched were the branches from the Hopf points at c_q = 39"]
+    {
+        assert!(run.messages.contains(word), "{}", run.messages);
+    }
+    assert!(!folder.path("studies").join("figure7.svg").exists());
+}
+
+/// Unstable at every speed: it shimmies, rolling and sliding in turn, and nothing else is stable beside it.
+#[test]
+fn the_sliding_study_of_a_trolley_ends_in_symmetric_shimmy() {
+    let folder = Folder::new();
+    let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+    let findings = folder.json(&format!("study sliding --quiet --wheel {wheels}/trolley.toml"));
+    let start = "c_u = c_q = 0 N s/m: shimmy at v = 1.493 m/s, period";
+    let period = value(&findings, start);
+    let [largest, smallest] = ["  largest psi", "  smallest psi"].map(|name| value(&findings, name));
+    assert!((largest + smallest).abs() < 1e-6 * largest, "{largest} {smallest}");
+    let quantities: Vec<&str> = findings["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|finding| finding["quantity"].as_str().unwrap())
+        .collect();
+    assert!(quantities.contains(&"  stable shimmy from v"));
+    assert!(
+        !quantities.iter().any(|quantity| quantity.contains("both shimmy and uniform motion")),
+        "{quantities:?}"
+    );
+    assert_eq!(value(&findings, "  stable shimmy from v"), 0.75);
+    // The same motion by a time history: a period later the caster angle is back.
+    let animation = String::from_utf8(read(&folder.path("studies/animation.svg"))).unwrap();
+    assert!(animation.contains("straight, load 150 N") && !animation.contains("NaN"));
+    let history = folder.json(&format!(
+        "simulate --wheel {wheels}/trolley.toml -s v=1.493 --contact sliding --perturb psi=0.3 --duration {} --points 2001 -q",
+        100.0 * period
+    ));
+    let angles: Vec<f64> =
+        history["psi"].as_array().unwrap().iter().map(|angle| angle.as_f64().unwrap()).collect();
+    let [last, before] = [2000, 1980].map(|index| angles[index]);
+    assert!((last - before).abs() < 0.02 * largest, "{last} {before}");
+    let swing = angles[1900..].iter().copied().fold(0.0, f64::max);
+    assert!((swing / largest - 1.0).abs() < 0.02, "{swing} {largest}");
+}
+
+#[test]
+fn studies_of_the_papers_wheel_take_no_other() {
+    for study in ["basin", "damping", "step-steer", "all"] {
+        let run = Folder::new().run(&format!("study {study} -q -s l=0.1"));
+        assert_eq!(run.exit_code, 2, "{study}: {}", run.messages);
+        assert!(run.messages.contains("a wheel with `isola` or `sliding`"), "{}", run.messages);
+    }
+}
+
 #[test]
 fn unknown_studies_are_refused() {
     let run = Folder::new().run("study isolas");

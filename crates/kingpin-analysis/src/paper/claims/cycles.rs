@@ -269,7 +269,7 @@ pub(in crate::paper) fn of_the_radius(branches: &Branches) -> Result<Vec<Claim>,
         Claim {
             place: "section 4, figure 6",
             statement: "The cycles are slightly asymmetric: perturbations of one size but opposite directions may end \
-                        differently, which hardly matters in practice."
+                        differently."
                 .into(),
             verdict: Verdict::of(most > 0.0 && most < RELEVANT),
             evidence: format!(

@@ -11,10 +11,10 @@ use arclength::{Dual, VectorField};
 use kingpin::{Key, Wheel};
 
 /// Random wheels and states.
-const SAMPLES: usize = 200;
+pub(super) const SAMPLES: usize = 200;
 const SEED: u64 = 2012;
 /// The forms agree when rates differ by less than this, relative to one plus their size.
-const AGREEMENT: f64 = 1e-10;
+pub(super) const AGREEMENT: f64 = 1e-10;
 /// They disagree when the rates at half of the states differ by more than this.
 const DISAGREEMENT: f64 = 1e-3;
 
@@ -99,9 +99,9 @@ fn verdict(corrected: f64, printed: f64) -> Verdict {
 }
 
 /// A wheel and a state `(u, q, psi, beta_1, beta_2)`.
-type Sample = (Wheel, [f64; 5]);
+pub(super) type Sample = (Wheel, [f64; 5]);
 
-fn samples() -> Result<Vec<Sample>, Error> {
+pub(super) fn samples() -> Result<Vec<Sample>, Error> {
     let mut random = Random::new(SEED);
     let sample = |_| {
         let wheel = [
@@ -183,7 +183,7 @@ fn paper_form(wheel: &Wheel, [u, q, psi, b1, b2]: [f64; 5], left_in: &[Misprint]
 }
 
 /// The same rates from the model.
-fn model_form(wheel: &Wheel, [u, q, psi, b1, b2]: [f64; 5]) -> Result<[f64; 3], Error> {
+pub(super) fn model_form(wheel: &Wheel, [u, q, psi, b1, b2]: [f64; 5]) -> Result<[f64; 3], Error> {
     let [v, l] = [Key::V, Key::L].map(|key| wheel.get(key));
     let omega = wheel.towing_yaw_rate();
     let yaw_rate = omega - b1;

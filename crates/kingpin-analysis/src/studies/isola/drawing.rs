@@ -1,6 +1,6 @@
 //! Figure 7: branches of cycles for three dampers, and the folds in speed and damping.
 
-use super::{DETACHED, Isola, WITH_HOPF_POINTS};
+use super::Isola;
 use crate::studies::study::Drawing;
 use arclength::branch::{Labelled, SpecialKind};
 use arclength::cycle::CycleBranch;
@@ -10,8 +10,6 @@ use kingpin_figure::{
 };
 use kingpin_report::Columns;
 
-/// Speeds shown in m/s, dampings in N s/m.
-const SPEEDS: (f64, f64) = (0.015, 60.0);
 /// Points of the curve of Hopf points.
 const HOPF_POINTS: usize = 400;
 
@@ -28,21 +26,21 @@ impl Isola {
 
     fn branches(&self) -> Panel {
         let mut panel = Panel::new(
-            Axis::new("$v$ (m/s)").logarithmic().limits(SPEEDS.0, SPEEDS.1),
+            Axis::new("$v$ (m/s)").logarithmic().limits(self.ranges.speeds.0, self.ranges.speeds.1),
             Axis::new("largest $\\psi$ (rad)").limits(0.0, 1.6),
         )
         .tag("(a)")
         .legend(Legend::Below);
         for (index, branch) in self.attached.iter().enumerate() {
             let curve = diagram(branch, palette::BLUE);
-            let label = format!("$c_q={WITH_HOPF_POINTS}$ N s/m");
+            let label = format!("$c_q={}$ N s/m", self.ranges.with_hopf_points);
             panel = panel.curve(if index == 0 { curve.legend(label) } else { curve });
         }
         let shown = self.shown.iter().map(|(damping, branch)| (*damping, branch));
         let mut others: Vec<(f64, &CycleBranch, Color)> = shown
             .zip([palette::GREEN, palette::PURPLE])
             .map(|((damping, branch), color)| (damping, branch, color))
-            .chain([(DETACHED, &self.closed, palette::VERMILION)])
+            .chain([(self.ranges.detached, &self.closed, palette::VERMILION)])
             .collect();
         others.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (damping, branch, color) in others {
@@ -68,11 +66,11 @@ impl Isola {
     fn loci(&self) -> Panel {
         let hopf = self.hopf_curve();
         let folds: Vec<(f64, f64)> = self.folds.points.iter().map(|point| point.values.into()).collect();
-        let ends = [(SPEEDS.1, 0.0), (SPEEDS.0, 0.0)];
+        let ends = [(self.ranges.speeds.1, 0.0), (self.ranges.speeds.0, 0.0)];
         let below = folds.iter().copied().chain(ends);
         let marker = |color: Color| Marker::new(MarkerShape::Diamond).size(5.0).color(color);
         Panel::new(
-            Axis::new("$v$ (m/s)").logarithmic().limits(SPEEDS.0, SPEEDS.1),
+            Axis::new("$v$ (m/s)").logarithmic().limits(self.ranges.speeds.0, self.ranges.speeds.1),
             Axis::new("$c_q$ (N s/m)").limits(0.0, 1.15 * self.death.damping),
         )
         .tag("(b)")
@@ -105,9 +103,10 @@ impl Isola {
 
     fn data(&self) -> Columns {
         let branches = || {
-            let attached = self.attached.iter().map(|branch| ("limit cycle", WITH_HOPF_POINTS, branch));
+            let attached =
+                self.attached.iter().map(|branch| ("limit cycle", self.ranges.with_hopf_points, branch));
             let shown = self.shown.iter().map(|(damping, branch)| ("limit cycle", *damping, branch));
-            attached.chain([("limit cycle", DETACHED, &self.closed)]).chain(shown).flat_map(
+            attached.chain([("limit cycle", self.ranges.detached, &self.closed)]).chain(shown).flat_map(
                 |(what, damping, branch)| branch.points.iter().map(move |point| (what, damping, point)),
             )
         };

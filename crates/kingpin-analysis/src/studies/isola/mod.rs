@@ -8,7 +8,7 @@ mod drawing;
 mod extremum;
 
 use super::study::{Finding, Study};
-use super::wheel::wheel;
+use super::wheel::{rounded, wheel};
 use crate::error::{Error, unless_stopped};
 use arclength::branch::SpecialKind;
 use arclength::continuation::{Settings, Stop};
@@ -17,25 +17,79 @@ use arclength::equilibrium::{Equilibria, HopfPoint};
 use arclength::locus::{CycleLocus, CycleLocusBranch};
 use arclength_analysis::Control;
 use extremum::{Extremum, largest_damping};
-use kingpin::{Key, KingpinError, LateralWheel};
-use std::ops::RangeInclusive;
+use kingpin::{Key, KingpinError, LateralWheel, Wheel};
+use kingpin_report::numbers::readable;
 
-/// Caster length in m: shorter than the critical one, so that straight running shimmies without damper.
+/// Caster length in m of the paper's wheel here: shorter than the critical one, so that straight running shimmies without damper.
 const CASTER_LENGTH: f64 = 0.04;
-/// Lateral damping in N s/m: with Hopf points, without.
-const WITH_HOPF_POINTS: f64 = 0.05;
-const DETACHED: f64 = 0.1;
-/// Further closed branches that are shown, in N s/m.
-const SHOWN: [f64; 2] = [0.08, 0.11];
-/// Smallest and largest damping in N s/m of the cycle that is followed from one to the other.
-const BRIDGED: (f64, f64) = (1e-3, 0.2);
-/// Speed in m/s of the cycle that is followed from one damping to the other.
-const BRIDGE: f64 = 10.0;
-/// Speeds in m/s along which branches are followed.
-const SPEEDS: RangeInclusive<f64> = 0.015..=60.0;
-/// Speeds in m/s and dampings in N s/m in which folds are followed.
-const FOLD_SPEEDS: RangeInclusive<f64> = 0.015..=60.0;
-const FOLD_DAMPINGS: RangeInclusive<f64> = 0.02..=1.0;
+
+/// Speeds in m/s and lateral dampings in N s/m that are looked at: those below for the paper's wheel; for another they are scaled with the
+/// speed and the damping at which its isola is born.
+#[derive(Clone, Debug)]
+pub(super) struct Ranges {
+    /// Damping with Hopf points, and without.
+    pub with_hopf_points: f64,
+    pub detached: f64,
+    /// Dampings of further closed branches that are shown.
+    pub shown: [f64; 2],
+    /// Smallest and largest damping of the cycle that is followed from one to the other.
+    pub bridged: (f64, f64),
+    /// Speed of that cycle.
+    pub bridge: f64,
+    /// Speeds along which branches and folds are followed.
+    pub speeds: (f64, f64),
+    /// Speeds in which Hopf points are sought, and from which one on.
+    pub hopf_speeds: (f64, f64),
+    pub hopf_start: f64,
+    /// Dampings in which folds are followed.
+    pub fold_dampings: (f64, f64),
+}
+
+/// Those of the paper's wheel.
+const RANGES: Ranges = Ranges {
+    with_hopf_points: 0.05,
+    detached: 0.1,
+    shown: [0.08, 0.11],
+    bridged: (1e-3, 0.2),
+    bridge: 10.0,
+    speeds: (0.015, 60.0),
+    hopf_speeds: (0.1, 20.0),
+    hopf_start: 1.0,
+    fold_dampings: (0.02, 1.0),
+};
+
+impl Ranges {
+    /// Those of a wheel whose isola is born at some damping and speed.
+    fn of(birth: &HopfVertex) -> Result<Self, Error> {
+        let paper = HopfVertex::of(&lateral_wheel(None)?)
+            .ok_or_else(|| Error::not_found("isola", "the paper's wheel"))?;
+        let damping = |value: f64| rounded(value * (birth.damping / paper.damping));
+        let speed = |value: f64| rounded(value * (birth.speed / paper.speed));
+        let Ranges {
+            with_hopf_points,
+            detached,
+            shown,
+            bridged,
+            bridge,
+            speeds,
+            hopf_speeds,
+            hopf_start,
+            fold_dampings,
+        } = RANGES;
+        Ok(Self {
+            with_hopf_points: damping(with_hopf_points),
+            detached: damping(detached),
+            shown: shown.map(damping),
+            bridged: (damping(bridged.0), damping(bridged.1)),
+            bridge: speed(bridge),
+            speeds: (speed(speeds.0), speed(speeds.1)),
+            hopf_speeds: (speed(hopf_speeds.0), speed(hopf_speeds.1)),
+            hopf_start: speed(hopf_start),
+            fold_dampings: (damping(fold_dampings.0), damping(fold_dampings.1)),
+        })
+    }
+}
+
 /// Part of its range by which the speed changes in one step at most, and the error of the predictor that the step control
 /// aims at: small enough to draw smooth curves through the points.
 const LARGEST_CHANGE: f64 = 0.02;
@@ -61,47 +115,74 @@ pub(super) struct Isola {
     pub birth: HopfVertex,
     /// Where the isola shrinks to a point.
     pub death: Extremum,
+    /// What was looked at.
+    pub ranges: Ranges,
 }
 
-/// The damping above which straight running has no Hopf points, and the speed at which the last two meet.
+/// The lateral damping above which straight running has no Hopf points, and the speed at which the last two meet.
 ///
 /// With `u = 0` and `r = inf` the characteristic polynomial of straight running is
-/// `J s^3 + (m v + l^2 c_q) s^2 + (l^2 k_q + l c_q v) s + l k_q v`; there are two Hopf points in `v` while
-/// `c_q < sqrt(k_q) (sqrt(J) - sqrt(m l))/l`, and they meet at `v = sqrt(l^3 k_q/m)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// `J s^3 + (m v + l^2 c_q + c_psi) s^2 + (l^2 k_q + l c_q v + k_psi) s + l k_q v`: the Hopf condition is quadratic in `v`, with two positive
+/// roots up to a damping. Without `c_psi` and `k_psi` that is `sqrt(k_q) (sqrt(J) - sqrt(m l))/l`, and they meet at
+/// `v = sqrt(l^3 k_q/m)`.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct HopfVertex {
     pub speed: f64,
     pub damping: f64,
-    static_moment: f64,
-    yaw_inertia: f64,
-    stiffness: f64,
+    wheel: Wheel,
+}
+
+/// The interval in which the damping of the vertex lies is doubled up to so many times, and halved so many times.
+const DOUBLINGS: usize = 200;
+const HALVINGS: usize = 200;
+
+/// Coefficients of the Hopf condition `a v^2 + b v + c = 0` with a lateral damping.
+fn hopf_condition(wheel: &Wheel, damping: f64) -> [f64; 3] {
+    let [mass, inertia, inertia_of_wheel, arm, stiffness, l] =
+        [Key::MC, Key::JCz, Key::JWzeta, Key::LC, Key::KQ, Key::L].map(|key| wheel.get(key));
+    let distance = l - arm;
+    let static_moment = mass * distance;
+    let yaw_inertia = inertia + inertia_of_wheel + mass * distance * distance;
+    let viscous = l * l * damping + wheel.get(Key::CPsi);
+    let elastic = l * l * stiffness + wheel.get(Key::KPsi);
+    [
+        static_moment * l * damping,
+        static_moment * elastic + viscous * l * damping - yaw_inertia * l * stiffness,
+        viscous * elastic,
+    ]
 }
 
 impl HopfVertex {
-    fn new() -> Result<Self, KingpinError> {
-        let wheel = lateral(0.0, 0.0)?;
-        let wheel = wheel.wheel();
-        let [mass, inertia, inertia_of_wheel, arm, stiffness] =
-            [Key::MC, Key::JCz, Key::JWzeta, Key::LC, Key::KQ].map(|key| wheel.get(key));
-        let distance = CASTER_LENGTH - arm;
-        let static_moment = mass * distance;
-        let yaw_inertia = inertia + inertia_of_wheel + mass * distance * distance;
-        Ok(Self {
-            speed: (CASTER_LENGTH.powi(3) * stiffness / static_moment).sqrt(),
-            damping: stiffness.sqrt() * (yaw_inertia.sqrt() - (static_moment * CASTER_LENGTH).sqrt())
-                / CASTER_LENGTH,
-            static_moment,
-            yaw_inertia,
-            stiffness,
-        })
+    /// That of a wheel; nothing where straight running has no Hopf points however small the damping is.
+    fn of(wheel: &Wheel) -> Option<Self> {
+        // Below zero while there are two roots.
+        let excess = |damping: f64| {
+            let [a, b, c] = hopf_condition(wheel, damping);
+            b + 2.0 * (a * c).sqrt()
+        };
+        let smallest = Key::CQ.allowed().highest * f64::EPSILON.powi(2);
+        if wheel.get(Key::L) <= wheel.get(Key::LC) || excess(smallest) >= 0.0 {
+            return None;
+        }
+        let mut high =
+            (0..DOUBLINGS).map(|power| smallest * 2_f64.powi(power as i32)).find(|&c| excess(c) > 0.0)?;
+        let mut low = 0.5 * high;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if excess(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        let [a, _, c] = hopf_condition(wheel, low);
+        Some(Self { speed: (c / a).sqrt(), damping: low, wheel: *wheel })
     }
 
     /// Both speeds at which straight running has a Hopf point with this damping.
     pub(super) fn speeds_at(&self, damping: f64) -> Option<[f64; 2]> {
-        let (l, m, k) = (CASTER_LENGTH, self.static_moment, self.stiffness);
-        // m c v^2 + (m l k + l^2 c^2 - J k) v + l^3 c k = 0
-        let half = 0.5 * (self.yaw_inertia * k - m * l * k - (l * damping).powi(2)) / (m * damping);
-        let product = l.powi(3) * k / m;
+        let [a, b, c] = hopf_condition(&self.wheel, damping);
+        let half = -0.5 * b / a;
+        let product = c / a;
         let root = half * half - product;
         (root >= 0.0).then(|| {
             let upper = half + root.sqrt();
@@ -110,28 +191,37 @@ impl HopfVertex {
     }
 }
 
-/// The wheel of this study, speed and damping being the parameters.
-pub(super) fn lateral(speed: f64, damping: f64) -> Result<LateralWheel, KingpinError> {
-    let values = [
-        (Key::KU, f64::INFINITY),
-        (Key::TurningRadius, f64::INFINITY),
-        (Key::L, CASTER_LENGTH),
-        (Key::V, speed),
-        (Key::CQ, damping),
-    ];
-    wheel(&values)?.lateral(&[Key::V, Key::CQ])
+/// A wheel with lateral elasticity only and without lateral damper, towed straight: that which is given, or the paper's.
+fn lateral_wheel(given: Option<&Wheel>) -> Result<Wheel, KingpinError> {
+    let base = match given {
+        Some(given) => *given,
+        None => wheel(&[(Key::L, CASTER_LENGTH)])?,
+    };
+    base.with(Key::KU, f64::INFINITY)?.with(Key::TurningRadius, f64::INFINITY)?.with(Key::CQ, 0.0)
 }
 
-pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
-    let isola = Isola::compute(control)?;
+pub(super) fn study(given: Option<&Wheel>, control: &Control<'_>) -> Result<Study, Error> {
+    let isola = Isola::compute(&lateral_wheel(given)?, control)?;
     Ok(Study { findings: isola.findings(), drawings: vec![isola.drawing()], pictures: Vec::new() })
 }
 
 impl Isola {
-    pub(super) fn compute(control: &Control<'_>) -> Result<Self, Error> {
-        let field = lateral(1.0, WITH_HOPF_POINTS)?;
-        let straight =
-            Equilibria::of(&field).parameters(&[1.0, WITH_HOPF_POINTS]).along("v", 0.1..=20.0).run()?;
+    pub(super) fn compute(wheel: &Wheel, control: &Control<'_>) -> Result<Self, Error> {
+        let birth = HopfVertex::of(wheel).ok_or_else(|| {
+            Error::NothingFound(
+                "no isola: with lateral elasticity only (k_u = inf) straight running of this wheel is stable at every speed however weak \
+                 the lateral damper is, so that there are no cycles that a damper could detach; that follows from the Hopf \
+                 condition, nothing else was searched"
+                    .to_owned(),
+            )
+        })?;
+        let mut ranges = Ranges::of(&birth)?;
+        let Ranges { with_hopf_points, bridged: dampings, .. } = ranges;
+        let field = wheel.lateral(&[Key::V, Key::CQ])?;
+        let straight = Equilibria::of(&field)
+            .parameters(&[ranges.hopf_start, with_hopf_points])
+            .along("v", ranges.hopf_speeds.0..=ranges.hopf_speeds.1)
+            .run()?;
         let mut hopf_points: Vec<HopfPoint> = straight.hopf_points().cloned().collect();
         hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
         let mut attached = Vec::new();
@@ -143,42 +233,79 @@ impl Isola {
             if attached.iter().any(ends_here) {
                 continue;
             }
-            attached.push(along_speed(&field, CycleStart::from(hopf), [hopf.value, WITH_HOPF_POINTS])?);
+            attached.push(along_speed(
+                &field,
+                &ranges,
+                CycleStart::from(hopf),
+                [hopf.value, with_hopf_points],
+            )?);
         }
         control.done(0.2);
         unless_stopped(control)?;
-        let bridge = attached
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .filter(|point| point.value == BRIDGE)
-            .max_by(|a, b| a.max[1].total_cmp(&b.max[1]))
-            .ok_or_else(|| Error::not_found("limit cycle", "v = 10 m/s, c_q = 0.05 N s/m"))?;
-        let bridged = Cycles::of(&field, CycleStart::Orbit(bridge.orbit.clone()))
-            .parameters(&[BRIDGE, WITH_HOPF_POINTS])
-            .along("c_q", BRIDGED.0..=BRIDGED.1)
-            .at(&[SHOWN[0], DETACHED, SHOWN[1]])
-            .run()?;
+        let largest = |at: &dyn Fn(&&CyclePoint) -> bool| {
+            let points = attached.iter().flat_map(|branch| &branch.points).filter(at);
+            points.max_by(|a, b| a.max[1].total_cmp(&b.max[1]))
+        };
+        // Where no cycle has that speed, the largest of all is followed.
+        let bridge = largest(&|point| point.value == ranges.bridge).or_else(|| largest(&|_| true));
+        let bridge = bridge.ok_or_else(|| {
+            Error::NothingFound(format!(
+                "no isola: straight running has no Hopf point at c_q = {with_hopf_points} N s/m for v from {} to {} m/s, and so no cycles",
+                ranges.hopf_speeds.0, ranges.hopf_speeds.1
+            ))
+        })?;
+        let speed = bridge.value;
+        ranges.bridge = speed;
+        let follow = |wanted: &[f64]| {
+            Cycles::of(&field, CycleStart::Orbit(bridge.orbit.clone()))
+                .parameters(&[speed, with_hopf_points])
+                .along("c_q", dampings.0..=dampings.1)
+                .at(wanted)
+                .run()
+        };
+        let mut bridged = follow(&[ranges.shown[0], ranges.detached, ranges.shown[1]])?;
+        let strongest = bridged.points.iter().map(|point| point.value).fold(0.0, f64::max);
+        if strongest < ranges.detached {
+            if strongest <= birth.damping {
+                let found: Vec<String> = attached.iter().map(|branch| told(branch, "v", "m/s")).collect();
+                return Err(Error::NothingFound(format!(
+                    "no isola was found. Straight running is stable at every speed from c_q = {} N s/m on; the largest cycles at c_q = \
+                     {with_hopf_points} N s/m, followed in the damping at v = {} m/s, end before that: {}. Searched were the branches \
+                     from the Hopf points at c_q = {with_hopf_points} N s/m: {}",
+                    readable(birth.damping),
+                    readable(speed),
+                    told(&bridged, "c_q", "N s/m"),
+                    found.join("; ")
+                )));
+            }
+            // Between the two the branch is detached.
+            ranges.detached = 0.5 * (birth.damping + strongest);
+            bridged = follow(&[ranges.detached])?;
+        }
         let reached = |damping: f64| -> Result<&Orbit, Error> {
             let at = |point: &&CyclePoint| point.value == damping;
             let found = bridged.points.iter().find(at).map(|point| &point.orbit);
-            found
-                .ok_or_else(|| Error::not_found("limit cycle", &format!("v = 10 m/s, c_q = {damping} N s/m")))
+            let place = || format!("v = {} m/s, c_q = {} N s/m", readable(speed), readable(damping));
+            found.ok_or_else(|| Error::not_found("limit cycle", &place()))
         };
         control.done(0.3);
         unless_stopped(control)?;
         let start = |damping: f64| Ok::<_, Error>(CycleStart::Orbit(reached(damping)?.clone()));
         let lightest = bridged.points.iter().min_by(|a, b| a.value.total_cmp(&b.value));
         let undamped_angle = lightest.map_or(0.0, |point| point.max[1]);
-        let shown = SHOWN
+        let shown = ranges
+            .shown
             .into_iter()
-            .map(|damping| Ok((damping, along_speed(&field, start(damping)?, [BRIDGE, damping])?)))
+            .filter(|damping| reached(*damping).is_ok())
+            .map(|damping| Ok((damping, along_speed(&field, &ranges, start(damping)?, [speed, damping])?)))
             .collect::<Result<Vec<_>, Error>>()?;
         control.done(0.5);
         unless_stopped(control)?;
-        let closed = along_speed(&field, start(DETACHED)?, [BRIDGE, DETACHED])?;
+        let detached = ranges.detached;
+        let closed = along_speed(&field, &ranges, start(detached)?, [speed, detached])?;
         if let Some(stop) = closed.stops[1].as_ref().filter(|stop| !matches!(stop, Stop::Closed)) {
             return Err(Error::NothingFound(format!(
-                "the branch of cycles at c_q = {DETACHED} N s/m does not close: {stop}"
+                "the branch of cycles at c_q = {detached} N s/m does not close: {stop}"
             )));
         }
         control.done(0.6);
@@ -186,26 +313,17 @@ impl Isola {
         let fold = closed
             .of_kind(SpecialKind::FoldOfCycles)
             .max_by(|a, b| a.value.total_cmp(&b.value))
-            .ok_or_else(|| Error::not_found("fold of cycles", "c_q = 0.1 N s/m"))?;
+            .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?;
         let folds = CycleLocus::of(&field)
-            .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, DETACHED])
-            .along("v", FOLD_SPEEDS)
-            .and("c_q", FOLD_DAMPINGS)
+            .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, detached])
+            .along("v", ranges.speeds.0..=ranges.speeds.1)
+            .and("c_q", ranges.fold_dampings.0..=ranges.fold_dampings.1)
             .settings(Settings { predictor_error: FOLD_PREDICTOR_ERROR, ..settings() })
             .run()?;
         control.done(0.9);
         unless_stopped(control)?;
         let death = largest_damping(&field, &folds)?;
-        Ok(Self {
-            hopf_points,
-            attached,
-            undamped_angle,
-            closed,
-            shown,
-            folds,
-            birth: HopfVertex::new()?,
-            death,
-        })
+        Ok(Self { hopf_points, attached, undamped_angle, closed, shown, folds, birth, death, ranges })
     }
 
     /// Folds of the closed branch by speed.
@@ -217,24 +335,25 @@ impl Isola {
 
     fn findings(&self) -> Vec<Finding> {
         let mut findings = Vec::new();
+        let Ranges { with_hopf_points, detached, bridge, bridged, .. } = &self.ranges;
         let mut find =
             |quantity: String, value: f64, unit| findings.push(Finding::new(quantity, value, unit));
         for hopf in &self.hopf_points {
             let criticality = format!("{:?}", hopf.criticality).to_lowercase();
             find(
-                format!("Hopf point at c_q = {WITH_HOPF_POINTS} N s/m, {criticality}: v"),
+                format!("Hopf point at c_q = {with_hopf_points} N s/m, {criticality}: v"),
                 hopf.value,
                 "m/s",
             );
         }
         find(
-            format!("largest psi at v = {BRIDGE} m/s, c_q = {} N s/m", BRIDGED.0),
+            format!("largest psi at v = {bridge} m/s, c_q = {} N s/m", bridged.0),
             self.undamped_angle,
             "rad",
         );
         for (index, fold) in self.closed_folds().into_iter().enumerate() {
             let end = if index == 0 { "lower" } else { "upper" };
-            find(format!("{end} fold of the isola at c_q = {DETACHED} N s/m: v"), fold.value, "m/s");
+            find(format!("{end} fold of the isola at c_q = {detached} N s/m: v"), fold.value, "m/s");
             find("  its period".to_owned(), fold.period, "s");
             find("  its largest psi".to_owned(), fold.max[1], "rad");
         }
@@ -244,6 +363,10 @@ impl Isola {
         find("  v".to_owned(), self.death.speed, "m/s");
         find("  period".to_owned(), self.death.period, "s");
         find("  largest psi".to_owned(), self.death.angle, "rad");
+        let neglected = self.birth.wheel.get(Key::MF);
+        if neglected > 0.0 {
+            find("dry friction about the king pin, which is left out: M_f".to_owned(), neglected, "N m");
+        }
         findings
     }
 }
@@ -256,15 +379,28 @@ fn settings() -> Settings {
     }
 }
 
+/// The range of a branch and why it ends, in words.
+fn told(branch: &CycleBranch, key: &str, unit: &str) -> String {
+    let values = || branch.points.iter().map(|point| point.value);
+    let ends: Vec<String> = branch.stops.iter().flatten().map(ToString::to_string).collect();
+    format!(
+        "{key} from {} to {} {unit} ({})",
+        readable(values().fold(f64::INFINITY, f64::min)),
+        readable(values().fold(f64::NEG_INFINITY, f64::max)),
+        ends.join("; ")
+    )
+}
+
 fn along_speed(
     field: &LateralWheel,
+    ranges: &Ranges,
     start: CycleStart,
     parameters: [f64; 2],
 ) -> Result<CycleBranch, arclength::Error> {
     Cycles::of(field, start)
         .parameters(&parameters)
-        .along("v", SPEEDS)
-        .at(&[BRIDGE])
+        .along("v", ranges.speeds.0..=ranges.speeds.1)
+        .at(&[ranges.bridge])
         .settings(settings())
         .run()
 }
