@@ -305,11 +305,7 @@ impl Wheel {
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     pub fn to_toml(&self) -> String {
-        let follows = |key: Key| match key {
-            Key::MuD => !self.sliding_friction_is_set,
-            Key::TP => !self.pneumatic_trail_is_set,
-            _ => false,
-        };
+        let follows = |key: Key| matches!(key, Key::MuD | Key::TP) && !self.origin.is_set(key);
         let tyre = self.tyre.map(|tyre| format!("{} = \"{tyre}\"\n", Tyre::KEY));
         let lines = self.parameters().filter(|&(key, _)| !follows(key)).map(|(key, value)| {
             let unit = if key.unit() == "1" { String::new() } else { format!("{}: ", key.unit()) };

@@ -82,7 +82,7 @@ impl LargeCycles {
         let weaker: Vec<f64> =
             if needed > 0.0 { WEAKER.iter().map(|part| part * needed).collect() } else { vec![0.0] };
         for damping in weaker {
-            search.from_hopf_points(&wheel.with(key, damping)?, up_to)?;
+            search.along_speed(&wheel.with(key, damping)?, up_to)?;
             unless_stopped(control)?;
         }
         search.along_folds(wheel)?;
@@ -144,7 +144,7 @@ impl Search<'_> {
     }
 
     /// Follows the cycles that are born with a damper, along the speed, and some of them along the damping.
-    fn from_hopf_points(&mut self, damped: &Wheel, up_to: f64) -> Result<(), Error> {
+    fn along_speed(&mut self, damped: &Wheel, up_to: f64) -> Result<(), Error> {
         let speeds = Along::new(Key::V, SLOWEST * up_to, FASTEST * up_to)?;
         let damping = damped.get(self.key());
         let search = damped.hopf_points(speeds, self.control).map_err(Error::from);
