@@ -35,6 +35,7 @@ pub mod stability;
 mod start;
 mod states;
 pub mod steady;
+pub mod steady_along;
 pub mod studies;
 mod uniform_curve;
 mod up_to;

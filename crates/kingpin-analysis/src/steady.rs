@@ -58,7 +58,7 @@ pub struct SteadyResult {
 }
 
 impl SteadyResult {
-    fn of(motion: &UniformMotion) -> Self {
+    pub(crate) fn of(motion: &UniformMotion) -> Self {
         let contact = motion.contact_force();
         Self {
             wheel: *motion.wheel(),

@@ -254,6 +254,12 @@ impl SlidingWheel {
         let shrinking = -(state[S1] * rate[S1] + state[S2] * rate[S2]);
         let rest = if shrinking > 0.0 { slip_squared(&state) / shrinking } else { 0.0 };
         let rest = rest.min(end - solution.time);
+        let straight =
+            |time: f64, component: usize| state[component] + (time - solution.time) * rate[component];
+        for &time in times[solution.times.len()..].iter().take_while(|&&time| time <= solution.time + rest) {
+            solution.states.extend((0..state.len()).map(|component| straight(time, component)));
+            solution.times.push(time);
+        }
         for (component, rate) in state.iter_mut().zip(rate) {
             *component += rest * rate;
         }

@@ -320,3 +320,32 @@ fn smoothed_friction_dissipates_and_tends_to_coulomb_friction() {
     assert!(wheel.smoothed_sliding(&[], 0.0).is_err());
     assert!(loaded(0.5, 0.8).smoothed_sliding(&[], 1e-3).is_err());
 }
+
+/// A fit was given up there: the time was sampled in neither of the two pieces.
+#[test]
+fn times_on_the_straight_way_of_vanishing_slip_are_sampled() {
+    let wheel = loaded(1.0, 0.8);
+    let sliding = wheel.sliding().unwrap().slips(1e-4, 1e-4);
+    let start = sliding.rolling_state(&start(&wheel));
+    let mut straight = Vec::new();
+    sliding
+        .follow(start, 0.3, &[], &Control::none(), |piece| {
+            let vanishing = piece.solution.crossings.first().filter(|_| piece.mode.regime == Regime::Sliding);
+            straight.extend(vanishing.map(|crossing| (crossing.time, piece.solution.time)));
+            true
+        })
+        .unwrap();
+    assert!(!straight.is_empty());
+    let wanted: Vec<f64> = straight.iter().map(|(from, to)| 0.5 * (from + to)).collect();
+    let mut found = Vec::new();
+    sliding
+        .follow(start, 0.3, &wanted, &Control::none(), |piece| {
+            let samples = piece.solution.samples();
+            found.extend(samples.map(|(time, state)| (time, state[S1].hypot(state[S2]))));
+            true
+        })
+        .unwrap();
+    assert_eq!(found.iter().map(|(time, _)| *time).collect::<Vec<_>>(), wanted);
+    // Half way the slip is half of that at which it is taken to vanish.
+    assert!(found.iter().all(|(_, slip)| *slip > 0.0 && *slip < 0.51e-4), "{found:?}");
+}
