@@ -3,10 +3,12 @@
 use crate::classification::{Classification, NamedFate};
 use crate::error::Error;
 use arclength_analysis::Control;
-use kingpin::basin::{Axis, BasinMap, ContactModel, Destinations, Fate};
+use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
 use serde::Serialize;
+use std::f64::consts::TAU;
+use std::fmt;
 
 /// Speeds at which the wheel is kicked, as parts of the largest of the range.
 const SPEEDS: [f64; 2] = [0.5, 1.0];
@@ -15,9 +17,11 @@ const KICKS: usize = 16;
 const SEED: u64 = 1;
 /// Largest caster angle in rad; the largest yaw rate is that of a blow which would change the speed of the wheel by the towing speed.
 const LARGEST_ANGLE: f64 = 1.5;
+/// Natural periods of the springs for which a motion is followed, ten times as long while it is unsettled.
+const PERIODS: f64 = 30.0;
 /// The damper is this much stronger than the one that is tested.
 const STRONGER: f64 = 1.01;
-/// Where a kick does not return, dampers so many times as strong are tried, so often.
+/// Where a kick is lost, dampers so many times as strong are tried, so often.
 const FACTOR: f64 = 1.5;
 const RAISES: usize = 8;
 
@@ -28,14 +32,34 @@ pub struct KickedWheels {
     pub kicks: usize,
     /// Number of those that returned to the uniform motion.
     pub returned: usize,
+    /// Number of those of which it is undecided where they end, as where the longitudinal motion rings for long.
+    pub undecided: usize,
     /// Where others ended.
     pub ends: Vec<NamedFate>,
-    /// A damper with which all returned: the first of some that are 1.5 times as strong each; nothing where none was found, or none
-    /// was kicked.
-    pub all_return: Option<f64>,
+    /// A damper with which none ended elsewhere: the first of some that are 1.5 times as strong each; nothing where none was found, or
+    /// none was kicked.
+    pub none_lost: Option<f64>,
 }
 
-/// Kicks a wheel with a damper, and with stronger ones until all kicks return. Nothing where there are no motions to kick: a tyre, or
+impl fmt::Display for KickedWheels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { kicks, returned, undecided, ends, .. } = self;
+        match returned {
+            returned if returned == kicks => write!(f, "all {kicks} strong random kicks return")?,
+            returned => write!(f, "{returned} of {kicks} strong random kicks return")?,
+        }
+        if *undecided > 0 {
+            write!(f, ", {undecided} are undecided")?;
+        }
+        if !ends.is_empty() {
+            let ends: Vec<&str> = ends.iter().map(|fate| fate.0.name()).collect();
+            write!(f, ", {} end in {}", kicks - returned - undecided, ends.join(" or "))?;
+        }
+        Ok(())
+    }
+}
+
+/// Kicks a wheel with a damper, and with stronger ones until no kick ends elsewhere than in the uniform motion. Nothing where there are no motions to kick: a tyre, or
 /// lateral elasticity only.
 ///
 /// # Errors
@@ -65,17 +89,20 @@ pub(super) fn kick(
             }
         }
         let returned = fates.iter().filter(|fate| **fate == Fate::UniformMotion).count();
-        let mut ends: Vec<Fate> = fates.iter().copied().filter(|fate| *fate != Fate::UniformMotion).collect();
+        let undecided = fates.iter().filter(|fate| **fate == Fate::Undecided).count();
+        let is_lost = |fate: &Fate| !matches!(fate, Fate::UniformMotion | Fate::Undecided);
+        let mut ends: Vec<Fate> = fates.iter().copied().filter(is_lost).collect();
         ends.sort();
         ends.dedup();
         let kicked = first.get_or_insert_with(|| KickedWheels {
             kicks: fates.len(),
             returned,
+            undecided,
             ends: ends.into_iter().map(NamedFate).collect(),
-            all_return: None,
+            none_lost: None,
         });
-        if !fates.is_empty() && returned == fates.len() {
-            kicked.all_return = Some(damper);
+        if !fates.is_empty() && !fates.iter().any(is_lost) {
+            kicked.none_lost = Some(damper);
             break;
         }
     }
@@ -84,10 +111,11 @@ pub(super) fn kick(
 
 /// Fates of kicks of a wheel, which may slide where its load is known.
 fn fates_at(wheel: &Wheel, control: &Control<'_>) -> Result<Vec<Fate>, Error> {
-    let classification = Classification::default();
-    let model = classification.contact_by_load(wheel).model();
-    let destinations = Destinations::new(wheel, model, classification.settings(wheel)?)?;
-    let blow = wheel.get(Key::V) * (wheel.get(Key::MW) + wheel.get(Key::MC));
+    let model = Classification::default().contact_by_load(wheel).model();
+    let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
+    let duration = PERIODS * TAU * (mass / wheel.get(Key::KQ)).sqrt();
+    let destinations = Destinations::new(wheel, model, ClassificationSettings { duration })?;
+    let blow = wheel.get(Key::V) * mass;
     let [_, turn] = wheel.velocity_change(blow, ContactModel::Rolling);
     let yaw = wheel.towing_yaw_rate();
     let axes =

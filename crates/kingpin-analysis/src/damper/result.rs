@@ -138,6 +138,7 @@ impl WithoutCycles {
                 "{name} alone: cycles with every damper that was tried, up to {}",
                 quantity(self.largest)
             )?,
+            Some(0.0) => writeln!(out, "{name} alone: none is needed, no large cycle was found")?,
             Some(damping) if !self.decided_by_large_cycles => {
                 writeln!(out, "{name} alone: {} at least, no large cycle lasts longer", quantity(damping))?;
             }
@@ -169,24 +170,15 @@ impl WithoutCycles {
             "  {} branches of cycles and {} curves of folds were followed",
             self.branches, self.curves
         )?;
-        match &self.kicked {
-            Some(KickedWheels { kicks, returned, .. }) if returned == kicks => {
-                writeln!(out, "; all {kicks} strong random kicks return")?;
+        if let Some(kicked) = &self.kicked {
+            write!(out, "; {kicked}")?;
+            match kicked.none_lost {
+                _ if kicked.ends.is_empty() => {}
+                Some(damping) => write!(out, "\n  none does so with {}", quantity(damping))?,
+                None => write!(out, "\n  some do so with every stronger damper that was tried")?,
             }
-            Some(KickedWheels { kicks, returned, ends, all_return }) => {
-                let ends: Vec<&str> = ends.iter().map(|fate| fate.0.name()).collect();
-                writeln!(
-                    out,
-                    "; {returned} of {kicks} strong random kicks return, the others end in {}",
-                    ends.join(", ")
-                )?;
-                match all_return {
-                    Some(damping) => writeln!(out, "  all return with {}", quantity(*damping))?,
-                    None => writeln!(out, "  with no stronger damper that was tried do all return")?,
-                }
-            }
-            None => writeln!(out)?,
         }
+        writeln!(out)?;
         for problem in &self.problems {
             writeln!(out, "  not followed: {problem}")?;
         }

@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::illustration::Illustration;
-use crate::damper::{DamperRequest, DamperResult, KickedWheels, WithoutCycles};
+use crate::damper::{DamperRequest, DamperResult, WithoutCycles};
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
@@ -51,7 +51,7 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
         let said: Vec<String> =
             found.iter().filter_map(|(found, key, unit)| large_cycles(found.as_ref()?, key, unit)).collect();
         if !said.is_empty() {
-            text.push_str(&format!(" That no large cycle is found beside it takes {}.", said.join(", or ")));
+            text.push_str(&format!(" That no large cycle is found either takes {}.", said.join(", or ")));
         }
     }
     let check = "Boundaries of stability, followed in the damper at every speed; cycles followed from the Hopf points of weaker dampers along speed and \
@@ -64,14 +64,17 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
 fn large_cycles(found: &WithoutCycles, key: &str, unit: &str) -> Option<String> {
     let damping = found.damping?;
     let kicked = match &found.kicked {
-        Some(KickedWheels { kicks, returned, all_return, .. }) if returned < kicks => match all_return {
-            Some(damper) => {
-                format!(" ({} for all of {kicks} strong random kicks to return)", significant(*damper, 4))
+        Some(kicked) if kicked.returned < kicked.kicks => match kicked.none_lost {
+            Some(damper) if !kicked.ends.is_empty() => {
+                format!(" ({kicked}; none does so with {})", significant(damper, 4))
             }
-            None => format!(" (of {kicks} strong random kicks {returned} return even so)"),
+            _ => format!(" ({kicked})"),
         },
         _ => String::new(),
     };
+    if damping == 0.0 {
+        return Some(format!("no {key}{kicked}"));
+    }
     Some(format!("{key} = {} {unit}{kicked}", significant(damping, 4)))
 }
 

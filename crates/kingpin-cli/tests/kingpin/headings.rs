@@ -8,9 +8,13 @@ const WHEELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/w
 fn a_heading_is_one_line_and_names_the_file() {
     let folder = Folder::new();
     for wheel in ["dolly", "nosegear", "office", "trolley", "wheelchair"] {
-        for command in
-            ["steady", "stability", "damper --up-to v=1", "simulate --duration 0.1", "chart --x v=1:2:3"]
-        {
+        for command in [
+            "steady",
+            "stability",
+            "damper --up-to v=1 --small-motions",
+            "simulate --duration 0.1",
+            "chart --x v=1:2:3",
+        ] {
             let file = format!("--wheel {WHEELS}/{wheel}.toml");
             let run = folder.succeed(&format!("{command} {file} -s r=2 -q"));
             let heading = run.output.lines().next().unwrap();
