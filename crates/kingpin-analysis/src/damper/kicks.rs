@@ -5,7 +5,7 @@ use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
-use kingpin::{Key, KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Tyre, Wheel};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::fmt;
@@ -70,6 +70,9 @@ pub(super) fn kick(
     [damping, up_to]: [f64; 2],
     control: &Control<'_>,
 ) -> Result<Option<KickedWheels>, Error> {
+    if wheel.tyre() != Tyre::Rigid || wheel.get(Key::KU).is_infinite() {
+        return Ok(None);
+    }
     let mut first = None;
     for raise in 0..RAISES {
         let damper = STRONGER * damping * FACTOR.powi(raise as i32);
@@ -84,7 +87,6 @@ pub(super) fn kick(
                     SimulationError::UniformMotionSlides { .. }
                     | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }),
                 )) => {}
-                Err(Error::Simulation(SimulationError::Wheel(_)) | Error::Wheel(_)) => return Ok(None),
                 Err(error) => return Err(error),
             }
         }

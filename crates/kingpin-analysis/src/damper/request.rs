@@ -107,11 +107,11 @@ fn without_cycles(
         None => None,
     };
     let last = cycles.last.as_ref().map_or(0.0, |last| last.damping);
-    let damping = (!cycles.at_every_damper).then(|| needed.max(last));
-    let kicked = match damping {
+    let by_continuation = (!cycles.at_every_damper).then(|| needed.max(last));
+    let kicked = match by_continuation {
         Some(damping) => kick(wheel, key, [damping, up_to], &control.part(PART_OF_CYCLES..1.0))?,
         None => None,
     };
     let decisive = last > needed;
-    Ok(Some(WithoutCycles::new(damping, decisive, cycles, forces, kicked)))
+    Ok(Some(WithoutCycles::new(by_continuation, decisive, cycles, forces, kicked)))
 }

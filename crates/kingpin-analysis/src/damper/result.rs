@@ -57,8 +57,11 @@ pub struct IsolaFree {
 /// The smallest damper with which no large cycle was found. What was searched is no proof that there is none.
 #[derive(Debug, Serialize)]
 pub struct WithoutCycles {
-    /// The damper in the unit of its key; nothing where there were cycles with every damper that was tried.
+    /// The damper in the unit of its key: where the cycles end that were followed, or, where kicks are lost with that, the first that was
+    /// tried with which none is; nothing where there is none.
     pub damping: Option<f64>,
+    /// Where the cycles end that were followed; nothing where there were some with every damper that was tried.
+    pub by_continuation: Option<f64>,
     /// Whether large cycles decide: they last longer than small ones are born.
     pub decided_by_large_cycles: bool,
     /// The cycle that lasts longest: where large cycles decide, there the last of them dies.
@@ -99,7 +102,7 @@ pub struct LastCycleResult {
 impl WithoutCycles {
     /// What was found of one damper.
     pub(super) fn new(
-        damping: Option<f64>,
+        by_continuation: Option<f64>,
         decisive: bool,
         cycles: LargeCycles,
         forces: Option<CycleForces>,
@@ -117,8 +120,14 @@ impl WithoutCycles {
             king_pin_force_max: known(|forces| forces.king_pin_force_max),
             damper_power: known(|forces| forces.damper_power),
         });
+        // A kick that is lost refutes what following cycles says.
+        let damping = match &kicked {
+            Some(kicked) if !kicked.ends.is_empty() => kicked.none_lost,
+            _ => by_continuation,
+        };
         Self {
             damping,
+            by_continuation,
             decided_by_large_cycles: decisive,
             last_cycle,
             branches: cycles.branches,
@@ -132,7 +141,7 @@ impl WithoutCycles {
     /// What is said of it.
     fn write(&self, key: Key, name: &str, out: &mut dyn Write) -> io::Result<()> {
         let quantity = |damping: f64| description::quantity(key, damping);
-        match self.damping {
+        match self.by_continuation {
             None => writeln!(
                 out,
                 "{name} alone: cycles with every damper that was tried, up to {}",
@@ -144,8 +153,10 @@ impl WithoutCycles {
             }
             Some(damping) => writeln!(out, "{name} alone: {} at least", quantity(damping))?,
         }
-        if let Some(last) =
-            self.last_cycle.as_ref().filter(|_| self.damping.is_none() || self.decided_by_large_cycles)
+        if let Some(last) = self
+            .last_cycle
+            .as_ref()
+            .filter(|_| self.by_continuation.is_none() || self.decided_by_large_cycles)
         {
             write!(
                 out,
@@ -174,8 +185,13 @@ impl WithoutCycles {
             write!(out, "; {kicked}")?;
             match kicked.none_lost {
                 _ if kicked.ends.is_empty() => {}
-                Some(damping) => write!(out, "\n  none does so with {}", quantity(damping))?,
-                None => write!(out, "\n  some do so with every stronger damper that was tried")?,
+                Some(damping) => {
+                    write!(out, "\n  so that is not enough: none does so with {}", quantity(damping))?
+                }
+                None => write!(
+                    out,
+                    "\n  so that is not enough: some do so with every stronger damper that was tried"
+                )?,
             }
         }
         writeln!(out)?;

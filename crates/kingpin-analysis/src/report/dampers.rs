@@ -62,7 +62,7 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
 
 /// What one damper alone takes so that no large cycle is found; nothing where that is not known.
 fn large_cycles(found: &WithoutCycles, key: &str, unit: &str) -> Option<String> {
-    let damping = found.damping?;
+    let damping = found.by_continuation?;
     let kicked = match &found.kicked {
         Some(kicked) if kicked.returned < kicked.kicks => match kicked.none_lost {
             Some(damper) if !kicked.ends.is_empty() => {
