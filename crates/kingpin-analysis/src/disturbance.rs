@@ -7,6 +7,7 @@ use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, Fate, Sa
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// The largest curvature that is tried lays the caster of a stiff wheel at about so many rad.
 const CASTER_ANGLE: f64 = 0.4;
@@ -65,6 +66,11 @@ impl Edge {
     }
 }
 
+/// Period in s of wheel and caster on the lateral spring.
+pub(crate) fn natural_period(wheel: &Wheel) -> f64 {
+    TAU * (wheel.mass() / wheel.get(Key::KQ)).sqrt()
+}
+
 /// How far magnitudes were tried in the directions of these edges: to the edge, or to the largest magnitude where there is none or where
 /// nothing returns.
 pub(crate) fn reached(edges: impl IntoIterator<Item = Option<Edge>>, largest: f64) -> f64 {
@@ -88,7 +94,7 @@ impl DisturbanceRequest {
     pub fn largest(&self, wheel: &Wheel) -> f64 {
         self.largest.unwrap_or(match self.kind {
             DisturbanceKind::Impulse => {
-                let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
+                let mass = wheel.mass();
                 let natural_speed = wheel.get(Key::L) * (wheel.get(Key::KQ) / mass).sqrt();
                 mass * if wheel.get(Key::V) > 0.0 { wheel.get(Key::V) } else { natural_speed }
             }

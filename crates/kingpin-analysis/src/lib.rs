@@ -25,6 +25,7 @@ pub mod margin;
 mod neglected_dry_friction;
 mod page;
 pub mod paper;
+mod parabola;
 mod parameters;
 pub mod report;
 mod result_file;

@@ -78,7 +78,7 @@ impl Wheel {
         centripetal_acceleration: f64,
         remaining: f64,
     ) -> ContactForce {
-        let mass = self.get(Key::MW) + self.get(Key::MC);
+        let mass = self.mass();
         let wheel_radius = self.get(Key::WheelRadius);
         ContactForce {
             longitudinal: -(self.get(Key::JWxi) / (wheel_radius * wheel_radius)) * forward_acceleration,

@@ -131,15 +131,6 @@ impl RollingModel {
         }
     }
 
-    /// The smallest forward speed of a wheel with a tyre on a cycle of this vector field, as a part of the towing speed; `None`
-    /// without a tyre, where the wheel may roll backwards.
-    pub(crate) fn smallest_speed_ratio(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
-        match self {
-            Self::Elastic(_) | Self::Lateral(_) => None,
-            Self::Tyre(wheel) => Some(wheel.smallest_speed_ratio(orbit, parameters)),
-        }
-    }
-
     /// How far a cycle of this vector field is from where the equations cease to hold, [`Wheel::border_of_cycles`].
     pub(crate) fn distance_from_border(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
         match self {
@@ -151,10 +142,9 @@ impl RollingModel {
 
     /// That the wheel rolls forwards all along a cycle of this vector field, if it has a tyre.
     pub(crate) fn check_forwards(&self, orbit: &Orbit, parameters: &[f64]) -> Result<(), KingpinError> {
-        match self.smallest_speed_ratio(orbit, parameters) {
-            Some(ratio) if ratio <= 0.0 => Err(KingpinError::RollsBackwards { ratio }),
-            _ => Ok(()),
-        }
+        let Self::Tyre(wheel) = self else { return Ok(()) };
+        let ratio = wheel.smallest_speed_ratio(orbit, parameters);
+        if ratio <= 0.0 { Err(KingpinError::RollsBackwards { ratio }) } else { Ok(()) }
     }
 
     /// Whether Hopf points have no first Lyapunov coefficient at these parameters: straight, under the brush law of the tyre.

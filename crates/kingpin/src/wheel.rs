@@ -74,6 +74,11 @@ impl Wheel {
         self.tyre = Some(tyre);
     }
 
+    /// Mass of wheel and caster together, in kg.
+    pub fn mass(&self) -> f64 {
+        self.get(Key::MW) + self.get(Key::MC)
+    }
+
     /// Every stored parameter with its value, in the order of the table; `k` and `curvature` are not among them, those of the
     /// tyre only where there is one.
     pub fn parameters(&self) -> impl Iterator<Item = (Key, f64)> {
@@ -333,7 +338,7 @@ impl Wheel {
     /// Normal force on the wheel, `N = -F_Az + (m_w + m_c) g`, in N; negative where the load lifts the wheel.
     #[inline]
     pub fn normal_force(&self) -> f64 {
-        (self.get(Key::MW) + self.get(Key::MC)) * self.get(Key::G) - self.get(Key::FAz)
+        self.mass() * self.get(Key::G) - self.get(Key::FAz)
     }
 
     /// Whether `mu_d` is `mu_s` because it was not set.

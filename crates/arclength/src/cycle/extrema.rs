@@ -76,7 +76,8 @@ impl Orbit {
         let at_node = |node: usize| {
             value_and_slope(&|index| (self.states[node * n + index], cycle.slope_at_node(node, index)))
         };
-        let values: Vec<f64> = (0..times.len()).map(|node| at_node(node).0).collect();
+        let value_at_node = |node: usize| value_and_slope(&|index| (self.states[node * n + index], 0.0)).0;
+        let values: Vec<f64> = (0..times.len()).map(value_at_node).collect();
         let Range { smallest, largest } = range(Curve {
             times: &times,
             values: &values,

@@ -1,13 +1,13 @@
 //! Strong random kicks of a damped wheel: whether one finds what continuation has not.
 
 use crate::classification::{Classification, NamedFate};
+use crate::disturbance::natural_period;
 use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Tyre, Wheel};
 use serde::Serialize;
-use std::f64::consts::TAU;
 use std::fmt;
 
 /// Speeds at which the wheel is kicked, as parts of the largest of the range.
@@ -114,10 +114,9 @@ pub(super) fn kick(
 /// Fates of kicks of a wheel, which may slide where its load is known.
 fn fates_at(wheel: &Wheel, control: &Control<'_>) -> Result<Vec<Fate>, Error> {
     let model = Classification::default().contact_by_load(wheel).model();
-    let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
-    let duration = PERIODS * TAU * (mass / wheel.get(Key::KQ)).sqrt();
+    let duration = PERIODS * natural_period(wheel);
     let destinations = Destinations::new(wheel, model, ClassificationSettings { duration })?;
-    let blow = wheel.get(Key::V) * mass;
+    let blow = wheel.get(Key::V) * wheel.mass();
     let [_, turn] = wheel.velocity_change(blow, ContactModel::Rolling);
     let yaw = wheel.towing_yaw_rate();
     let axes =

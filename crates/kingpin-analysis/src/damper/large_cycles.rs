@@ -7,6 +7,7 @@
 
 use crate::cycles::from_hopf_points;
 use crate::error::{Error, unless_stopped};
+use crate::parabola::vertex;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
 use arclength::cycle::Orbit;
@@ -297,11 +298,4 @@ fn lies_on(fold: &LastCycle, curve: &[LastCycle]) -> bool {
 fn caster_angles(wheel: &Wheel, min: &[f64], max: &[f64]) -> [f64; 2] {
     let index = wheel.states().iter().position(|name| *name == "psi").unwrap_or_default();
     [min, max].map(|values| values.get(index).copied().unwrap_or(f64::NAN))
-}
-
-/// Abscissa of the vertex of the parabola through three points.
-fn vertex([[x0, y0], [x1, y1], [x2, y2]]: [[f64; 2]; 3]) -> Option<f64> {
-    let (left, right) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
-    let place = 0.5 * (x0 + x1) - 0.5 * left * (x2 - x0) / (right - left);
-    place.is_finite().then_some(place)
 }

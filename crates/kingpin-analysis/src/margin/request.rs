@@ -5,7 +5,7 @@ use super::result::MarginResult;
 use super::unstable_cycles::unstable_cycles;
 use crate::along::along;
 use crate::classification::{Classification, Contact};
-use crate::disturbance::{DisturbanceKind, DisturbanceRequest, reached};
+use crate::disturbance::{DisturbanceRequest, reached};
 use crate::error::Error;
 use crate::journal::Journal;
 use crate::parameters::parameters_of;
@@ -156,7 +156,7 @@ impl MarginAnalysis {
         if control.is_stopped() {
             return Err(journal.interrupted(self.values.len(), self.values.len()));
         }
-        let directions = if self.disturbance.kind == DisturbanceKind::StepSteer { 1 } else { 2 };
+        let directions = self.disturbance.disturbance().directions();
         let resolution = |(&value, found): (&f64, &Found)| {
             let largest = self.disturbance.largest(&self.wheel.with(self.along.key(), value)?);
             let edges = [found.positive, found.negative].into_iter().take(directions);

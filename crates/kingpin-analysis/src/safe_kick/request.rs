@@ -2,7 +2,7 @@
 
 use super::result::{SafeKickResult, Search};
 use crate::classification::{Classification, Contact};
-use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
+use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge, natural_period};
 use crate::error::Error;
 use crate::margin::Found;
 use crate::wheel_request::WheelRequest;
@@ -117,8 +117,7 @@ impl SafeKickAnalysis {
         duration: f64,
         control: &Control<'_>,
     ) -> Result<[DisturbedMotion; 2], Error> {
-        let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
-        let period = std::f64::consts::TAU * (mass / wheel.get(Key::KQ)).sqrt();
+        let period = natural_period(wheel);
         let history = |magnitude: f64, duration: f64| {
             let samples = (SAMPLES_PER_PERIOD * duration / period).clamp(2.0, MOST_SAMPLES) as usize;
             let model = self.contact.model();

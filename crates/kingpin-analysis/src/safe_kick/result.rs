@@ -123,8 +123,7 @@ impl SafeKickResult {
         Search { edges: [positive, negative], sliding, motions }: Search,
     ) -> Self {
         let edges = [positive, negative];
-        let directions = if kind == Disturbance::StepSteer { 1 } else { 2 };
-        let reached = reached(edges.into_iter().take(directions), largest);
+        let reached = reached(edges.into_iter().take(kind.directions()), largest);
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let (returns, fails) = match (smallest, motions) {
             (Some(edge), Some([returns, fails])) => (
@@ -133,7 +132,6 @@ impl SafeKickResult {
             ),
             _ => (None, None),
         };
-        let mass = wheel.get(Key::MW) + wheel.get(Key::MC);
         let replay = smallest.filter(|edge| !edge.is_unstable()).and_then(|edge| {
             let disturbance = match kind {
                 Disturbance::Impulse => format!("--blow {}", edge.fails),
@@ -151,7 +149,7 @@ impl SafeKickResult {
             contact: model.name(),
             duration: settings.duration,
             largest,
-            largest_speed_change: (kind == Disturbance::Impulse).then(|| largest / mass),
+            largest_speed_change: (kind == Disturbance::Impulse).then(|| largest / wheel.mass()),
             resolution: SafeKick::resolution(reached),
             resolution_beside_edge: SafeKick::resolution_beside_edge(reached),
             positive,

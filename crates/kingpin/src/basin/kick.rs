@@ -60,6 +60,11 @@ impl Disturbance {
         }
     }
 
+    /// Number of its directions: that of a step of the curvature does not matter, the other one is the mirror image.
+    pub const fn directions(self) -> usize {
+        if matches!(self, Disturbance::StepSteer) { 1 } else { 2 }
+    }
+
     /// The motion after the disturbance for `duration`, or as much of it as can be followed, sampled at equal intervals.
     ///
     /// # Errors
@@ -138,7 +143,7 @@ impl Wheel {
     /// ideal rolling the ground takes the sideways momentum; a wheel that may slide, or that has a tyre, moves sideways.
     pub fn velocity_change(&self, blow: f64, model: ContactModel) -> [f64; 2] {
         let body = self.body();
-        let mass = self.get(Key::MW) + self.get(Key::MC);
+        let mass = self.mass();
         // Ahead is along +e1; the yaw rate counts from e2 to e1.
         let moment = blow * self.get(Key::WheelRadius);
         if model == ContactModel::Rolling && self.tyre() == Tyre::Rigid {

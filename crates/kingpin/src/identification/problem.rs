@@ -223,7 +223,7 @@ pub(super) fn typical(wheel: &Wheel, key: Key) -> f64 {
         Key::KPsi | Key::Kappa => stiffness * l * l,
         Key::MF => 0.1 * stiffness * l * l,
         Key::HalfContactLength | Key::TP | Key::LC => l,
-        Key::FAz => (wheel.get(Key::MW) + wheel.get(Key::MC)) * wheel.get(Key::G),
+        Key::FAz => wheel.mass() * wheel.get(Key::G),
         _ => 1.0,
     }
 }

@@ -1,6 +1,7 @@
 //! The extremum of the damping along a curve of folds: where the isola shrinks to a point.
 
 use crate::error::Error;
+use crate::parabola::vertex;
 use arclength::branch::SpecialKind;
 use arclength::locus::{CycleLocus, CycleLocusBranch, CycleLocusPoint};
 use kingpin::LateralWheel;
@@ -75,13 +76,6 @@ pub(super) fn largest_damping(field: &LateralWheel, folds: &CycleLocusBranch) ->
     Err(missing())
 }
 
-/// Abscissa of the vertex of the parabola through three points.
-fn vertex([[x0, y0], [x1, y1], [x2, y2]]: [[f64; 2]; 3]) -> Option<f64> {
-    let (left, right) = ((y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1));
-    let place = 0.5 * (x0 + x1) - 0.5 * left * (x2 - x0) / (right - left);
-    place.is_finite().then_some(place)
-}
-
 /// An interpolating polynomial in Newton's form.
 struct Polynomial {
     nodes: Vec<f64>,
@@ -128,11 +122,5 @@ mod tests {
         assert!((value - cubic(0.7)).abs() < 1e-14);
         assert!((slope - (-2.0 + 1.5 * 0.49)).abs() < 1e-13);
         assert!((curvature - 2.1).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_vertex_of_a_parabola() {
-        let parabola = |x: f64| [x, 3.0 - 2.0 * (x - 0.3) * (x - 0.3)];
-        assert!((vertex([parabola(-1.0), parabola(0.1), parabola(0.9)]).unwrap() - 0.3).abs() < 1e-15);
     }
 }
