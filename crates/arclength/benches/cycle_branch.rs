@@ -4,13 +4,12 @@
 //! The peer: AUTO-07p with NTST = 50, NCOL = 4 and tolerances 1e-8 takes 121 steps and 0.26 s on one thread of a
 //! two-core virtual machine of 2.5 GHz, the kind on which this benchmark is run too.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/suite/common/mod.rs"]
+#[allow(dead_code)] // The tests have more models and starts in common.
 mod common;
-#[path = "../tests/common/wheel.rs"]
-mod wheel;
 
 use arclength::cycle::{CycleBranch, Cycles, Resolution};
-use wheel::{Wheel, wheel_start};
+use common::wheel::{Wheel, wheel_start};
 
 fn main() {
     divan::main();

@@ -1,0 +1,3 @@
+//! Curves of solutions of algebraic systems.
+
+mod maps;

@@ -1,0 +1,3 @@
+//! Boundary value problems.
+
+mod boundary_values;

@@ -1,0 +1,3 @@
+//! What every curve has in common.
+
+mod events;

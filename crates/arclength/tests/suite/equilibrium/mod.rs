@@ -1,0 +1,7 @@
+//! Branches of equilibria, and how the first is found.
+
+mod branches;
+mod ends;
+mod first;
+mod robustness;
+mod start;

@@ -1,0 +1,14 @@
+//! Branches of equilibria that are hard to follow: units, close special points, degenerate fields, symmetry, random fields.
+
+mod close_points;
+mod degenerate_fields;
+mod random_fields;
+mod requests;
+mod symmetry;
+mod units;
+
+use arclength::equilibrium::EquilibriumBranch;
+
+fn kinds(branch: &EquilibriumBranch) -> Vec<String> {
+    branch.points.iter().filter_map(|point| Some(point.label?.to_string())).collect()
+}

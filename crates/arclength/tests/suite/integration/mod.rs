@@ -1,0 +1,3 @@
+//! Motions in time.
+
+mod stiff;

@@ -1,0 +1,7 @@
+//! Requests and results of wheels.
+//!
+//! One program for all of them: to build one for each would take longer than to run them.
+
+mod orbits;
+mod requests;
+mod result_files;

@@ -1,0 +1,20 @@
+//! The wheel against closed forms, second formulations and random wheels.
+//!
+//! One program for all of them: to build one for each would take longer than to run them.
+
+mod charts;
+mod contact;
+mod control;
+mod cycles;
+mod dry_friction;
+mod forces;
+mod identification;
+mod judge;
+mod lateral;
+mod lateral_branches;
+mod linear_stability;
+mod paper_form;
+mod random_wheels;
+mod tyre;
+mod uniform_motion;
+mod wheel;
