@@ -1,5 +1,7 @@
 //! Pages that need no other file: figures with captions, text, and the style of all reports.
 
+use kingpin::Key;
+
 /// A figure as it stands on a page.
 pub(crate) struct PageFigure<'a> {
     pub number: u8,
@@ -39,7 +41,7 @@ pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Plain text as HTML: indices lowered, and no line break before a unit or beside an equals sign.
+/// Plain text as HTML: keys as the paper's symbols, indices lowered, and no line break before a unit or beside an equals sign.
 pub(crate) fn prose(text: &str) -> String {
     const UNITS: [&str; 6] = ["m", "m/s", "rad", "rad/s", "N", "%"];
     let mut html = String::new();
@@ -57,9 +59,12 @@ pub(crate) fn prose(text: &str) -> String {
     html
 }
 
-/// `m_c` with its index lowered.
+/// `m_c` with its index lowered, `mu_s` and `c_psi` with their Greek letters.
 fn with_indices(word: &str) -> String {
-    let mut parts = word.split('_');
+    let name = word.trim_matches(|character| matches!(character, '(' | ')' | ',' | '.' | ';' | ':'));
+    let key = Key::ALL.into_iter().find(|key| key.name() == name && name.contains('_'));
+    let symbols = key.map(|key| word.replacen(name, key.symbol(), 1));
+    let mut parts = symbols.as_deref().unwrap_or(word).split('_');
     let mut html = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let end = part.find(|character: char| !character.is_alphabetic()).unwrap_or(part.len());

@@ -93,7 +93,7 @@ impl CyclePoint {
             max: inspection.ranges.iter().map(|range| range.largest).collect(),
             min: inspection.ranges.iter().map(|range| range.smallest).collect(),
             multipliers: inspection.floquet.multipliers(),
-            multiplier_errors: Vec::new(),
+            multiplier_errors: inspection.multiplier_errors.clone(),
             trivial_multiplier_error: inspection.floquet.trivial_error,
             unstable_multipliers: outside,
             // At a bifurcation a multiplier is on the unit circle by definition.

@@ -7,7 +7,7 @@
 
 use super::branch::{CycleBranch, CyclePoint};
 use super::curve::{CycleCurve, MOST_FITS};
-use super::floquet::Floquet;
+use super::floquet::{Floquet, multiplier_changes};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::start::Asked;
@@ -260,27 +260,11 @@ impl Level<'_> {
             is_decided.then_some(now < 0.0)
         });
         point.stable = self.floquet.verdict(sides).filter(|_| !point.neutral);
-        let mut all = errors.to_vec();
-        let trivial =
-            self.told.multipliers.partition_point(|one| one.log_modulus > self.floquet.trivial.abs().ln());
-        all.insert(trivial.min(all.len()), self.floquet.trivial_error);
-        point.multiplier_errors = all;
+        point.multiplier_errors = self.floquet.errors(errors);
         point.orbit.mesh = self.mesh.clone();
         point.orbit.states = self.unknown[..self.unknown.len() - 2].to_vec();
         point.orbit.period = self.told.period;
     }
-}
-
-/// Changes of multipliers, the largest moduli first, relative to themselves.
-fn multiplier_changes(now: &[Multiplier], then: &[Multiplier]) -> Vec<f64> {
-    let pairs = now.iter().zip(then);
-    pairs
-        .map(|(now, then)| {
-            let turn = (now.argument.abs() - then.argument.abs()).abs();
-            (now.log_modulus - then.log_modulus).abs().max(turn)
-        })
-        .map(|change| if change.is_nan() { 0.0 } else { change })
-        .collect()
 }
 
 /// Whether multipliers change little from mesh to mesh, as far as they count, and do not contradict Liouville's formula.

@@ -134,6 +134,7 @@ impl Curve for CycleCurve<'_> {
             is_neutral: self.is_neutral(tangent, &floquet),
             parameter_error: None,
             floquet,
+            multiplier_errors: Vec::new(),
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
             segments: self.collocation.problem.segments.clone(),

@@ -48,6 +48,8 @@ pub(crate) struct CycleInspection {
     pub(super) turn_is_reversed: bool,
     /// Multipliers.
     pub floquet: Floquet,
+    /// Relative errors of all multipliers, at a special cycle that was found on a second mesh.
+    pub(super) multiplier_errors: Vec<f64>,
     /// Largest and smallest value of each state.
     pub(super) ranges: Vec<Range>,
     /// Mesh of this solution.

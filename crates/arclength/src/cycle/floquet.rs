@@ -56,6 +56,14 @@ impl Floquet {
         all
     }
 
+    /// Relative errors of all multipliers in their order, from those of the nontrivial ones.
+    pub(super) fn errors(&self, nontrivial: &[f64]) -> Vec<f64> {
+        let mut all = nontrivial.to_vec();
+        let place = self.nontrivial.partition_point(|one| one.log_modulus > self.trivial.abs().ln());
+        all.insert(place.min(all.len()), self.trivial_error);
+        all
+    }
+
     /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
     /// closer to the circle than the error of the trivial one, and they do not contradict each other.
     pub(crate) fn unstable(&self) -> (usize, bool) {
@@ -184,6 +192,18 @@ impl Floquet {
             self.nontrivial.iter().filter(|multiplier| multiplier.is_real() && multiplier.argument != 0.0);
         negative.count() % 2 == 1 && self.nontrivial.iter().all(|multiplier| multiplier.log_modulus > floor)
     }
+}
+
+/// Changes of multipliers, the largest moduli first, relative to themselves.
+pub(super) fn multiplier_changes(now: &[Multiplier], then: &[Multiplier]) -> Vec<f64> {
+    let pairs = now.iter().zip(then);
+    pairs
+        .map(|(now, then)| {
+            let turn = (now.argument.abs() - then.argument.abs()).abs();
+            (now.log_modulus - then.log_modulus).abs().max(turn)
+        })
+        .map(|change| if change.is_nan() { 0.0 } else { change })
+        .collect()
 }
 
 /// Multipliers from the blocks of the last factorisation at `unknown`, `scales` being the sizes of the states.

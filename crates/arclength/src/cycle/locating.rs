@@ -4,6 +4,7 @@ use super::curve::{CycleCurve, CycleInspection, Fitted, MOST_FITS};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
 use super::extrema::ranges;
+use super::floquet::{Floquet, floquet};
 use super::limit_cycle::LimitCycle;
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
@@ -236,6 +237,14 @@ pub(crate) struct Finer<'a> {
 }
 
 impl Finer<'_> {
+    /// Its multipliers.
+    ///
+    /// # Errors
+    /// When they cannot be computed.
+    pub(super) fn floquet(&self) -> Result<Floquet, Error> {
+        floquet(&self.collocation, &self.unknown, &self.collocation.problem.scales, &mut None)
+    }
+
     /// The coefficients of its normal form by name.
     pub(crate) fn coefficients(&self, kind: Kind) -> Vec<(&'static str, f64)> {
         CriticalCycle::of(&self.collocation, &self.unknown).coefficients(kind, &self.eigenfunctions)

@@ -4,8 +4,8 @@
 use super::curve::{CycleCurve, CycleInspection, Fitted};
 use super::defining::Kind;
 use super::eigenfunctions::critical;
-use super::floquet::Floquet;
-use super::locating::{Located, converge, on_halves, rounded};
+use super::floquet::{Floquet, multiplier_changes};
+use super::locating::{Finer, Located, converge, on_halves, rounded};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use super::switching::{doubled, other_branch};
@@ -396,27 +396,31 @@ fn describe(
         Kind::Fold | Kind::Torus | Kind::Cycle => None,
     };
     let coefficients = critical.coefficients(kind, eigenfunctions);
-    let normal_form = with_errors(curve, &located, kind, coefficients);
+    // A second mesh measures what is told; of fields with borders it would have to find them anew.
+    let finer = if critical.has_borders { None } else { on_halves(curve, &located, kind) };
+    let multipliers = finer.as_ref().and_then(|finer| finer.floquet().ok());
+    let normal_form =
+        if critical.has_borders { coefficients } else { with_errors(coefficients, finer.as_ref(), kind) };
     let mut solution = located.solution;
-    (solution.point.normal_form, solution.point.branching) = (normal_form, branching);
+    let point = &mut solution.point;
+    (point.normal_form, point.branching) = (normal_form, branching);
+    if let Some(there) = multipliers {
+        let floquet = &point.floquet;
+        point.multiplier_errors = floquet.errors(&multiplier_changes(&floquet.nontrivial, &there.nontrivial));
+    }
     // The parameter stands still there because it turns, and not along a family.
     solution.point.is_neutral &= kind != Kind::Fold;
     Ok(solution)
 }
 
 /// Coefficients of the normal form by their names, each followed by its error: the difference from that on intervals half as wide.
-/// Those of fields with borders are left without; where the cycle does not exist there none is told.
+/// Where the cycle does not exist there none is told: next to homoclinic orbits and on canards coefficients change by orders of magnitude.
 fn with_errors(
-    curve: &CycleCurve<'_>,
-    located: &Located,
-    kind: Kind,
     coefficients: Vec<(&'static str, f64)>,
+    finer: Option<&Finer<'_>>,
+    kind: Kind,
 ) -> Vec<(&'static str, f64)> {
-    if coefficients.is_empty() || curve.collocation.problem.has_borders() {
-        return coefficients;
-    }
-    // What cannot be measured is not told: next to homoclinic orbits and on canards coefficients change by orders of magnitude.
-    let Some(finer) = on_halves(curve, located, kind) else { return Vec::new() };
+    let Some(finer) = finer else { return Vec::new() };
     let there = finer.coefficients(kind);
     let with_error = |(name, value): (&'static str, f64)| {
         let finer = there.iter().find(|(other, _)| *other == name).map(|(_, finer)| *finer);

@@ -62,11 +62,11 @@ mod tests {
             place: "section 3",
             statement: "a < b".into(),
             verdict: Verdict::Sharpened,
-            evidence: "m_c = 1 N & (J_wξ/l_c)".into(),
+            evidence: "m_c = 1 N & (J_wξ/l_c), c_psi, mu_s.".into(),
         };
         let figures = [2, 3].map(|number| PageFigure { number, svg, caption: "" });
         let page = page(&figures, &[claim], "");
-        let evidence = "m<sub>c</sub>&nbsp;=&nbsp;1&nbsp;N &amp; (J<sub>wξ</sub>/l<sub>c</sub>)";
+        let evidence = "m<sub>c</sub>&nbsp;=&nbsp;1&nbsp;N &amp; (J<sub>wξ</sub>/l<sub>c</sub>), c<sub>ψ</sub>, μ<sub>s</sub>.";
         let summary = "1 <span class=\"verdict sharpened\">";
         for part in ["id=\"f2-t1\"", "#f3-t1", "a &lt; b", evidence, summary] {
             assert!(page.contains(part), "{part}");

@@ -38,8 +38,9 @@ pub(super) fn page(name: &str, wheel: &Wheel, findings: &[Finding], figures: &[P
     for (key, value) in wheel.parameters() {
         let unit = if key.unit() == "1" { "" } else { key.unit() };
         body += &format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             prose(key.name()),
+            key.name(),
             readable(value),
             unit.replace("^2", "²"),
             escaped(key.meaning())

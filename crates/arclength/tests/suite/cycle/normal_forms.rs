@@ -111,6 +111,16 @@ fn doubling_of_a_moebius_band() {
         assert!(doubling.value.abs() < 1e-9, "{}", doubling.value);
         assert_relative_eq!(coefficient(doubling, "cubic_coefficient"), c, max_relative = 1e-6);
         holds_within_its_error(doubling, "cubic_coefficient", c);
+        // Both directions across the cycle turn half round; the other one dies out at the rate 1.
+        let exact = [1.0, -1.0, -(-std::f64::consts::TAU).exp()];
+        assert_eq!(doubling.multiplier_errors.len(), exact.len());
+        for (multiplier, error) in doubling.multipliers.iter().zip(&doubling.multiplier_errors) {
+            let off = exact.map(|exact| (multiplier / exact - 1.0).norm()).into_iter().fold(1.0, f64::min);
+            assert!(
+                off <= (3.0 * error).max(1e-9) && *error < 1e-4,
+                "{multiplier}: off by {off:e}, told {error:e}"
+            );
+        }
         // The doubled cycles have xi^2 = -mu / c and the period 4 pi / (1 + s xi^2).
         let start = CycleStart::Branching(doubling.branching.clone().expect("a branch"));
         let mu = -0.1 * c.signum();
