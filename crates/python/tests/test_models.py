@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import arclength
+import arclength.kingpin
 
 #: Where Lur'e's cycle doubles its period, and its period there: MatCont's and this engine's agree to all these digits.
 DOUBLING = 0.6303020061596
@@ -141,6 +142,16 @@ def test_tables_of_others(equilibria):
     assert table.column("label").to_pylist() == [point.label for point in equilibria]
     np.testing.assert_array_equal(table.column("value").to_numpy(), equilibria.columns["value"])
     assert isinstance(frame, pandas.DataFrame)
+
+
+def test_units_go_to_xarray():
+    pytest.importorskip("xarray")
+    chart = arclength.kingpin.Wheel().chart(("v", 1, 10, 7), ("l", 0.05, 0.1, 5)).to_xarray()
+    assert chart.growth_rate.dims == ("l", "v")
+    assert chart.growth_rate.attrs["units"] == "1/s"
+    assert chart.v.attrs["units"] == "m/s"
+    motion = arclength.kingpin.Wheel().simulate(0.1, points=5).to_xarray()
+    assert (motion.psi.attrs["units"], motion.sizes["row"]) == ("rad", 5)
 
 
 def test_a_stream_that_nobody_reads_is_freed(equilibria):

@@ -141,6 +141,18 @@ def test_a_traced_model_bifurcates_and_is_restarted_by_the_program(program, tmp_
     assert arclength.load(tmp_path / "c.json")["AT1"].period == pytest.approx(6.663286859323, rel=1e-9)
 
 
+def test_expressions_of_sympy():
+    sympy = pytest.importorskip("sympy")
+    x, y, a = sympy.symbols("x y a")
+    equations = {x: y, y: a * sympy.sin(x) - sympy.Piecewise((y**3, y > 0), (y, True)) + sympy.exp(-a * x) / (1 + x**2)}
+    model = arclength.Model.from_sympy(equations, {a: 0.5})
+    for state in ([0.3, 0.7], [-1.2, -0.4]):
+        expected = [float(entry.subs({x: state[0], y: state[1], a: 0.5})) for entry in equations.values()]
+        np.testing.assert_allclose(model(state), expected, rtol=1e-13)
+    with pytest.raises(arclength.InvalidInput, match="b: neither"):
+        arclength.Model.from_sympy({x: sympy.Symbol("b") * x})
+
+
 def test_names_keep_their_capitals():
     model = arclength.Model(lambda x, p: [-p.Gamma * x[0]], states=["Voltage"], parameters={"Gamma": 2.0})
     assert list(model.states) == ["Voltage"]

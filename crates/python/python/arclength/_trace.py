@@ -460,9 +460,18 @@ def _clipped(values: Any, low: Any = None, high: Any = None, **keywords: Any) ->
     return result if high is None else _ufunc(np.minimum, "__call__", (result, high), {})
 
 
+def _choose(conditions: Any, choices: Any, default: Any = 0) -> Any:
+    """``np.select``: the first choice whose condition holds."""
+    result = default
+    for condition, choice in reversed(list(zip(conditions, choices, strict=True))):
+        result = _where(condition, choice, result)
+    return result
+
+
 #: Functions that NumPy would do by values.
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "where": _where,
+    "select": _choose,
     "solve": _solve,
     "norm": _norm,
     "max": _reduced("max"),

@@ -588,6 +588,21 @@ class Chart(Result):
         """Whether the ground can supply what rolling takes; shape ``(n, m)``."""
         return self._plane("rolls")
 
+    def to_xarray(self) -> Any:
+        """The chart as an ``xarray.Dataset`` over its two parameters, with ``units`` as attributes (needs xarray)."""
+        import xarray
+
+        x, y = self.document["x"], self.document["y"]
+        plane = (y["key"], x["key"])
+        return xarray.Dataset(
+            {
+                "growth_rate": (plane, self.growth_rate, {"units": "1/s"}),
+                "stable": (plane, self.stable),
+                "rolls": (plane, self.rolls),
+            },
+            coords={axis["key"]: (axis["key"], axis["values"], {"units": axis["unit"]}) for axis in (y, x)},
+        )
+
     def plot(self, ax: Axes | None = None, **style: Any) -> Axes:
         """Draws the growth rate with the limits of stability (solid) and of rolling (dotted); returns the axes."""
         from .plotting import plot_chart

@@ -114,6 +114,36 @@ class Model:
         return cls._of_text(name or native.name, native.source)
 
     @classmethod
+    def from_sympy(
+        cls, equations: Mapping[Any, Any], parameters: Mapping[Any, float] | None = None, *, name: str = "model"
+    ) -> Model:
+        """A model of SymPy expressions: the derivative of each state (a symbol or its name), and values of the parameters.
+
+        Raises :class:`~arclength.InvalidInput` for a symbol that is neither, and :class:`~arclength.NotTraceable` for a function
+        without a rule (needs sympy).
+        """
+        import sympy
+
+        expressions = [sympy.sympify(expression) for expression in equations.values()]
+        names = [str(symbol) for symbol in [*equations, *(parameters or {})]]
+        used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}
+        unknown = sorted(used - set(names))
+        if unknown:
+            raise InvalidInput(
+                f"{unknown[0]}: neither a state nor a parameter; allowed: {', '.join(names)}",
+                key=unknown[0],
+                allowed=", ".join(names),
+            )
+        function = sympy.lambdify(names, expressions, modules="numpy", cse=True)
+
+        def derivatives(x: Any, p: Any) -> Any:
+            return function(*x, *p.values())
+
+        states = [str(state) for state in equations]
+        values = {str(key): value for key, value in (parameters or {}).items()}
+        return cls(derivatives, states, values, name=name)
+
+    @classmethod
     def _of_text(cls, name: str, source: str) -> Model:
         self = cls.__new__(cls)
         self._stored = {"name": name, "source": source}

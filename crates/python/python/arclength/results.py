@@ -163,6 +163,14 @@ class Result:
 
         return polars.DataFrame(self)
 
+    def to_xarray(self) -> Any:
+        """Its columns as an ``xarray.Dataset`` along ``row``, with ``units`` as attributes (needs xarray)."""
+        import xarray
+
+        units = self.columns.units
+        attributes = {name: {"units": units[name]} if name in units else {} for name in self.columns}
+        return xarray.Dataset({name: ("row", column, attributes[name]) for name, column in self.columns.items()})
+
     def save(self, path: Path) -> None:
         """Writes it to a file, whole or not at all: ``.json`` (from which it is loaded again, by the programs too), ``.csv``,
         ``.parquet``, and where there is something to see ``.svg``, ``.png``, ``.pdf``.
