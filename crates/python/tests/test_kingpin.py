@@ -145,6 +145,7 @@ def test_parameters_from_a_record():
     estimates = {entry.key: entry.value for entry in fit.estimates}
     assert estimates["k"] == pytest.approx(150, rel=1e-3)
     assert estimates["c_psi"] == pytest.approx(0.002, rel=1e-2)
+    assert fit.wheel.k == estimates["k"]
 
 
 #: Methods with what a request of the analysis takes at least.

@@ -178,5 +178,5 @@ def test_pictures(equilibria, tmp_path):
 
 def test_the_file_is_the_document(equilibria):
     assert equilibria.document == json.loads(equilibria.to_json())
-    assert equilibria.story.startswith("start")
+    assert equilibria.story.startswith("story of the run")
     assert equilibria.along.key == "alpha"

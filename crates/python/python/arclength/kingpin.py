@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
-__all__ = ["Basin", "Chart", "Cycles", "HopfPoints", "Motion", "Parameter", "ParameterTable", "Wheel", "WheelPoint"]
+__all__ = ["Basin", "Chart", "Cycles", "Fit", "HopfPoints", "Motion", "Parameter", "ParameterTable", "Wheel", "WheelPoint"]
 
 
 class Parameter(NamedTuple):
@@ -408,7 +408,7 @@ class Wheel:
         blow: bool = True,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> Result:
+    ) -> Fit:
         """Parameters from records of motions, with their intervals.
 
         A record is a ``.csv`` file or columns (a mapping, a DataFrame) with ``t`` (s) and states, or a pair of one and the parameters at
@@ -432,7 +432,7 @@ class Wheel:
                 "sigma": assignments(sigma or {}),
                 "no_blow": not blow,
             }
-            result: Result = self._run("fit", request, threads, progress)
+            result: Fit = self._run("fit", request, threads, progress)
             return result
 
     def report(
@@ -623,6 +623,15 @@ class Motion(Result):
         return plot_history(self, ax, names or ("psi",), style)
 
 
+class Fit(Result):
+    """Parameters from records, with their intervals (``estimates``)."""
+
+    @property
+    def wheel(self) -> Wheel:
+        """The wheel with the estimates."""
+        return Wheel(**{key: float(value) if value == "inf" else value for key, value in self.document["parameters"].items()})
+
+
 class Basin(Result):
     """Where motions end, over two states of their start."""
 
@@ -639,4 +648,5 @@ KINDS: dict[str, type[Result]] = {
     "kingpin.chart": Chart,
     "kingpin.simulate": Motion,
     "kingpin.basin": Basin,
+    "kingpin.fit": Fit,
 }

@@ -111,7 +111,8 @@ class Result:
     @property
     def story(self) -> str | None:
         """The story of the run, as ``--explain`` tells it: why it ended and what to do, what was found on the way, meshes and errors."""
-        return self._native.story()
+        told = self._native.story()
+        return told.strip("\n") if told else None
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
