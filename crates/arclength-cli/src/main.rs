@@ -1,50 +1,7 @@
 //! The program `arclength`: models in .ode files from the command line.
 
-mod cycles;
-mod equilibria;
-mod locus;
-mod model_options;
-mod monitor_options;
-mod show;
-mod simulate;
-
-use clap::{Parser, Subcommand};
-use kingpin_terminal::{Failure, run};
 use std::process::ExitCode;
 
-/// Bifurcation analysis of models in XPPAUT's .ode files
-///
-/// Follows equilibria and limit cycles of ordinary differential equations along a parameter, and locates their
-/// bifurcations. Result files hold the model and its parameters, so that every computation can start from a labelled point
-/// of the one before, on any machine.
-#[derive(Debug, Parser)]
-#[command(name = "arclength", version, arg_required_else_help = true, max_term_width = 110)]
-struct Arclength {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Debug, Subcommand)]
-enum Command {
-    Equilibria(equilibria::Equilibria),
-    Cycles(cycles::Cycles),
-    Locus(locus::Locus),
-    Simulate(simulate::Simulate),
-    Show(show::Show),
-}
-
-impl Command {
-    fn run(&self) -> Result<(), Failure> {
-        match self {
-            Self::Equilibria(command) => command.run(),
-            Self::Cycles(command) => command.run(),
-            Self::Locus(command) => command.run(),
-            Self::Simulate(command) => command.run(),
-            Self::Show(command) => command.run(),
-        }
-    }
-}
-
 fn main() -> ExitCode {
-    run(|options: &Arclength| options.command.run())
+    ExitCode::from(arclength_cli::run(std::env::args_os()))
 }

@@ -133,6 +133,14 @@ pub enum OdeError {
     /// A text without a single differential equation.
     #[error("the model has no differential equation; write one as x'=..., or dx/dt=...")]
     NoEquations,
+    /// A name or a number that a model that is built cannot have.
+    #[error("`{name}`: {problem}")]
+    Name {
+        /// The name.
+        name: String,
+        /// Why not.
+        problem: String,
+    },
 }
 
 impl OdeError {
@@ -147,7 +155,7 @@ impl OdeError {
             | Self::NotConstant { place, .. }
             | Self::WrongNumberOfArguments { place, .. }
             | Self::TooLarge { place, .. } => Some(place),
-            Self::NoEquations => None,
+            Self::NoEquations | Self::Name { .. } => None,
         }
     }
 
@@ -178,7 +186,7 @@ impl OdeError {
             | Self::NotConstant { place, .. }
             | Self::WrongNumberOfArguments { place, .. }
             | Self::TooLarge { place, .. } => Some(place),
-            Self::NoEquations => None,
+            Self::NoEquations | Self::Name { .. } => None,
         }
     }
 

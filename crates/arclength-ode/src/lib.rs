@@ -32,6 +32,8 @@
 //!
 //! Lines `global` are [events](Event), which set states where a condition passes zero.
 //!
+//! A program that has its equations as operations builds a model node by node, by [`ModelBuilder`].
+//!
 //! What makes a model something else than a smooth system of ordinary differential equations (delays,
 //! algebraic equations, noise, tables from files, integral equations, Markov variables, boundary
 //! conditions, maps, external libraries) is refused with an [`OdeError::Unsupported`] that says what to do.
@@ -40,6 +42,7 @@
 #![warn(unreachable_pub)]
 
 mod assignments;
+mod builder;
 mod compile;
 mod declarations;
 mod error;
@@ -55,6 +58,7 @@ mod statement;
 mod switches;
 mod tape;
 
+pub use builder::{BuiltNode, ModelBuilder, Operator};
 pub use error::{OdeError, Place, Warning};
 pub use event::{Event, Outcome};
 pub use model::{Model, NamedSet};

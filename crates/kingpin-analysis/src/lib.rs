@@ -48,6 +48,7 @@ pub use error::Error;
 pub use forces::ForcesResult;
 pub use journal::Journal;
 pub use neglected_dry_friction::NeglectedDryFriction;
+pub use result_file::ResultFile;
 pub use wheel_request::WheelRequest;
 
 /// The code of the README, which is tested.

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// What a result file holds.
 #[derive(Debug)]
-pub(crate) enum ResultFile {
+pub enum ResultFile {
     /// Of `hopf`.
     Hopf(HopfResult),
     /// Of `cycles`.
@@ -36,7 +36,7 @@ impl ResultFile {
     ///
     /// # Errors
     /// It cannot be read, is no result file or not one of these.
-    pub(crate) fn read(path: &Path) -> Result<Self, String> {
+    pub fn read(path: &Path) -> Result<Self, String> {
         fn parse<R: DeserializeOwned>(text: &[u8]) -> Result<R, String> {
             serde_json::from_slice(text)
                 .map_err(|error| format!("not such a result file: {error}; {ALLOWED}"))
@@ -53,7 +53,7 @@ impl ResultFile {
     }
 
     /// Labels of its points.
-    pub(crate) fn labels(&self) -> Vec<String> {
+    pub fn labels(&self) -> Vec<String> {
         match self {
             Self::Hopf(result) => result.points.iter().map(|point| point.label.clone()).collect(),
             Self::Cycles(result) => {

@@ -8,8 +8,8 @@ use clap::Parser;
 use clap::error::ErrorKind;
 use std::borrow::Cow;
 use std::error::Error;
+use std::ffi::OsString;
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 const HELP_WITHOUT_COMMAND: ErrorKind = ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
 /// Exit code of options that cannot be read, as of other bad input.
@@ -17,34 +17,39 @@ const BAD_OPTIONS: u8 = 2;
 
 /// Runs a program: listens to signals, reads the options, runs the command, says why it failed. The exit code is 0 when it is
 /// done, 1 when the computation failed, 2 for bad input, 128 and its number where a signal stopped it.
-pub fn run<Options: Parser>(command: impl FnOnce(&Options) -> Result<(), Failure>) -> ExitCode {
+///
+/// `arguments` are those of the process, or what stands for them where the program is part of another; the first is its name.
+pub fn run<Options: Parser>(
+    arguments: impl IntoIterator<Item = OsString>,
+    command: impl FnOnce(&Options) -> Result<(), Failure>,
+) -> u8 {
     if let Err(failure) = Interruption::listen() {
         say_failure(&failure);
-        return ExitCode::from(failure.exit_code());
+        return failure.exit_code();
     }
-    let options = match Options::try_parse() {
+    let options = match Options::try_parse_from(arguments) {
         Ok(options) => options,
         Err(error) => return refuse(&error),
     };
     match command(&options) {
-        Ok(()) | Err(Failure::OutputClosed) => ExitCode::SUCCESS,
+        Ok(()) | Err(Failure::OutputClosed) => 0,
         Err(failure) => {
             say_failure(&failure);
             // Whatever failed after a signal failed because of it.
-            ExitCode::from(Interruption::exit_code().unwrap_or_else(|| failure.exit_code()))
+            Interruption::exit_code().unwrap_or_else(|| failure.exit_code())
         }
     }
 }
 
 /// Says what is wrong with the options, or the help that was asked for.
-fn refuse(error: &clap::Error) -> ExitCode {
+fn refuse(error: &clap::Error) -> u8 {
     let text = error.render().to_string();
     match shortened(&text) {
         // Help is as long as it is; what need not be shortened a terminal shows in colours.
         Cow::Owned(text) if error.use_stderr() && error.kind() != HELP_WITHOUT_COMMAND => {
             // Where standard error is closed there is nobody left to tell.
             let _ = write!(io::stderr(), "{text}");
-            ExitCode::from(BAD_OPTIONS)
+            BAD_OPTIONS
         }
         _ => error.exit(),
     }

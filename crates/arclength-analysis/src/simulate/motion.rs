@@ -10,6 +10,7 @@ use super::events::{Events, Happening};
 use super::phase::{Exit, Phase, Stage};
 use super::samples::{Again, Samples};
 use super::section::{Section, SectionWatch};
+use arclength::control::Control;
 use arclength::integration::{Crossing, EventLocator, IntegrationError, Stepper};
 use arclength::{Threshold, VectorField};
 use arclength_ode::{GivenUp, Model, Switch};
@@ -36,6 +37,8 @@ pub(super) struct Course<'a> {
     pub bound: f64,
     /// A section whose crossings are wanted.
     pub section: Option<&'a Section>,
+    /// Stops it, and is told how far it has come.
+    pub control: Control<'a>,
 }
 
 /// A motion as far as it was followed.
@@ -64,6 +67,8 @@ pub(super) enum Ending {
     Stopped(usize),
     /// The event of this index happens again and again while no time passes.
     Accumulation(usize),
+    /// The control stopped it.
+    Interrupted,
 }
 
 impl Course<'_> {
@@ -197,7 +202,7 @@ impl Pursuit<'_, '_> {
                     }
                     phase = stage.phase_at(time, &self.state);
                 }
-                PhaseEnd::Reached | PhaseEnd::LeftBound => return Ok(()),
+                PhaseEnd::Reached | PhaseEnd::LeftBound | PhaseEnd::Interrupted => return Ok(()),
             }
             let has_passed = self.time - before > NO_TIME * self.time.abs();
             at_once = if has_passed { 0 } else { at_once + 1 };
@@ -297,6 +302,12 @@ impl Pursuit<'_, '_> {
                     None => PhaseEnd::Happens(crossing.event - exits.len()),
                 });
             }
+            let Course { control, start_time, end_time, .. } = self.course;
+            if control.is_stopped() {
+                self.motion.ending = Some((reached, Ending::Interrupted));
+                return Ok(PhaseEnd::Interrupted);
+            }
+            control.done((reached - start_time) / (end_time - start_time));
             stepper.advance().map_err(too_many)?;
         }
     }
@@ -312,4 +323,6 @@ enum PhaseEnd {
     Happens(usize),
     /// By a state beyond the bound.
     LeftBound,
+    /// By the control.
+    Interrupted,
 }

@@ -13,6 +13,7 @@ use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
 use crate::phase_plane::PhasePlane;
 use crate::start::LabelledSolution;
+use arclength::control::{Control, Interrupted};
 use arclength::integration::{IntegrationError, Method};
 use arclength_ode::{NamedSet, Options};
 use kingpin_report::numbers::readable;
@@ -322,10 +323,18 @@ impl SimulateAnalysis {
     /// # Errors
     /// [`Error::Integration`]; a motion that leaves the bound before its first sample.
     pub fn run(&self) -> Result<HistoryResult, Error> {
+        self.run_under(&Control::none())
+    }
+
+    /// Integrates the motion. Where the control stops it the result is the motion up to there.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run); [`IntegrationError::Interrupted`] where there is no sample yet.
+    pub fn run_under(&self, control: &Control<'_>) -> Result<HistoryResult, Error> {
         let chosen = &self.chosen;
         let mut warnings = Vec::new();
         let section = self.section.as_ref().map(|(_, section)| section);
-        let motion = self.follow(&self.times, section, &mut warnings)?;
+        let motion = self.follow(&self.times, section, &mut warnings, control)?;
         if let Some((time, ending)) = motion.ending {
             self.tell(time, ending, motion.samples.times.is_empty(), &mut warnings)?;
         }
@@ -414,7 +423,7 @@ impl SimulateAnalysis {
             let Some(finer) = finer_times(&times, &pairs.iter().map(curve).collect::<Vec<_>>()) else {
                 break;
             };
-            let samples = self.follow(&finer, None, &mut Vec::new())?.samples;
+            let samples = self.follow(&finer, None, &mut Vec::new(), &Control::none())?.samples;
             (times, states) = (samples.times, samples.states);
         }
         Ok((times, states))
@@ -453,6 +462,11 @@ impl SimulateAnalysis {
                 ),
                 "an earlier first sample",
             ),
+            Ending::Interrupted if is_empty => return Err(IntegrationError::Interrupted(Interrupted).into()),
+            Ending::Interrupted => {
+                warnings.push(format!("interrupted at t = {time}: the motion is that up to there"));
+                return Ok(());
+            }
         };
         if is_empty {
             return Err(Error::invalid(fields, given, format!("{story}, before the first sample"), allowed));
@@ -461,7 +475,7 @@ impl SimulateAnalysis {
             Ending::LeftBound => format!(
                 "the motion left the bound {bound} by t = {time} and was not followed further; a larger --bound does"
             ),
-            Ending::Stopped(_) => story,
+            Ending::Stopped(_) | Ending::Interrupted => story,
             Ending::Accumulation(_) => format!(
                 "{story}: what the model does behind that is not said, and the motion ends there (Zeno); write what holds then \
                  into the equations"
@@ -476,6 +490,7 @@ impl SimulateAnalysis {
         times: &'t [f64],
         section: Option<&Section>,
         warnings: &mut Vec<String>,
+        control: &Control<'_>,
     ) -> Result<Motion<'t>, IntegrationError> {
         let chosen = &self.chosen;
         let course = Course {
@@ -486,12 +501,14 @@ impl SimulateAnalysis {
             end_time: times.last().copied().unwrap_or(self.start),
             bound: self.bound,
             section,
+            control: *control,
         };
         let mut accuracy = self.accuracy.clone();
         let mut motion = course.follow(&accuracy, times)?;
         for _ in 0..REPETITIONS {
             let needed: Vec<f64> = motion.sizes.iter().map(|size| self.absolute_tolerance(*size)).collect();
-            if needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has) {
+            let is_enough = needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has);
+            if is_enough || control.is_stopped() {
                 break;
             }
             accuracy.absolute = needed;

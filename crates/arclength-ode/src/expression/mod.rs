@@ -7,7 +7,9 @@ mod functions;
 mod parser;
 mod token;
 
-pub(crate) use functions::{BUILTIN_NAMES, BinaryOperation, UnaryOperation, reserved};
+pub(crate) use functions::{
+    BUILTIN_NAMES, BinaryOperation, Builtin, UnaryOperation, lookup_builtin, reserved,
+};
 pub(crate) use parser::parse_expression;
 pub(crate) use token::parse_number;
 

@@ -1,0 +1,50 @@
+"""Numerical continuation of ordinary differential equations, and the shimmy of towed wheels (:mod:`arclength.kingpin`).
+
+>>> import arclength
+>>> model = arclength.Model(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], states=["x", "y"], parameters={"mu": -1.0})
+>>> branch = model.equilibria(along=("mu", -1, 1))
+>>> branch.labels
+['EP1', 'HB1', 'EP2']
+>>> cycles = branch["HB1"].cycles(along=("mu", -1, 1))
+"""
+
+from __future__ import annotations
+
+from ._native import __version__
+from .errors import (
+    AnalysisWarning,
+    ArclengthError,
+    ComputationFailed,
+    Interrupted,
+    InvalidInput,
+    InvalidModel,
+    NotTraceable,
+    UnknownLabel,
+)
+from .models import Cycles, Equilibria, History, Locus, Model, Parameters
+from .records import Record
+from .results import Branch, Columns, Point, Result, load
+
+__all__ = [
+    "AnalysisWarning",
+    "ArclengthError",
+    "Branch",
+    "Columns",
+    "ComputationFailed",
+    "Cycles",
+    "Equilibria",
+    "History",
+    "Interrupted",
+    "InvalidInput",
+    "InvalidModel",
+    "Locus",
+    "Model",
+    "NotTraceable",
+    "Parameters",
+    "Point",
+    "Record",
+    "Result",
+    "UnknownLabel",
+    "__version__",
+    "load",
+]

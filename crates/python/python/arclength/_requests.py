@@ -1,0 +1,161 @@
+"""From arguments to requests, and from requests to results."""
+
+from __future__ import annotations
+
+import json
+import math
+import operator
+import os
+import tempfile
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from . import _native
+from .errors import AnalysisWarning, InvalidInput
+
+if TYPE_CHECKING:
+    from ._native import NativeResult
+
+#: A parameter and its interval: ``("mu", -1, 1)``, ``"mu=-1:1"``, or ``"mu"`` where the model says from where to where.
+Along = str | tuple[str, float, float]
+#: A parameter and equidistant values of it: ``("v", 1, 8, 15)``, both ends included.
+Sampled = tuple[str, float, float, int]
+#: Called with the part that is done (0 to 1) or ``None``, and with where the computation is, or ``None``.
+Progress = Callable[[float | None, str | None], object]
+
+
+def number(key: str, value: Any) -> float | str:
+    """A number as a request has it: infinity is a word there."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise InvalidInput(
+            f"{key} {value!r}: not a number; allowed: a number", key=key, value=repr(value), allowed="a number"
+        ) from None
+    if math.isnan(number):
+        raise InvalidInput(f"{key} nan: not a number; allowed: a number", key=key, value="nan", allowed="a number")
+    return ("inf" if number > 0 else "-inf") if math.isinf(number) else number
+
+
+def numbers(key: str, values: Any) -> list[float | str]:
+    """A number, or several, as a list."""
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        values = [values]
+    return [number(key, value) for value in values]
+
+
+def optional(key: str, value: Any) -> float | str | None:
+    """A number or nothing."""
+    return None if value is None else number(key, value)
+
+
+def whole(key: str, value: Any) -> int:
+    """A whole number."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        raise InvalidInput(
+            f"{key} {value!r}: not a whole number; allowed: a whole number",
+            key=key,
+            value=repr(value),
+            allowed="a whole number",
+        ) from None
+
+
+def named(key: str, values: Mapping[str, Any] | None) -> dict[str, float | str]:
+    """Numbers with names."""
+    return {str(name): number(f"{key} {name}", value) for name, value in (values or {}).items()}
+
+
+def assignments(values: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Parameters with their values as text."""
+    return [{"key": str(key), "value": text(key, value)} for key, value in values.items()]
+
+
+def text(key: str, value: Any) -> str:
+    """A value as text: a word, or a number that is read back as itself."""
+    return value if isinstance(value, str) else str(number(key, value))
+
+
+def _form(field: str, given: object, allowed: str) -> InvalidInput:
+    message = f"{field} {given!r}: not of the form asked for; allowed: {allowed}"
+    return InvalidInput(message, key=field, value=repr(given), allowed=allowed)
+
+
+def interval(field: str, given: Along) -> dict[str, Any]:
+    """A parameter and its interval, in either order."""
+    allowed = '("KEY", a, b), "KEY=a:b", or "KEY" where the model says from where to where'
+    if isinstance(given, str):
+        key, equals, ends = given.partition("=")
+        if not equals:
+            return {"key": key.strip()}
+        parts: list[Any] = [key.strip(), *ends.split(":")]
+    else:
+        parts = list(given) if isinstance(given, Iterable) else []
+    if len(parts) != 3 or not isinstance(parts[0], str):
+        raise _form(field, given, allowed)
+    first, second = (float(number(field, end)) for end in parts[1:])
+    if first == second:
+        raise InvalidInput(
+            f"{field} {given!r}: an empty interval; allowed: two different ends",
+            key=field,
+            value=repr(given),
+            allowed="two different ends",
+        )
+    return {"key": parts[0], "start": number(field, min(first, second)), "end": number(field, max(first, second))}
+
+
+def sampled(field: str, given: Sampled | str) -> dict[str, Any]:
+    """A parameter and equidistant values of it."""
+    allowed = '("KEY", a, b, number of values) or "KEY=a:b:n"'
+    if isinstance(given, str):
+        key, _, ends = given.partition("=")
+        parts: list[Any] = [key.strip(), *ends.split(":")]
+        if len(parts) == 4 and str(parts[3]).strip().isdigit():
+            parts[3] = int(parts[3])
+    else:
+        parts = list(given) if isinstance(given, Iterable) else []
+    if len(parts) != 4 or not isinstance(parts[0], str):
+        raise _form(field, given, allowed)
+    return {**interval(field, (parts[0], parts[1], parts[2])), "count": whole(field, parts[3])}
+
+
+def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """What is recorded along a branch, with values at which a point is wanted, and at which it ends."""
+    if isinstance(given, str):
+        given = [given]
+    asked = given if isinstance(given, Mapping) else {expression: () for expression in given}
+    recorded = [{"expression": expression, "at": numbers("monitor", at)} for expression, at in asked.items()]
+    ending = [
+        {"expression": expression, "until": numbers("until", at)} for expression, at in (until or {}).items()
+    ]
+    return recorded + ending
+
+
+def run(
+    analysis: str, request: Mapping[str, Any], *, threads: int | None = None, progress: Progress | None = None
+) -> NativeResult:
+    """Runs an analysis and warns of what is worth knowing."""
+    result = _native.run_analysis(
+        analysis,
+        json.dumps(request, allow_nan=False),
+        0 if threads is None else whole("threads", threads),
+        progress,
+    )
+    for warning in result.warnings:
+        warnings.warn(warning, AnalysisWarning, stacklevel=4)
+    if result.interrupted:
+        warnings.warn("interrupted: the result is what there was up to then", AnalysisWarning, stacklevel=4)
+    return result
+
+
+@contextmanager
+def on_disk(result: NativeResult) -> Iterator[str]:
+    """The result as a file, for as long as something starts from it."""
+    with tempfile.TemporaryDirectory(prefix="arclength-") as folder:
+        path = os.path.join(folder, "result.json")
+        with open(path, "wb") as file:
+            file.write(result.json())
+        yield path
