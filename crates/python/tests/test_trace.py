@@ -131,14 +131,20 @@ def test_a_thousand_states():
     np.testing.assert_allclose(model(state), ring(state, arclength.Parameters({"a": 0.1})), rtol=1e-13, atol=1e-15)
 
 
+def hopf_normal_form(x, p):
+    return p.mu * x + np.array([-x[1], x[0]]) - x * np.sum(x**2)
+
+
 def test_a_traced_model_bifurcates_and_is_restarted_by_the_program(program, tmp_path):
-    model = arclength.Model(van_der_pol, states=["x", "y"], parameters={"mu": -1.0})
+    model = arclength.Model(hopf_normal_form, states=["x", "y"], parameters={"mu": -1.0})
     branch = model.equilibria(along=("mu", -1, 1))
     assert branch["HB1"].value == pytest.approx(0, abs=1e-12)
     branch.save(tmp_path / "branch.json")
-    done = program("arclength", "cycles", "--from", "branch.json:HB1", "--along", "mu=-1:1", "--at", "1", "-o", "c.json", "-q")
+    done = program("arclength", "cycles", "--from", "branch.json:HB1", "--along", "mu=-1:1.5", "--at", "1", "-o", "c.json", "-q")
     assert done.returncode == 0, done.stderr
-    assert arclength.load(tmp_path / "c.json")["AT1"].period == pytest.approx(6.663286859323, rel=1e-9)
+    cycle = arclength.load(tmp_path / "c.json")["AT1"]
+    assert cycle.period == pytest.approx(2 * math.pi, rel=1e-9)
+    assert cycle.max.x == pytest.approx(1, rel=1e-9)
 
 
 def test_expressions_of_sympy():

@@ -1,7 +1,7 @@
 """Numerical continuation of ordinary differential equations, and the shimmy of towed wheels (:mod:`arclength.kingpin`).
 
 >>> import arclength
->>> model = arclength.Model(lambda x, p: [x[1], p.mu * (1 - x[0] ** 2) * x[1] - x[0]], states=["x", "y"], parameters={"mu": -1.0})
+>>> model = arclength.Model(lambda x, p: [x[1], (p.mu - x[1] ** 2) * x[1] - x[0]], states=["x", "y"], parameters={"mu": -1.0})
 >>> branch = model.equilibria(along=("mu", -1, 1))
 >>> branch.labels
 ['EP1', 'HB1', 'EP2']

@@ -629,7 +629,8 @@ class Fit(Result):
     @property
     def wheel(self) -> Wheel:
         """The wheel with the estimates."""
-        return Wheel(**{key: float(value) if value == "inf" else value for key, value in self.document["parameters"].items()})
+        estimates = {entry["key"]: entry["value"] for entry in self.document["estimates"] if entry["value"] is not None}
+        return Wheel(**{**self.document["parameters"], **estimates})
 
 
 class Basin(Result):
