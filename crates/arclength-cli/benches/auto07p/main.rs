@@ -1,29 +1,57 @@
-//! Branches of limit cycles of the gallery's models, side by side with AUTO-07p, on one thread.
+//! Branches of limit cycles and curves of their bifurcations side by side with AUTO-07p, on one thread: whole commands, and the
+//! continuation alone inside a process.
 //!
 //! Both programs start at the same Hopf point and follow the same branch over the same range; compared are two quantities of
 //! the bifurcation diagram at the parameter values named. In the first table the period has to be right to 1e-6; in the
-//! second it and the largest value of every state to 1e-5 of its amplitude (AUTO reports the largest value at a mesh point).
+//! second it and the largest values of the first states to 1e-5 of their amplitudes (AUTO reports the largest value at a mesh
+//! point); of a curve of bifurcations the second parameter to 1e-6. Both are measured against a tight run of this program.
 //! This program runs with the fastest of its tolerances that reach it, AUTO with the fewest mesh intervals from 10 on (of 4
-//! collocation points) and with the largest step that gives about as many points. The time is that of the continuation of
-//! cycles, with multipliers and bifurcations: the best of several runs. AUTO's right-hand sides are compiled Fortran, ours
-//! the .ode files as they are.
+//! collocation points) and with the largest step that gives about as many points. AUTO's right-hand sides are compiled Fortran,
+//! ours the .ode files as they are.
 //!
-//! Names of models after `--` select those. Needs the Debian packages `auto-07p` and `gfortran`; says so and stops where they are missing.
+//! *Commands* are `arclength equilibria` and `arclength cycles`, each with a result file, beside AUTO's own two runs with their
+//! files, of curves `arclength locus` beside AUTO's run for the start and one run each way. *In process* is the continuation of
+//! cycles alone, beside AUTO's run along the cycles, which has no other form. All times are processor times of user and system, medians
+//! of seven rounds in which the programs take turns.
+//!
+//! Names of models after `--` select those (`chain` and `curve` all of these). Needs the Debian packages `auto-07p` and `gfortran`; says so and
+//! stops where they are missing.
+
+mod auto;
+mod cases;
+mod fortran;
+mod processor_time;
+mod program;
 
 use arclength::cycle::{CycleBranch, CycleStart, Cycles, Resolution};
 use arclength::equilibrium::{Equilibria, HopfPoint, find_equilibrium};
 use arclength_ode::Model;
-use std::fmt::Write as _;
+use auto::{AUTO, Auto};
+use cases::{Case, Curve};
+use processor_time::{Of, median};
+use program::Program;
 use std::path::Path;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::Command;
 
-const AUTO: &str = "/usr/lib/auto-07p/lib";
-const RUNS: usize = 15;
-/// To choose the tolerance.
+/// Rounds in which both programs take turns.
+const ROUNDS: usize = 7;
+/// Runs to choose the tolerance.
 const SHORT_RUNS: usize = 3;
 /// A state with an amplitude below this part of its value rests; its value is then what the error is measured by.
 const RESTING: f64 = 1e-3;
+/// States of which AUTO's branch file has the largest values.
+const REPORTED_STATES: usize = 6;
+/// Tolerance of what errors are measured against.
+const TIGHT: f64 = 1e-10;
+/// Tolerances and numbers of mesh intervals that are tried.
+const TOLERANCES: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+const INTERVALS: [usize; 13] = [10, 15, 20, 30, 50, 75, 100, 150, 200, 300, 500, 700, 1000];
+/// Largest steps of AUTO that are tried.
+const LARGEST_STEPS: [f64; 8] = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0];
+/// Relative error of the second parameter on a curve of bifurcations.
+const CURVE_ACCURACY: f64 = 1e-6;
+/// Numbers of states of the chains.
+const CHAINS: [usize; 5] = [4, 10, 20, 40, 80];
 
 /// What is compared.
 #[derive(Clone, Copy, PartialEq)]
@@ -49,201 +77,30 @@ struct Cycle {
     max: Vec<f64>,
 }
 
-struct Case {
-    model: &'static str,
-    parameter: &'static str,
-    set: &'static [(&'static str, f64)],
-    /// Start of the search for the equilibrium, in place of the model's own.
-    start: Option<&'static [f64]>,
-    /// Range of the equilibria, which holds the Hopf point wanted, counted from zero.
-    equilibria: (f64, f64),
-    hopf: usize,
-    /// Range of the cycles.
-    cycles: (f64, f64),
-    /// Values at which the period is compared.
-    values: &'static [f64],
+/// What cycles are measured against.
+struct Exact {
+    cycles: Vec<Cycle>,
+    amplitudes: Vec<Vec<f64>>,
 }
 
-const CASES: [Case; 11] = [
-    Case {
-        model: "towed_wheel",
-        parameter: "v",
-        set: &[("l", 0.08), ("v", 9.0)],
-        start: None,
-        equilibria: (8.0, 9.0),
-        hopf: 0,
-        cycles: (0.2, 9.0),
-        values: &[1.0, 2.0, 4.0, 6.0, 8.0],
-    },
-    Case {
-        model: "lure",
-        parameter: "alpha",
-        set: &[],
-        start: None,
-        equilibria: (0.5, 2.0),
-        hopf: 0,
-        cycles: (-0.9, 1.1),
-        values: &[0.8, 0.4, 0.0, -0.4],
-    },
-    Case {
-        model: "ab",
-        parameter: "D",
-        set: &[],
-        start: None,
-        equilibria: (0.0, 0.4),
-        hopf: 0,
-        cycles: (0.1, 0.4),
-        values: &[0.2, 0.25, 0.3],
-    },
-    Case {
-        model: "pp2",
-        parameter: "p1",
-        set: &[("p1", 0.65)],
-        start: Some(&[0.33, 0.42]),
-        equilibria: (0.65, 0.8),
-        hopf: 0,
-        cycles: (0.6, 0.71),
-        values: &[0.68, 0.70],
-    },
-    Case {
-        model: "lorenz",
-        parameter: "rho",
-        set: &[("rho", 20.0)],
-        start: Some(&[7.0, 7.0, 19.0]),
-        equilibria: (15.0, 30.0),
-        hopf: 0,
-        cycles: (14.5, 26.0),
-        values: &[23.0, 20.0, 17.0],
-    },
-    Case {
-        model: "brusselator",
-        parameter: "b",
-        set: &[],
-        start: None,
-        equilibria: (1.0, 3.0),
-        hopf: 0,
-        cycles: (1.5, 5.0),
-        values: &[2.5, 3.0, 4.0],
-    },
-    Case {
-        model: "fitzhugh_nagumo",
-        parameter: "i0",
-        set: &[],
-        start: None,
-        equilibria: (0.0, 1.0),
-        hopf: 0,
-        cycles: (0.0, 1.2),
-        values: &[0.5, 0.8, 1.1],
-    },
-    Case {
-        model: "langford",
-        parameter: "lambda",
-        set: &[("lambda", 1.5)],
-        start: Some(&[0.0, 0.0, 1.5]),
-        equilibria: (1.0, 2.2),
-        hopf: 0,
-        cycles: (1.0, 2.2),
-        values: &[1.8, 1.9],
-    },
-    Case {
-        model: "hodgkin_huxley",
-        parameter: "i0",
-        set: &[],
-        start: None,
-        equilibria: (0.0, 20.0),
-        hopf: 0,
-        cycles: (0.0, 200.0),
-        values: &[20.0, 60.0, 120.0],
-    },
-    Case {
-        model: "morris_lecar",
-        parameter: "iapp",
-        set: &[],
-        start: None,
-        equilibria: (0.0, 120.0),
-        hopf: 0,
-        cycles: (50.0, 300.0),
-        values: &[120.0, 160.0, 200.0],
-    },
-    Case {
-        model: "bautin",
-        parameter: "beta1",
-        set: &[],
-        start: None,
-        equilibria: (-1.0, 1.0),
-        hopf: 0,
-        cycles: (-1.0, 1.0),
-        values: &[0.2, 0.5, 0.8],
-    },
-];
-
-fn main() {
-    if !Path::new(AUTO).is_dir() || Command::new("gfortran").arg("--version").output().is_err() {
-        println!("skipped: AUTO-07p or gfortran is not installed (Debian packages auto-07p, gfortran)");
-        return;
+impl Exact {
+    fn of(case: &Case, branch: &CycleBranch) -> Result<Self, String> {
+        let amplitudes = |value: &f64| {
+            let point = branch.points.iter().find(|point| point.value == *value)?;
+            let extremes = point.max.iter().zip(&point.min);
+            Some(extremes.map(|(max, min)| (0.5 * (max - min)).max(RESTING * max.abs())).collect())
+        };
+        let amplitudes = case.values.iter().filter_map(amplitudes).collect();
+        Ok(Self { cycles: cycles_at(case, branch)?, amplitudes })
     }
-    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
-    for (title, measure) in
-        [("period to 1e-6", Measure::Period), ("period and largest values to 1e-5", Measure::PeriodAndMaxima)]
-    {
-        println!("\n{title}");
-        println!(
-            "{:16} {:>9} {:>7} {:>9} {:>9} {:>7} {:>5} {:>9} {:>9} {:>7}",
-            "model", "tolerance", "points", "error", "time/ms", "points", "NTST", "error", "AUTO/ms", "ratio"
-        );
-        for case in
-            CASES.iter().filter(|case| wanted.is_empty() || wanted.iter().any(|name| name == case.model))
-        {
-            if let Err(problem) = compare(case, measure) {
-                println!("{:16} {problem}", case.model);
-            }
+
+    /// The largest relative error of some cycles; infinite where some are missing.
+    fn error(&self, measure: Measure, found: &[Cycle]) -> f64 {
+        if found.len() != self.cycles.len() {
+            return f64::INFINITY;
         }
-    }
-}
-
-fn compare(case: &Case, measure: Measure) -> Result<(), String> {
-    let path = format!("{}/../../gallery/models/{}.ode", env!("CARGO_MANIFEST_DIR"), case.model);
-    let source = std::fs::read_to_string(&path).map_err(|error| format!("{path}: {error}"))?;
-    let model = Model::parse(&source).map_err(|error| error.to_string())?;
-    let mut parameters = model.default_parameters().to_vec();
-    for (name, value) in case.set {
-        parameters[model.parameter_index(name).ok_or("no such parameter")?] = *value;
-    }
-    let active = model.parameter_index(case.parameter).ok_or("no such parameter")?;
-    let start = if (case.equilibria.0..=case.equilibria.1).contains(&parameters[active]) {
-        parameters[active]
-    } else {
-        case.equilibria.0
-    };
-    parameters[active] = start;
-    let branch = Equilibria::of(&model)
-        .start(&case.start.map_or_else(|| model.initial_state(&parameters), <[f64]>::to_vec))
-        .parameters(&parameters)
-        .along(case.parameter, case.equilibria.0..=case.equilibria.1)
-        .run()
-        .map_err(|error| error.to_string())?;
-    let hopf = branch.hopf_points().nth(case.hopf).ok_or("no Hopf point")?.clone();
-    parameters[active] = hopf.value;
-
-    let run = |tolerance: f64| follow(case, &model, &hopf, &parameters, tolerance);
-    let reference = run(1e-10)?;
-    let exact = cycles_at(case, &reference)?;
-    let amplitudes: Vec<Vec<f64>> = case
-        .values
-        .iter()
-        .filter_map(|value| reference.points.iter().find(|point| point.value == *value))
-        .map(|point| {
-            point
-                .max
-                .iter()
-                .zip(&point.min)
-                .map(|(max, min)| (0.5 * (max - min)).max(RESTING * max.abs()))
-                .collect()
-        })
-        .collect();
-    let worst = |found: &[Cycle]| {
         let mut worst = 0.0_f64;
-        for ((cycle, exact), amplitudes) in found.iter().zip(&exact).zip(&amplitudes) {
+        for ((cycle, exact), amplitudes) in found.iter().zip(&self.cycles).zip(&self.amplitudes) {
             worst = worst.max((cycle.period / exact.period - 1.0).abs());
             if measure == Measure::PeriodAndMaxima {
                 let maxima = cycle.max.iter().zip(&exact.max).zip(amplitudes);
@@ -252,78 +109,286 @@ fn compare(case: &Case, measure: Measure) -> Result<(), String> {
             }
         }
         worst
+    }
+}
+
+fn main() {
+    if !Path::new(AUTO).is_dir() || Command::new("gfortran").arg("--version").output().is_err() {
+        println!("skipped: AUTO-07p or gfortran is not installed (Debian packages auto-07p, gfortran)");
+        return;
+    }
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let is_wanted =
+        |names: &[&str]| wanted.is_empty() || wanted.iter().any(|word| names.contains(&word.as_str()));
+    let gallery = match cases::gallery() {
+        Ok(gallery) => gallery,
+        Err(problem) => return println!("{problem}"),
     };
-    let mut ours: Option<(f64, usize, f64, Duration)> = None;
-    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
-        let mut time = Duration::MAX;
-        let mut branch = run(tolerance)?;
-        for _ in 0..SHORT_RUNS {
-            let start = Instant::now();
-            branch = run(tolerance)?;
-            time = time.min(start.elapsed());
+    let chains: Vec<Case> = CHAINS.into_iter().map(cases::chain).collect();
+    for (title, measure) in
+        [("period to 1e-6", Measure::Period), ("period and largest values to 1e-5", Measure::PeriodAndMaxima)]
+    {
+        println!("\n{title}");
+        heading();
+        for case in gallery.iter().filter(|case| is_wanted(&[&case.model])) {
+            tell(&format!("{}/{}", case.model, case.parameter), compare(case, measure));
         }
-        let error = worst(&cycles_at(case, &branch)?);
-        if error <= measure.accuracy() && ours.is_none_or(|(_, _, _, fastest)| time < fastest) {
-            ours = Some((tolerance, branch.points.len() - case.values.len(), error, time));
+        for case in chains.iter().filter(|case| is_wanted(&[&case.model, "chain"])) {
+            tell(&case.model, compare(case, measure));
         }
     }
-    let (tolerance, points, error, _) = ours.ok_or("no tolerance reaches the accuracy")?;
+    println!("\ncurves of bifurcations, second parameter to 1e-6");
+    heading();
+    match cases::curves() {
+        Ok(curves) => {
+            for curve in curves.iter().filter(|curve| is_wanted(&[&curve.case.model, "curve"])) {
+                let name = format!("{} {}", curve.case.model, curve.kind.label());
+                tell(&name, compare_curves(curve));
+            }
+        }
+        Err(problem) => println!("{problem}"),
+    }
+}
 
-    // A little beside the Hopf point, so that AUTO's run along the equilibria passes it.
+/// What a comparison found: settings, points, errors and times in seconds of both.
+struct Compared {
+    tolerance: f64,
+    points: usize,
+    error: f64,
+    intervals: usize,
+    auto_points: usize,
+    auto_error: f64,
+    /// Of whole commands.
+    commands: [f64; 2],
+    /// Of the continuation alone.
+    in_process: Option<[f64; 2]>,
+}
+
+fn heading() {
+    println!(
+        "{:18} {:>9} {:>6} {:>8} {:>5} {:>6} {:>8} | {:>21} {:>6} | {:>21} {:>6}",
+        "branch",
+        "tolerance",
+        "points",
+        "error",
+        "NTST",
+        "points",
+        "error",
+        "commands: AUTO / ours",
+        "ratio",
+        "alone: AUTO / ours",
+        "ratio"
+    );
+}
+
+fn tell(name: &str, compared: Result<Compared, String>) {
+    let compared = match compared {
+        Ok(compared) => compared,
+        Err(problem) => return println!("{name:18} {problem}"),
+    };
+    let Compared { tolerance, points, error, intervals, auto_points, auto_error, commands, in_process } =
+        compared;
+    let times =
+        |[ours, auto]: [f64; 2]| format!("{:>9.2} / {:>6.2} ms {:>6.1}", 1e3 * auto, 1e3 * ours, auto / ours);
+    println!(
+        "{name:18} {tolerance:9.0e} {points:6} {error:8.1e} {intervals:5} {auto_points:6} {auto_error:8.1e} | {} | {}",
+        times(commands),
+        in_process.map_or_else(String::new, times)
+    );
+}
+
+/// A model with its parameters, and the Hopf point of a case.
+struct Prepared {
+    model: Model,
+    parameters: Vec<f64>,
+    active: usize,
+    hopf: HopfPoint,
+    /// An equilibrium a little beside the Hopf point, so that AUTO's run along the equilibria passes it, and its parameters.
+    equilibrium: Vec<f64>,
+    beside: Vec<f64>,
+}
+
+fn prepare(case: &Case) -> Result<Prepared, String> {
+    let model = Model::parse(&case.source).map_err(|error| error.to_string())?;
+    let mut parameters = model.default_parameters().to_vec();
+    for (name, value) in case.set {
+        parameters[model.parameter_index(name).ok_or("no such parameter")?] = *value;
+    }
+    let active = model.parameter_index(case.parameter).ok_or("no such parameter")?;
+    if !(case.equilibria.0..=case.equilibria.1).contains(&parameters[active]) {
+        parameters[active] = case.equilibria.0;
+    }
+    let branch = Equilibria::of(&model)
+        .start(&case.start.map_or_else(|| model.initial_state(&parameters), <[f64]>::to_vec))
+        .parameters(&parameters)
+        .along(case.parameter, case.equilibria.0..=case.equilibria.1)
+        .run()
+        .map_err(|error| error.to_string())?;
+    let hopf = branch.hopf_points().nth(case.hopf).ok_or("no Hopf point")?.clone();
+    parameters[active] = hopf.value;
     let mut beside = parameters.clone();
     beside[active] -= 5e-3 * (case.equilibria.1 - case.equilibria.0);
     let equilibrium = find_equilibrium(&model, &hopf.state, &beside).map_err(|error| error.to_string())?;
+    Ok(Prepared { model, parameters, active, hopf, equilibrium, beside })
+}
+
+fn compare(case: &Case, measure: Measure) -> Result<Compared, String> {
+    let prepared = prepare(case)?;
+    let run = |tolerance: f64| follow(case, &prepared, tolerance);
+    let exact = Exact::of(case, &run(TIGHT)?)?;
+    let mut ours: Option<(f64, f64)> = None;
+    for tolerance in TOLERANCES {
+        let mut time = f64::INFINITY;
+        let mut error = f64::INFINITY;
+        for _ in 0..SHORT_RUNS {
+            let (branch, taken) = processor_time::of(Of::ThisProcess, || run(tolerance))?;
+            error = exact.error(measure, &cycles_at(case, &branch)?);
+            time = time.min(taken);
+        }
+        if error <= measure.accuracy() && ours.is_none_or(|(_, fastest)| time < fastest) {
+            ours = Some((tolerance, time));
+        }
+    }
+    let (tolerance, _) = ours.ok_or("no tolerance reaches the accuracy")?;
     let directory = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let auto = Auto::build(directory.path(), case, &model, &source, &equilibrium, &beside, active)?;
+    let program = Program { directory: directory.path(), case, states: prepared.model.states() };
+    program.equilibria()?;
+    program.cycles(tolerance)?;
+    let (found, points) = program.found()?;
+    let error = exact.error(measure, &found);
+
+    let Prepared { model, equilibrium, beside, active, .. } = &prepared;
+    let auto = Auto::build(directory.path(), case, model, equilibrium, beside, &[*active])?;
     let most_points = 4 * points + 100;
-    let (largest_step, _) = [0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
+    let found = |intervals: usize, step: f64| {
+        auto.run_cycles(intervals, step, most_points)?;
+        auto.found()
+    };
+    let (largest_step, _) = LARGEST_STEPS
         .into_iter()
         .filter_map(|step| {
-            let result = auto.run(50, step, most_points).ok()?;
-            (result.cycles.len() == exact.len()).then_some((step, result.points.abs_diff(points)))
+            let result = found(50, step).ok()?;
+            (result.cycles.len() == exact.cycles.len()).then_some((step, result.points.abs_diff(points)))
         })
         .min_by_key(|(_, difference)| *difference)
         .ok_or("AUTO does not reach the values")?;
     let mut theirs = None;
     let mut best = f64::INFINITY;
-    for intervals in [10, 15, 20, 30, 50, 75, 100, 150, 200, 300, 500, 700, 1000] {
-        let Ok(result) = auto.run(intervals, largest_step, most_points) else { continue };
-        let error = if result.cycles.len() == exact.len() { worst(&result.cycles) } else { f64::INFINITY };
+    for intervals in INTERVALS {
+        let Ok(result) = found(intervals, largest_step) else { continue };
+        let error = exact.error(measure, &result.cycles);
         best = best.min(error);
-        if result.cycles.len() == exact.len() && error <= measure.accuracy() {
+        if error <= measure.accuracy() {
             theirs = Some((intervals, result.points, error));
             break;
         }
     }
     let (intervals, auto_points, auto_error) =
         theirs.ok_or_else(|| format!("AUTO does not come closer than {best:.1e}"))?;
-    // By turns, so that both meet the same load of the machine.
-    let (mut time, mut auto_time) = (Duration::MAX, Duration::MAX);
-    for _ in 0..RUNS {
-        let start = Instant::now();
-        run(tolerance)?;
-        time = time.min(start.elapsed());
-        auto_time = auto_time.min(auto.run(intervals, largest_step, most_points)?.time);
+    let mut times: [Vec<f64>; 4] = Default::default();
+    for _ in 0..ROUNDS {
+        let (_, first) = processor_time::of(Of::Children, || program.equilibria())?;
+        let (_, second) = processor_time::of(Of::Children, || program.cycles(tolerance))?;
+        let (_, auto_first) = processor_time::of(Of::Children, || auto.run_equilibria())?;
+        let (_, auto_second) =
+            processor_time::of(Of::Children, || auto.run_cycles(intervals, largest_step, most_points))?;
+        let (_, alone) = processor_time::of(Of::ThisProcess, || run(tolerance))?;
+        for (list, time) in
+            times.iter_mut().zip([first + second, auto_first + auto_second, alone, auto_second])
+        {
+            list.push(time);
+        }
     }
-    println!(
-        "{:16} {tolerance:9.0e} {points:7} {error:9.1e} {:9.2} {auto_points:7} {intervals:5} {auto_error:9.1e} {:9.2} {:7.1}",
-        case.model,
-        1e3 * time.as_secs_f64(),
-        1e3 * auto_time.as_secs_f64(),
-        auto_time.as_secs_f64() / time.as_secs_f64(),
-    );
-    Ok(())
+    let [ours, auto, alone, auto_alone] = times.map(median);
+    Ok(Compared {
+        tolerance,
+        points,
+        error,
+        intervals,
+        auto_points,
+        auto_error,
+        commands: [ours, auto],
+        in_process: Some([alone, auto_alone]),
+    })
 }
 
-fn follow(
-    case: &Case,
-    model: &Model,
-    hopf: &HopfPoint,
-    parameters: &[f64],
-    tolerance: f64,
-) -> Result<CycleBranch, String> {
-    Cycles::of(model, CycleStart::from(hopf))
-        .parameters(parameters)
+fn compare_curves(curve: &Curve) -> Result<Compared, String> {
+    let case = &curve.case;
+    let prepared = prepare(case)?;
+    let directory = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let program = Program { directory: directory.path(), case, states: prepared.model.states() };
+    program.equilibria()?;
+    program.cycles(TIGHT)?;
+    program.curve(curve, TIGHT)?;
+    let (exact, _) = program.second_parameters(curve)?;
+    let error = |found: &[f64]| {
+        found.iter().zip(&exact).map(|(value, exact)| (value / exact - 1.0).abs()).fold(0.0, f64::max)
+    };
+    let mut ours: Option<(f64, f64)> = None;
+    for tolerance in TOLERANCES {
+        let mut time = f64::INFINITY;
+        for _ in 0..SHORT_RUNS {
+            let (_, taken) = processor_time::of(Of::Children, || program.curve(curve, tolerance))?;
+            time = time.min(taken);
+        }
+        let reached = error(&program.second_parameters(curve)?.0) <= CURVE_ACCURACY;
+        if reached && ours.is_none_or(|(_, fastest)| time < fastest) {
+            ours = Some((tolerance, time));
+        }
+    }
+    let (tolerance, _) = ours.ok_or("no tolerance reaches the accuracy")?;
+    program.curve(curve, tolerance)?;
+    let (found, points) = program.second_parameters(curve)?;
+    let our_error = error(&found);
+
+    let second = prepared.model.parameter_index(curve.second.0).ok_or("no such parameter")?;
+    let Prepared { model, equilibrium, beside, active, .. } = &prepared;
+    let auto = Auto::build(directory.path(), case, model, equilibrium, beside, &[*active, second])?;
+    let start = auto.start_of_curve(curve.kind)?;
+    let (largest_step, _) = LARGEST_STEPS
+        .into_iter()
+        .filter_map(|step| {
+            let (_, found) = auto.run_curve(curve, &start, (50, step)).ok()?;
+            Some((step, found.abs_diff(points)))
+        })
+        .min_by_key(|(_, difference)| *difference)
+        .ok_or("AUTO does not reach the values")?;
+    let mut theirs = None;
+    let mut best = f64::INFINITY;
+    for intervals in INTERVALS {
+        let Ok((found, points)) = auto.run_curve(curve, &start, (intervals, largest_step)) else { continue };
+        let error = error(&found);
+        best = best.min(error);
+        if error <= CURVE_ACCURACY {
+            theirs = Some((intervals, points, error));
+            break;
+        }
+    }
+    let (intervals, auto_points, auto_error) =
+        theirs.ok_or_else(|| format!("AUTO does not come closer than {best:.1e}"))?;
+    let mut times: [Vec<f64>; 2] = Default::default();
+    for _ in 0..ROUNDS {
+        let (_, ours) = processor_time::of(Of::Children, || program.curve(curve, tolerance))?;
+        let settings = (intervals, largest_step);
+        let (_, auto) = processor_time::of(Of::Children, || auto.run_curve(curve, &start, settings))?;
+        times[0].push(ours);
+        times[1].push(auto);
+    }
+    Ok(Compared {
+        tolerance,
+        points,
+        error: our_error,
+        intervals,
+        auto_points,
+        auto_error,
+        commands: times.map(median),
+        in_process: None,
+    })
+}
+
+fn follow(case: &Case, prepared: &Prepared, tolerance: f64) -> Result<CycleBranch, String> {
+    Cycles::of(&prepared.model, CycleStart::from(&prepared.hopf))
+        .parameters(&prepared.parameters)
         .along(case.parameter, case.cycles.0..=case.cycles.1)
         .at(case.values)
         .resolution(Resolution::with_tolerance(tolerance))
@@ -337,194 +402,9 @@ fn cycles_at(case: &Case, branch: &CycleBranch) -> Result<Vec<Cycle>, String> {
         .iter()
         .map(|value| {
             let found = branch.points.iter().find(|point| point.value == *value);
-            found
-                .map(|point| Cycle { period: point.period, max: point.max.clone() })
-                .ok_or_else(|| format!("no cycle at {value}: {:?}", branch.stops))
+            let found = found.ok_or_else(|| format!("no cycle at {value}: {:?}", branch.stops))?;
+            let max = found.max.iter().copied().take(REPORTED_STATES).collect();
+            Ok(Cycle { period: found.period, max })
         })
         .collect()
-}
-
-/// AUTO with one model, in a directory of its own.
-struct Auto<'a> {
-    directory: &'a Path,
-    case: &'a Case,
-    dimension: usize,
-    /// The result file of the run along the equilibria, and the label of the Hopf point.
-    equilibria: Vec<u8>,
-    label: usize,
-}
-
-struct AutoResult {
-    points: usize,
-    cycles: Vec<Cycle>,
-    time: Duration,
-}
-
-impl<'a> Auto<'a> {
-    fn build(
-        directory: &'a Path,
-        case: &'a Case,
-        model: &Model,
-        source: &str,
-        equilibrium: &[f64],
-        parameters: &[f64],
-        active: usize,
-    ) -> Result<Self, String> {
-        let program = fortran(model, source, equilibrium, parameters, active);
-        let write = |name: &str, text: &str| {
-            std::fs::write(directory.join(name), text).map_err(|error| error.to_string())
-        };
-        write("model.f90", &program)?;
-        let build = "gfortran -O3 -fopenmp -fdefault-real-8 -fdefault-double-8 -std=legacy -ffree-line-length-none \
-                     model.f90 -o model -I /usr/include";
-        let build = format!("{build} {AUTO}/*.o");
-        let output = Command::new("sh").args(["-c", &build]).current_dir(directory).output();
-        let output = output.map_err(|error| error.to_string())?;
-        if !output.status.success() {
-            return Err(format!("gfortran: {}", String::from_utf8_lossy(&output.stderr)));
-        }
-        let mut auto =
-            Self { directory, case, dimension: model.states().len(), equilibria: Vec::new(), label: 0 };
-        // Towards the Hopf point from a little beside it.
-        let step = 2e-3 * (case.equilibria.1 - case.equilibria.0);
-        let (low, high) = (parameters[active] - 10.0 * step, parameters[active] + 10.0 * step);
-        auto.constants(&format!(
-            "IPS=1, IRS=0, ICP=[1], NTST=50, NCOL=4, ISP=1, ILP=0, NMX=500, NPR=1000, EPSL=1e-10, EPSU=1e-10, EPSS=1e-8, \
-             DS={step:e}, DSMIN={:e}, DSMAX={step:e}, IADS=1, UZSTOP={{1:[{low:e},{high:e}]}}",
-            1e-3 * step
-        ))?;
-        auto.execute()?;
-        auto.equilibria = std::fs::read(directory.join("fort.8")).map_err(|error| error.to_string())?;
-        let branch = std::fs::read_to_string(directory.join("fort.7")).map_err(|error| error.to_string())?;
-        auto.label = rows(&branch)
-            .find(|row| row[2] == 3.0)
-            .map(|row| row[3] as usize)
-            .ok_or("AUTO found no Hopf point")?;
-        Ok(auto)
-    }
-
-    fn constants(&self, text: &str) -> Result<(), String> {
-        let common = "IAD=3, ISW=1, IPLT=0, NBC=0, NINT=0, MXBF=0, IID=0, ITMX=8, ITNW=7, NWTN=3, JAC=0, THL={}, THU={}";
-        let constants = format!("NDIM={}, {common}\n{}\n", self.dimension, text.replace(", ", "\n"));
-        let constants = constants.replace(", ", "\n");
-        std::fs::write(self.directory.join("fort.2"), constants).map_err(|error| error.to_string())
-    }
-
-    /// Runs the program; the processor time is what it says itself.
-    fn execute(&self) -> Result<Duration, String> {
-        let start = Instant::now();
-        let output = Command::new("./model")
-            .current_dir(self.directory)
-            .env("OMP_NUM_THREADS", "1")
-            .stdin(Stdio::null())
-            .output()
-            .map_err(|error| error.to_string())?;
-        let elapsed = start.elapsed();
-        if !output.status.success() {
-            return Err("AUTO failed".into());
-        }
-        Ok(elapsed)
-    }
-
-    /// It goes round closed branches and back from Hopf points until `most_points`.
-    fn run(&self, intervals: usize, largest_step: f64, most_points: usize) -> Result<AutoResult, String> {
-        std::fs::write(self.directory.join("fort.3"), &self.equilibria).map_err(|error| error.to_string())?;
-        let (low, high) = self.case.cycles;
-        let values: Vec<String> = self.case.values.iter().map(|value| format!("{value:e}")).collect();
-        self.constants(&format!(
-            "IPS=2, IRS={}, ICP=[1,11], NTST={intervals}, NCOL=4, ISP=2, ILP=1, NMX={most_points}, NPR=100000, EPSL=1e-8, \
-             EPSU=1e-8, EPSS=1e-6, DS={:e}, DSMIN=1e-8, DSMAX={largest_step:e}, IADS=1, UZR={{1:[{}]}}, \
-             UZSTOP={{1:[{low:e},{high:e}]}}",
-            self.label,
-            0.1 * largest_step,
-            values.join(",")
-        ))?;
-        let time = self.execute()?;
-        let branch =
-            std::fs::read_to_string(self.directory.join("fort.7")).map_err(|error| error.to_string())?;
-        let all: Vec<Vec<f64>> = rows(&branch).collect();
-        let cycles = self
-            .case
-            .values
-            .iter()
-            .filter_map(|value| {
-                let near =
-                    |row: &&Vec<f64>| row[2] == -4.0 && (row[4] - value).abs() < 1e-6 * (1.0 + value.abs());
-                let row = all.iter().find(near)?;
-                // PT, TY, LAB and so on, PAR(1), L2-NORM, then the largest values, and the period last.
-                Some(Cycle { period: *row.last()?, max: row.get(6..6 + self.dimension)?.to_vec() })
-            })
-            .collect();
-        Ok(AutoResult { points: all.len() - self.case.values.len(), cycles, time })
-    }
-}
-
-/// Numbers of the rows of a branch file.
-fn rows(text: &str) -> impl Iterator<Item = Vec<f64>> + '_ {
-    text.lines().filter_map(|line| {
-        let numbers: Option<Vec<f64>> =
-            line.split_whitespace().map(|word| word.replace(['D', 'd'], "E").parse().ok()).collect();
-        numbers.filter(|numbers| numbers.len() > 4 && numbers[0] != 0.0)
-    })
-}
-
-/// The model as AUTO's equations file. The gallery's files use little of the language of .ode files.
-fn fortran(model: &Model, source: &str, equilibrium: &[f64], parameters: &[f64], active: usize) -> String {
-    let statements: Vec<String> = source
-        .lines()
-        .map(|line| line.replace('^', "**").replace("ln(", "log("))
-        .filter(|line| line.contains('=') && !line.starts_with(['#', '@']))
-        .filter(|line| !["par ", "init", "set ", "aux ", "number "].iter().any(|word| line.starts_with(word)))
-        .filter(|line| !line.contains("(0)"))
-        .collect();
-    let mut functions = String::new();
-    let mut body = String::new();
-    let mut names: Vec<String> = model.parameters().to_vec();
-    for line in &statements {
-        let (left, right) = line.split_once('=').unwrap_or_default();
-        let (left, right) = (left.trim().trim_start_matches('!'), right.trim());
-        if let Some(state) = left.strip_suffix('\'') {
-            let index = model.state_index(state).unwrap_or_default() + 1;
-            let _ = writeln!(body, "  auto_f({index}) = {right}");
-        } else if let Some((name, arguments)) = left.split_once('(') {
-            names.push(name.to_owned());
-            let _ = writeln!(functions, "  {name}({arguments} = {right}");
-        } else {
-            names.push(left.to_owned());
-            let _ = writeln!(body, "  {left} = {right}");
-        }
-    }
-    for line in source.lines().filter_map(|line| line.strip_prefix("number ")) {
-        let (name, value) = line.split_once('=').unwrap_or_default();
-        names.push(name.trim().to_owned());
-        body.insert_str(0, &format!("  {} = {}\n", name.trim(), value.trim()));
-    }
-    let mut values = String::new();
-    for (index, (name, value)) in model.parameters().iter().zip(parameters).enumerate() {
-        if index == active {
-            let _ = writeln!(values, "  {name} = auto_par(1)");
-        } else {
-            let _ = writeln!(values, "  {name} = {value:e}");
-        }
-    }
-    let mut initial = String::new();
-    for (index, name) in model.states().iter().enumerate() {
-        let _ = writeln!(values, "  {name} = auto_u({})", index + 1);
-        let _ = writeln!(initial, "  auto_u({}) = {:e}", index + 1, equilibrium[index]);
-        names.push(name.clone());
-    }
-    let beside = parameters[active];
-    names.sort();
-    names.dedup();
-    format!(
-        "subroutine func(auto_n, auto_u, auto_icp, auto_par, auto_jac, auto_f, auto_fu, auto_fp)\n\
-         \x20 implicit none\n  integer :: auto_n, auto_icp(*), auto_jac\n\
-         \x20 real :: auto_u(auto_n), auto_par(*), auto_f(auto_n), auto_fu(auto_n, auto_n), auto_fp(auto_n, *)\n\
-         \x20 real :: {}\n{functions}{values}{body}end subroutine\n\
-         subroutine stpnt(auto_n, auto_u, auto_par, auto_t)\n  implicit none\n  integer :: auto_n\n\
-         \x20 real :: auto_u(auto_n), auto_par(*), auto_t\n  auto_par(1) = {beside:e}\n{initial}end subroutine\n\
-         subroutine bcnd\nend subroutine\nsubroutine icnd\nend subroutine\nsubroutine fopt\nend subroutine\n\
-         subroutine pvls\nend subroutine\n",
-        names.join(", ")
-    )
 }
