@@ -7,6 +7,7 @@ use kingpin_analysis::WheelRequest;
 use kingpin_report::Table;
 use kingpin_report::numbers::readable;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
 /// Which wheel.
 #[derive(Args, Clone, Debug)]
@@ -28,8 +29,15 @@ impl WheelOptions {
     }
 }
 
-/// The parameters of the wheel with symbol, unit, default, allowed range and meaning, for the long help.
+/// An example and the parameters of the wheel, for the long help.
 pub(crate) fn parameter_help(example: &str) -> String {
+    // Every command has this text, and all of them are made whichever one runs.
+    static TABLE: LazyLock<String> = LazyLock::new(parameter_table);
+    format!("Example: {example}\n\nParameters, in SI units and radians:\n{}", *TABLE)
+}
+
+/// The parameters of the wheel with symbol, unit, default, allowed range and meaning.
+fn parameter_table() -> String {
     let mut table = Table::new(["key", "symbol", "unit", "default", "allowed", "meaning"]);
     for key in Key::ALL {
         table.row([
@@ -52,7 +60,7 @@ pub(crate) fn parameter_help(example: &str) -> String {
     let mut text = Vec::new();
     // Writing to memory does not fail.
     let _ = table.write(&mut text);
-    format!("Example: {example}\n\nParameters, in SI units and radians:\n{}", String::from_utf8_lossy(&text))
+    String::from_utf8_lossy(&text).into_owned()
 }
 
 /// Whether a key need not be set, with a tyre either.

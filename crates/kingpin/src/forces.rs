@@ -35,6 +35,9 @@ pub(crate) struct Forces<T> {
     pub damper_power: T,
 }
 
+/// A number along a cycle with its slope in time.
+type Sloped = Dual<f64, 1>;
+
 /// What the forces need of a motion.
 struct Motion<T> {
     psi: T,
@@ -48,133 +51,192 @@ struct Motion<T> {
     tyre: Option<[T; 3]>,
 }
 
-impl<T: Scalar> Forces<T> {
-    fn of(active: &ActiveParameters, parameters: &[T], motion: &Motion<T>) -> Self {
+/// What the forces need of the wheel, at values of the active parameters.
+pub(crate) struct ForceParameters<T> {
+    omega: T,
+    mass: T,
+    /// `J_wxi/R^2`.
+    spin: T,
+    l: T,
+    static_moment: T,
+    /// About the king pin.
+    inertia: T,
+    rotational_damping: T,
+    rotational_stiffness: T,
+    longitudinal_damping: T,
+    lateral_damping: T,
+}
+
+impl<T: Scalar> ForceParameters<T> {
+    fn at(active: &ActiveParameters, parameters: &[T]) -> Self {
         let value = |key| active.value(key, parameters);
         let (_, omega) = active.towing(parameters);
-        let mass = value(Key::MW) + value(Key::MC);
         let radius = value(Key::WheelRadius);
-        let spin = value(Key::JWxi) / (radius * radius);
-        let (l, arm) = (value(Key::L), value(Key::L) - value(Key::LC));
+        let arm = value(Key::L) - value(Key::LC);
         let static_moment = value(Key::MC) * arm;
+        Self {
+            omega,
+            mass: value(Key::MW) + value(Key::MC),
+            spin: value(Key::JWxi) / (radius * radius),
+            l: value(Key::L),
+            static_moment,
+            inertia: value(Key::JCz) + value(Key::JWzeta) + static_moment * arm,
+            rotational_damping: value(Key::CPsi),
+            rotational_stiffness: value(Key::KPsi),
+            longitudinal_damping: value(Key::CU),
+            lateral_damping: value(Key::CQ),
+        }
+    }
+
+    fn forces(&self, motion: &Motion<T>) -> Forces<T> {
         let Motion { psi, yaw_rate, yaw_acceleration, .. } = *motion;
         let [forward, forward_acceleration] = motion.forward;
-        let turning = yaw_rate - omega;
-        let along = (mass + spin) * forward_acceleration - static_moment * yaw_rate * yaw_rate;
-        let centripetal = mass * forward * yaw_rate + static_moment * yaw_acceleration;
+        let turning = yaw_rate - self.omega;
+        let along = (self.mass + self.spin) * forward_acceleration - self.static_moment * yaw_rate * yaw_rate;
+        let centripetal = self.mass * forward * yaw_rate + self.static_moment * yaw_acceleration;
         let (king_pin, lateral) = match motion.tyre {
             Some([lateral, lateral_acceleration, force]) => {
-                let along = along - mass * lateral * yaw_rate;
-                ([along, mass * lateral_acceleration + centripetal - force], force)
+                let along = along - self.mass * lateral * yaw_rate;
+                ([along, self.mass * lateral_acceleration + centripetal - force], force)
             }
             None => {
-                let inertia = value(Key::JCz) + value(Key::JWzeta) + static_moment * arm;
-                let about_king_pin = value(Key::CPsi) * turning - value(Key::KPsi) * psi;
-                let moment = inertia * yaw_acceleration + static_moment * forward * yaw_rate + about_king_pin;
-                let across = moment / l;
+                let about_king_pin = self.rotational_damping * turning - self.rotational_stiffness * psi;
+                let moment = self.inertia * yaw_acceleration
+                    + self.static_moment * forward * yaw_rate
+                    + about_king_pin;
+                let across = moment / self.l;
                 ([along, across], centripetal - across)
             }
         };
         let [u_rate, q_rate] = motion.king_pin_speeds;
         // A direction in which the king pin is rigid has no speed, whatever its damper.
-        let power = |key, speed: T| value(key) * speed * speed;
-        Self {
-            ground: [-(spin * forward_acceleration), lateral],
+        Forces {
+            ground: [-(self.spin * forward_acceleration), lateral],
             king_pin,
-            damper_power: power(Key::CU, u_rate) + power(Key::CQ, q_rate) + power(Key::CPsi, turning),
+            damper_power: self.longitudinal_damping * u_rate * u_rate
+                + self.lateral_damping * q_rate * q_rate
+                + self.rotational_damping * turning * turning,
         }
     }
 }
 
 impl RollingModel {
+    /// What the forces need of the wheel, the same all along a motion.
+    pub(crate) fn force_parameters<T: Scalar>(&self, parameters: &[T]) -> ForceParameters<T> {
+        let active = match self {
+            Self::Elastic(wheel) => wheel.active_parameters(),
+            Self::Lateral(wheel) => wheel.active_parameters(),
+            Self::Tyre(wheel) => wheel.active_parameters(),
+        };
+        ForceParameters::at(active, parameters)
+    }
+
     /// The forces at a state of the vector field.
     pub(crate) fn forces<T: Scalar>(&self, state: &[T], parameters: &[T]) -> Forces<T> {
+        self.forces_along(&self.force_parameters(parameters), state, parameters)
+    }
+
+    /// The forces at a state of a motion of which the parameters of the forces are known.
+    fn forces_along<T: Scalar>(
+        &self,
+        known: &ForceParameters<T>,
+        state: &[T],
+        parameters: &[T],
+    ) -> Forces<T> {
         let zero = T::zero();
         match self {
             Self::Elastic(wheel) => {
                 let mut rates = [zero; 5];
                 wheel.evaluate(state, parameters, &mut rates);
-                let motion = Motion {
+                known.forces(&Motion {
                     psi: state[2],
                     yaw_rate: state[4],
                     yaw_acceleration: rates[4],
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [state[3], rates[3]],
                     tyre: None,
-                };
-                Forces::of(wheel.active_parameters(), parameters, &motion)
+                })
             }
             Self::Lateral(wheel) => {
                 let mut rates = [zero; 3];
                 let forward = wheel.forward_motion(state, parameters, &mut rates);
-                let motion = Motion {
+                known.forces(&Motion {
                     psi: state[1],
                     yaw_rate: state[2],
                     yaw_acceleration: rates[2],
                     king_pin_speeds: [zero, rates[0]],
                     forward,
                     tyre: None,
-                };
-                Forces::of(wheel.active_parameters(), parameters, &motion)
+                })
             }
             Self::Tyre(wheel) => {
                 let full = wheel.full_state(state, parameters);
                 let (rates, lateral_force) = wheel.rates_and_lateral_force(state, parameters);
-                let motion = Motion {
+                known.forces(&Motion {
                     psi: full[2],
                     yaw_rate: full[5],
                     yaw_acceleration: rates[5],
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [full[3], rates[3]],
                     tyre: Some([full[4], rates[4], lateral_force]),
-                };
-                Forces::of(wheel.active_parameters(), parameters, &motion)
+                })
             }
         }
     }
 
     /// The largest forces along a cycle of this vector field.
     pub(crate) fn cycle_forces(&self, orbit: &Orbit, parameters: &[f64]) -> CycleForces {
-        let damper_power = if self.determines_speed(orbit) {
-            orbit.mean(|state| self.forces(state, parameters).damper_power)
-        } else {
-            f64::NAN
-        };
+        let static_limit = self.static_limit(parameters);
+        if !self.determines_speed(orbit) {
+            let unknown = f64::NAN;
+            return CycleForces {
+                friction_max: unknown,
+                static_limit,
+                king_pin_force_max: unknown,
+                damper_power: unknown,
+            };
+        }
+        let known = self.force_parameters(parameters);
+        let [friction_max, king_pin_force_max] =
+            self.largest(orbit, parameters, |forces| [forces.ground, forces.king_pin]);
         CycleForces {
-            friction_max: self.largest(orbit, parameters, |forces| forces.ground),
-            static_limit: self.static_limit(parameters),
-            king_pin_force_max: self.largest(orbit, parameters, |forces| forces.king_pin),
-            damper_power,
+            friction_max,
+            static_limit,
+            king_pin_force_max,
+            damper_power: orbit.mean(|state| self.forces_along(&known, state, parameters).damper_power),
         }
     }
 
-    /// The largest friction force along a cycle over `mu_s N`; `None` where nothing presses the wheel down.
+    /// The largest friction force along a cycle over `mu_s N`; `None` where nothing presses the wheel down, not a number where the
+    /// states do not determine the speed.
     pub(crate) fn friction_ratio_max(&self, orbit: &Orbit, parameters: &[f64]) -> Option<f64> {
         let limit = self.static_limit(parameters);
-        (limit > 0.0).then(|| self.largest(orbit, parameters, |forces| forces.ground) / limit)
+        let largest = || {
+            let [friction] = self.largest(orbit, parameters, |forces| [forces.ground]);
+            friction
+        };
+        (limit > 0.0).then(|| if self.determines_speed(orbit) { largest() / limit } else { f64::NAN })
     }
 
     fn static_limit(&self, parameters: &[f64]) -> f64 {
         self.wheel_at(parameters).map_or(f64::NAN, |wheel| wheel.static_limit())
     }
 
-    /// The largest length of a force along a cycle; not a number where the states do not determine the speed.
-    fn largest(
+    /// The largest lengths of some forces along a cycle that determines the speed.
+    fn largest<const K: usize>(
         &self,
         orbit: &Orbit,
         parameters: &[f64],
-        force: fn(&Forces<Dual<f64, 1>>) -> [Dual<f64, 1>; 2],
-    ) -> f64 {
-        if !self.determines_speed(orbit) {
-            return f64::NAN;
-        }
-        let constants: Vec<Dual<f64, 1>> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        chosen: fn(&Forces<Sloped>) -> [[Sloped; 2]; K],
+    ) -> [f64; K] {
+        let parameters: Vec<Sloped> = parameters.iter().map(|&value| Dual::constant(value)).collect();
+        let known = self.force_parameters(&parameters);
         // The square is smooth where the force vanishes.
-        let [_, square] = orbit.range_of(|state| {
-            let [along, across] = force(&self.forces(state, &constants));
-            along * along + across * across
+        let squares = orbit.ranges_of(|state| {
+            let forces = self.forces_along(&known, state, &parameters);
+            chosen(&forces).map(|[along, across]| along * along + across * across)
         });
-        square.sqrt()
+        squares.map(|[_, largest]| largest.sqrt())
     }
 }
 

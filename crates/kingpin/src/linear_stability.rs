@@ -103,11 +103,6 @@ impl Characteristic {
             characteristic => characteristic.eigenvalues(),
         }
     }
-
-    /// Number of eigenvalues with positive real part, of those that count.
-    fn unstable(&self) -> usize {
-        self.eigenvalues_that_count().iter().filter(|eigenvalue| eigenvalue.re > 0.0).count()
-    }
 }
 
 /// The characteristic polynomial of the lateral motion in rectilinear towing.
@@ -177,14 +172,16 @@ impl UniformMotion {
     /// is. Two witnesses have to agree: the Routh-Hurwitz conditions beyond the rounding errors of their terms, those of the
     /// parameters included, and the sign of the growth rate. It is undecided otherwise.
     pub fn stability(&self) -> Stability {
-        self.stability_with(&self.characteristic())
+        self.stability_with(&self.eigenvalues_that_count())
     }
 
-    fn stability_with(&self, characteristic: &Characteristic) -> Stability {
-        let growth_rate = characteristic.growth_rate();
+    /// The same from the eigenvalues that count, the first with the largest real part.
+    fn stability_with(&self, eigenvalues: &[Complex64]) -> Stability {
+        let growth_rate = eigenvalues.first().map_or(f64::NAN, |eigenvalue| eigenvalue.re);
+        let unstable = || eigenvalues.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count();
         match self.is_surely_stable() {
             Some(true) if growth_rate < 0.0 => Stability::Stable,
-            Some(false) if growth_rate > 0.0 => Stability::Unstable { dimension: characteristic.unstable() },
+            Some(false) if growth_rate > 0.0 => Stability::Unstable { dimension: unstable() },
             _ => Stability::Undecided,
         }
     }
@@ -209,10 +206,10 @@ impl Wheel {
     /// Growth rate, stability and rolling of the uniform motion; `None` where there is no such motion.
     pub(crate) fn chart_point(&self) -> Option<ChartPoint> {
         let motion = self.uniform_motion().ok()?;
-        let characteristic = motion.characteristic();
+        let eigenvalues = motion.eigenvalues_that_count();
         Some(ChartPoint {
-            growth_rate: characteristic.growth_rate(),
-            stable: motion.stability_with(&characteristic).is_stable(),
+            growth_rate: eigenvalues.first()?.re,
+            stable: motion.stability_with(&eigenvalues).is_stable(),
             rolls: motion.rolls(),
         })
     }

@@ -4,8 +4,10 @@ use super::{LabelCounter, Monitor, SpecialKind, label_kind};
 use crate::continuation::{Bound, Observer, Origin, Request, Settings, Solution, Target};
 use crate::erased::ErasedField;
 use crate::error::Error;
+use std::cell::RefCell;
 use std::fmt;
 use std::ops::{ControlFlow, RangeInclusive};
+use std::rc::Rc;
 
 /// What a branch consists of and starts from.
 pub trait Problem {
@@ -133,27 +135,51 @@ pub(crate) type PointObserver<'o, P> = dyn FnMut(&P) -> ControlFlow<()> + 'o;
 /// Turns a solution into a point of the branch.
 pub(crate) type PointOf<'p, Q, P> = dyn Fn(&Solution<Q>, Option<super::Label>) -> P + 'p;
 
-/// What a run of the continuation is asked for, with monitors as functions of solutions.
+/// What a run of the continuation is asked for, with monitors as functions of solutions, which `bare` makes points without
+/// monitors of.
 pub(crate) fn request<'r, Q, P>(
     bounds: &[Bound],
     at: &[f64],
     monitors: &'r [Monitor<'_, P>],
     settings: Settings,
-    point: &'r PointOf<'r, Q, P>,
+    bare: &'r dyn Fn(&Solution<Q>) -> P,
 ) -> Request<'r, Q> {
     let targets = monitors
         .iter()
         .enumerate()
         .flat_map(|(index, monitor)| {
+            let last = Rc::new(RefCell::new(None));
             monitor.values().iter().map(move |&(value, purpose)| Target {
                 monitor: index,
                 value,
                 purpose,
-                function: Box::new(move |solution: &Solution<Q>| monitor.value(&point(solution, None))),
+                function: Box::new(remembering(last.clone(), |solution| monitor.value(&bare(solution)))),
             })
         })
         .collect();
     Request { bounds: bounds.to_vec(), values: at.to_vec(), targets, settings }
+}
+
+/// Unknowns and tangent at which a monitor was evaluated last, and its value there.
+type LastReading = Rc<RefCell<Option<([Vec<f64>; 2], Option<f64>)>>>;
+
+/// A function of solutions that is not evaluated again at the solution of last time: a run asks at both ends of every step, for every
+/// value of a monitor.
+fn remembering<Q>(
+    last: LastReading,
+    function: impl Fn(&Solution<Q>) -> Option<f64>,
+) -> impl Fn(&Solution<Q>) -> Option<f64> {
+    move |solution| {
+        if let Some(([unknown, tangent], value)) = &*last.borrow()
+            && *unknown == solution.unknown
+            && *tangent == solution.tangent
+        {
+            return *value;
+        }
+        let value = function(solution);
+        *last.borrow_mut() = Some(([solution.unknown.clone(), solution.tangent.clone()], value));
+        value
+    }
 }
 
 /// The observer of solutions that tells an observer of points.

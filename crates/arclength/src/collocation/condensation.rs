@@ -11,11 +11,12 @@ use super::gauss::Gauss;
 use super::polynomials::combine;
 use crate::lanes::{Kernel, run};
 use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
+use std::borrow::Cow;
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
 pub(crate) struct Condensation {
-    pub(crate) gauss: Gauss,
+    pub(crate) gauss: Cow<'static, Gauss>,
     /// Number of state components.
     n: usize,
     /// Number of scalars.
@@ -79,7 +80,7 @@ impl Jump {
 impl Condensation {
     pub(crate) fn new(degree: usize, n: usize, scalars: usize, boundary_conditions: usize) -> Self {
         Self {
-            gauss: Gauss::new(degree),
+            gauss: Gauss::of(degree),
             n,
             scalars,
             boundary_conditions,

@@ -257,20 +257,17 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         let size = self.interval_size();
         let width = self.mesh[interval + 1] - self.mesh[interval];
         let here = &states[interval * size..(interval + 1) * size];
+        let (start, inner) = here.split_at(n);
+        let (continuity, targets) = target.split_at_mut(n);
         if let Some(next) = states.get((interval + 1) * size..(interval + 1) * size + n) {
-            for component in 0..n {
-                let nodes = self.gauss().end.iter().enumerate();
-                let end: f64 = nodes.map(|(node, weight)| weight * here[node * n + component]).sum();
-                target[component] = next[component] - end;
-            }
+            combine(here, &self.gauss().end, continuity);
+            continuity.iter_mut().zip(next).for_each(|(entry, next)| *entry = next - *entry);
         }
-        for point in 0..degree {
-            for component in 0..n {
-                let integral: f64 = (0..degree)
-                    .map(|k| self.gauss().integration[point * degree + k] * values[k * n + component])
-                    .sum();
-                target[(point + 1) * n + component] =
-                    here[(point + 1) * n + component] - here[component] - width * integral;
+        let rows = self.gauss().integration.chunks_exact(degree);
+        for ((target, inner), row) in targets.chunks_exact_mut(n).zip(inner.chunks_exact(n)).zip(rows) {
+            combine(values, row, target);
+            for ((entry, inner), start) in target.iter_mut().zip(inner).zip(start) {
+                *entry = inner - start - width * *entry;
             }
         }
     }

@@ -6,6 +6,12 @@
 //! Differential Equations II* (1996), section IV.5; Berrut and Trefethen, "Barycentric Lagrange
 //! interpolation" (2004).
 
+use std::borrow::Cow;
+use std::sync::OnceLock;
+
+/// Largest degree of which the coefficients are kept: that of polynomials, and one more for the measurement of their error.
+const LARGEST_KEPT: usize = 17;
+
 /// Coefficients of Gauss collocation with `m` points on the unit interval.
 #[derive(Clone, Debug)]
 pub struct Gauss {
@@ -29,6 +35,15 @@ pub struct Gauss {
 }
 
 impl Gauss {
+    /// Coefficients for `degree` points, computed once for each degree up to 17 and anew for others.
+    pub fn of(degree: usize) -> Cow<'static, Self> {
+        static KEPT: [OnceLock<Gauss>; LARGEST_KEPT + 1] = [const { OnceLock::new() }; LARGEST_KEPT + 1];
+        match KEPT.get(degree) {
+            Some(kept) => Cow::Borrowed(kept.get_or_init(|| Self::new(degree))),
+            None => Cow::Owned(Self::new(degree)),
+        }
+    }
+
     /// Coefficients for `degree` points, 1 to 16.
     pub fn new(degree: usize) -> Self {
         let (points, weights) = points_and_weights(degree);

@@ -14,12 +14,13 @@ use super::equations::Collocation;
 use super::gauss::Gauss;
 use super::polynomials::{MOST_NODES, combine};
 use super::problem::BoundaryValueEquations;
+use std::borrow::Cow;
 
 /// Evaluates errors of solutions with polynomials of one degree.
 #[derive(Clone, Debug)]
 pub(crate) struct GlobalError {
     /// The rule at whose points the defect is sampled: one point more than the polynomials have.
-    fine: Gauss,
+    fine: Cow<'static, Gauss>,
     /// For every point of that rule, values and slopes there of the Lagrange polynomials of the nodes.
     bases: Vec<[f64; MOST_NODES]>,
     slopes: Vec<[f64; MOST_NODES]>,
@@ -32,7 +33,7 @@ pub(crate) struct GlobalError {
 impl GlobalError {
     pub(crate) fn new(gauss: &Gauss) -> Self {
         let degree = gauss.degree();
-        let fine = Gauss::new(degree + 1);
+        let fine = Gauss::of(degree + 1);
         let samples = degree + 1;
         let at_samples = |write: &dyn Fn(f64, &mut [f64])| -> Vec<[f64; MOST_NODES]> {
             let mut rows = vec![[0.0; MOST_NODES]; samples];

@@ -2,6 +2,7 @@
 
 use super::gauss::Gauss;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Most nodes of one interval.
 pub(crate) const MOST_NODES: usize = 17;
@@ -54,7 +55,7 @@ impl Polynomials<'_> {
     }
 
     /// Writes the state at a time by the polynomial of the interval among some that is closest to it.
-    pub(crate) fn state_within(&self, intervals: std::ops::Range<usize>, time: f64, state: &mut [f64]) {
+    pub(crate) fn state_within(&self, intervals: Range<usize>, time: f64, state: &mut [f64]) {
         let (interval, _, _) = self.place(time);
         self.state_by(interval.clamp(intervals.start, intervals.end - 1), time, state);
     }
@@ -72,16 +73,26 @@ impl Polynomials<'_> {
 
     /// Value and slope of a component at a time in `[0, 1]`.
     pub(crate) fn component(&self, time: f64, component: usize) -> (f64, f64) {
+        let mut found = (0.0, 0.0);
+        self.components(time, component..component + 1, |_, value, slope| found = (value, slope));
+        found
+    }
+
+    /// Tells values and slopes of some components at a time in `[0, 1]`.
+    pub(crate) fn components(&self, time: f64, wanted: Range<usize>, mut tell: impl FnMut(usize, f64, f64)) {
         let (interval, position, width) = self.place(time);
         let nodes = self.gauss.degree() + 1;
         let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);
         self.gauss.basis_with_slopes(position, &mut basis[..nodes], &mut slopes[..nodes]);
         let size = nodes * self.n;
         let values = &self.states[interval * size..(interval + 1) * size];
-        let sum = |weights: &[f64]| -> f64 {
-            weights.iter().enumerate().map(|(node, weight)| weight * values[node * self.n + component]).sum()
-        };
-        (sum(&basis[..nodes]), sum(&slopes[..nodes]) / width)
+        for component in wanted {
+            let sum = |weights: &[f64]| -> f64 {
+                let values = values[component..].iter().step_by(self.n);
+                values.zip(weights).map(|(value, weight)| weight * value).sum()
+            };
+            tell(component, sum(&basis[..nodes]), sum(&slopes[..nodes]) / width);
+        }
     }
 }
 
@@ -101,7 +112,7 @@ pub struct PiecewisePolynomial {
 impl PiecewisePolynomial {
     /// The components at a time of the unit interval.
     pub fn at(&self, time: f64) -> Vec<f64> {
-        let gauss = Gauss::new(self.degree);
+        let gauss = Gauss::of(self.degree);
         let mut state = vec![0.0; self.dimension];
         let polynomials =
             Polynomials { mesh: &self.mesh, gauss: &gauss, n: self.dimension, states: &self.states };

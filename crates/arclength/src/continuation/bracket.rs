@@ -23,6 +23,8 @@ pub(crate) struct Bracket<'a, P> {
     left: Side<P>,
     right: Side<P>,
     trials: usize,
+    /// A trial whose value is at most this ends the search.
+    negligible: f64,
 }
 
 /// A solution on one side of the change.
@@ -58,6 +60,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
             left: Side::new(0.0, before.clone(), left),
             right: Side::new(1.0, after.clone(), right),
             trials: 0,
+            negligible: 0.0,
         })
     }
 
@@ -92,12 +95,16 @@ impl<'a, P: Clone> Bracket<'a, P> {
             let trial = finish(curve, unknown, &before.tangent)?;
             let Some(value) = test(curve, &trial) else { return Ok(None) };
             let side = Side::new(fraction, trial, value);
+            let is_negligible = value.abs() <= self.negligible;
             if value * left.value <= 0.0 {
                 *right = side;
                 left.weight *= 0.5;
             } else {
                 *left = side;
                 right.weight *= 0.5;
+            }
+            if is_negligible {
+                break;
             }
         }
         let nearer = if self.left.value.abs() < self.right.value.abs() { &self.left } else { &self.right };
@@ -119,6 +126,22 @@ pub fn locate<C: Curve>(
     mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
 ) -> Result<Option<Solution<C::Point>>, Error> {
     let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
+    Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
+}
+
+/// As [`locate`], for a test function that is continuous: a solution where its modulus is at most `negligible` is as good as its zero.
+///
+/// # Errors
+/// As [`locate`].
+pub(super) fn locate_value<C: Curve>(
+    curve: &mut C,
+    [before, after]: [&Solution<C::Point>; 2],
+    settings: &Settings,
+    (tolerance, negligible): (f64, f64),
+    mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
+) -> Result<Option<Solution<C::Point>>, Error> {
+    let Some(bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
+    let mut bracket = Bracket { negligible, ..bracket };
     Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
 }
 

@@ -1,6 +1,6 @@
 //! Solutions that were asked for: at values of the parameter, where a monitor has a value, at the ends of ranges.
 
-use super::bracket::locate;
+use super::bracket::{locate, locate_value};
 use super::corrector::{correct, finish_measured};
 use super::curve::Curve;
 use super::metric::along;
@@ -57,8 +57,9 @@ impl<P> fmt::Debug for Target<'_, P> {
 
 /// Part of a step to which the place of a parameter value is narrowed down for a second attempt.
 const CLOSE: f64 = 1e-3;
-/// Part of a step to which the place of a target is narrowed down.
+/// Part of a step to which the place of a target is narrowed down, unless the monitor has its value to this part of itself before.
 const TARGET_BRACKET: f64 = 1e-13;
+const TARGET_VALUE: f64 = 1e-11;
 
 /// Solutions between two neighbours, in order.
 pub(super) type Between<C> = Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
@@ -102,8 +103,9 @@ pub(super) fn insert_targets<C: Curve>(
     for (index, target) in targets.iter().enumerate() {
         let test =
             |_: &mut C, solution: &Solution<C::Point>| Some((target.function)(solution)? - target.value);
+        let tolerances = (TARGET_BRACKET, TARGET_VALUE * target.value.abs());
         insert_passages(curve, current, between, advanced, test, |curve, left, right| {
-            let found = match locate(curve, left, right, settings, TARGET_BRACKET, test) {
+            let found = match locate_value(curve, [left, right], settings, tolerances, test) {
                 Err(Error::NotFound { .. }) if target.purpose == Purpose::Mark => None,
                 found => found?,
             };

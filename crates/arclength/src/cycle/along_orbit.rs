@@ -2,7 +2,7 @@
 
 use super::orbit::Orbit;
 use crate::collocation::gauss::Gauss;
-use crate::collocation::polynomials::Polynomials;
+use crate::collocation::polynomials::{Polynomials, combine};
 
 /// Samples in every interval of the mesh among which an extremum is bracketed.
 const SAMPLES: usize = 16;
@@ -36,7 +36,7 @@ impl Orbit {
     /// assert!((circle.mean(|state| state[0] * state[0]) - 0.5).abs() < 1e-10);
     /// ```
     pub fn maximum(&self, function: impl Fn(&[f64]) -> f64) -> f64 {
-        let gauss = Gauss::new(self.degree);
+        let gauss = Gauss::of(self.degree);
         let value = |time: f64| function(&self.state_with(&gauss, time));
         let Some(Bracket { mut largest, middle, reach }) = self.bracket(value) else { return f64::NAN };
         let (mut left, mut right) = (middle - reach, middle + reach);
@@ -84,7 +84,7 @@ impl Orbit {
 
     /// Where a state is largest, in the unit time from 0 to 1: a zero of its slope, so that it is as exact as the orbit.
     fn place_of_largest(&self, component: usize) -> Option<f64> {
-        let gauss = Gauss::new(self.degree);
+        let gauss = Gauss::of(self.degree);
         let orbit = Polynomials { mesh: &self.mesh, gauss: &gauss, states: &self.states, n: self.dimension };
         let Bracket { middle, reach, .. } = self.bracket(|time| orbit.component(time, component).0)?;
         let (mut left, mut right) = (middle - reach, middle + reach);
@@ -126,16 +126,22 @@ impl Orbit {
 
     /// Mean of a function of the state over one period, by Gauss quadrature in every interval of the mesh.
     pub fn mean(&self, function: impl Fn(&[f64]) -> f64) -> f64 {
-        let quadrature = Gauss::new(QUADRATURE);
-        let gauss = Gauss::new(self.degree);
-        let interval = |pair: &[f64]| {
-            let length = pair[1] - pair[0];
-            let values = quadrature.points.iter().zip(&quadrature.weights);
-            let sum: f64 = values
-                .map(|(point, weight)| weight * function(&self.state_with(&gauss, pair[0] + point * length)))
-                .sum();
-            length * sum
+        let quadrature = Gauss::of(QUADRATURE);
+        let gauss = Gauss::of(self.degree);
+        let mut bases = vec![0.0; QUADRATURE * (self.degree + 1)];
+        for (basis, point) in bases.chunks_exact_mut(self.degree + 1).zip(&quadrature.points) {
+            gauss.basis(*point, basis);
+        }
+        let mut state = vec![0.0; self.dimension];
+        let intervals = self.states.chunks_exact((self.degree + 1) * self.dimension);
+        let interval = |(pair, states): (&[f64], &[f64])| {
+            let mut sum = 0.0;
+            for (basis, weight) in bases.chunks_exact(self.degree + 1).zip(&quadrature.weights) {
+                combine(states, basis, &mut state);
+                sum += weight * function(&state);
+            }
+            (pair[1] - pair[0]) * sum
         };
-        self.mesh.windows(2).map(interval).sum()
+        self.mesh.windows(2).zip(intervals).map(interval).sum()
     }
 }

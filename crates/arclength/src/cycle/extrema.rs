@@ -7,6 +7,7 @@ use crate::collocation::gauss::Gauss;
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::differentiation::Dual;
+use std::cell::RefCell;
 
 /// Local extrema among the nodes within this part of the amplitude of the extreme node are refined too.
 const CANDIDATE_MARGIN: f64 = 0.2;
@@ -61,30 +62,54 @@ impl Orbit {
     /// assert!(smallest.abs() < 1e-15 && (largest - 1.0).abs() < 1e-15);
     /// ```
     pub fn range_of(&self, function: impl Fn(&[Dual<f64, 1>]) -> Dual<f64, 1>) -> [f64; 2] {
-        let gauss = Gauss::new(self.degree);
+        let [range] = self.ranges_of(|state| [function(state)]);
+        range
+    }
+
+    /// Smallest and largest values of several functions that share their computation, each as [`range_of`](Self::range_of).
+    pub fn ranges_of<const K: usize>(
+        &self,
+        functions: impl Fn(&[Dual<f64, 1>]) -> [Dual<f64, 1>; K],
+    ) -> [[f64; 2]; K] {
+        let gauss = Gauss::of(self.degree);
         let n = self.dimension;
         let cycle = Polynomials { mesh: &self.mesh, gauss: &gauss, states: &self.states, n };
         let times = cycle.node_times();
-        let value_and_slope = |component: &dyn Fn(usize) -> (f64, f64)| {
-            let along = |index: usize| {
-                let (value, slope) = component(index);
-                Dual { value, derivatives: [slope] }
-            };
-            let Dual { value, derivatives: [slope] } = function(&(0..n).map(along).collect::<Vec<_>>());
-            (value, slope)
+        // The functions take states only, whose memory is kept.
+        let state = RefCell::new(vec![Dual::constant(0.0); n]);
+        let at_node = |node: usize, with_slopes: bool| {
+            let mut state = state.borrow_mut();
+            for (index, entry) in state.iter_mut().enumerate() {
+                let slope = if with_slopes { cycle.slope_at_node(node, index) } else { 0.0 };
+                *entry = Dual { value: self.states[node * n + index], derivatives: [slope] };
+            }
+            functions(&state)
         };
-        let at_node = |node: usize| {
-            value_and_slope(&|index| (self.states[node * n + index], cycle.slope_at_node(node, index)))
+        let at_time = |time: f64| {
+            let mut state = state.borrow_mut();
+            cycle.components(time - time.floor(), 0..n, |index, value, slope| {
+                state[index] = Dual { value, derivatives: [slope] };
+            });
+            functions(&state)
         };
-        let value_at_node = |node: usize| value_and_slope(&|index| (self.states[node * n + index], 0.0)).0;
-        let values: Vec<f64> = (0..times.len()).map(value_at_node).collect();
-        let Range { smallest, largest } = range(Curve {
-            times: &times,
-            values: &values,
-            slope_at_node: &|node| at_node(node).1,
-            at: &|time| value_and_slope(&|index| cycle.component(time - time.floor(), index)),
-        });
-        [smallest, largest]
+        let mut values = vec![0.0; K * times.len()];
+        for node in 0..times.len() {
+            for (function, found) in at_node(node, false).into_iter().enumerate() {
+                values[function * times.len() + node] = found.value;
+            }
+        }
+        std::array::from_fn(|function| {
+            let Range { smallest, largest } = range(Curve {
+                times: &times,
+                values: &values[function * times.len()..(function + 1) * times.len()],
+                slope_at_node: &|node| at_node(node, true)[function].derivatives[0],
+                at: &|time| {
+                    let Dual { value, derivatives: [slope] } = at_time(time)[function];
+                    (value, slope)
+                },
+            });
+            [smallest, largest]
+        })
     }
 }
 

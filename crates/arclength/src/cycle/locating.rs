@@ -337,7 +337,7 @@ pub(crate) fn doubling_near(
     mesh.sort_by(f64::total_cmp);
     mesh.dedup_by(|later, earlier| *later - *earlier < CLOSE_POINTS);
     *mesh.last_mut()? = 1.0;
-    let gauss = Gauss::new(orbit.degree);
+    let gauss = Gauss::of(orbit.degree);
     let (mut cycle, mut eigenfunction) = (Vec::new(), Vec::new());
     for pair in mesh.windows(2) {
         for node in std::iter::once(0.0).chain(gauss.points.iter().copied()) {

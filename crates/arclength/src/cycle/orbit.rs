@@ -83,7 +83,7 @@ impl Orbit {
     }
 
     fn on_mesh(mesh: Vec<f64>, period: f64, mut state_at: impl FnMut(f64) -> Vec<f64>) -> Self {
-        let gauss = Gauss::new(HISTORY_DEGREE);
+        let gauss = Gauss::of(HISTORY_DEGREE);
         let (mut states, mut dimension) = (Vec::new(), 0);
         for pair in mesh.windows(2) {
             for node in std::iter::once(0.0).chain(gauss.points.iter().copied()) {
@@ -227,7 +227,7 @@ impl Orbit {
             steps.push(stepper.time());
             along.extend_from_slice(stepper.state());
         }
-        let gauss = Gauss::new(HISTORY_DEGREE);
+        let gauss = Gauss::of(HISTORY_DEGREE);
         let mesh = mesh_for(&steps, |index, component| along[index * dimension + component], dimension);
         let times: Vec<f64> = mesh
             .windows(2)
@@ -290,7 +290,7 @@ impl Orbit {
 
     /// States at `count` equidistant times `0, T/count, ...`, with the times.
     pub fn sample(&self, count: usize) -> Vec<(f64, Vec<f64>)> {
-        let gauss = Gauss::new(self.degree);
+        let gauss = Gauss::of(self.degree);
         (0..count)
             .map(|index| {
                 let phase = index as f64 / count as f64;
@@ -301,7 +301,7 @@ impl Orbit {
 
     /// State at time `time` (any real number; the orbit repeats).
     pub fn state_at(&self, time: f64) -> Vec<f64> {
-        self.state_with(&Gauss::new(self.degree), (time / self.period).rem_euclid(1.0))
+        self.state_with(&Gauss::of(self.degree), (time / self.period).rem_euclid(1.0))
     }
 
     pub(super) fn state_with(&self, gauss: &Gauss, phase: f64) -> Vec<f64> {

@@ -170,13 +170,14 @@ impl<'a> Cycles<'a> {
         };
         let Continuation { start, at, monitors, observer: told, settings, .. } = &mut self;
         let range = asked.bound.width();
+        let bare = |solution: &Solution<CycleInspection>| CyclePoint::new(solution, None, (range, degree));
         let point = |solution: &Solution<CycleInspection>, label: Option<Label>| {
             let mut point = CyclePoint::new(solution, label, (range, degree));
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
-        let request = request(&bounds, at, monitors, *settings, &point);
+        let request = request(&bounds, at, monitors, *settings, &bare);
         let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
         let mut followed = asked.follow_from(&start.start, &request, &mut *observe)?;
         drop(observe);

@@ -224,7 +224,7 @@ impl HopfStart<'_> {
     ) -> Departure {
         let mesh: Vec<f64> =
             (0..=FIRST_INTERVALS).map(|index| index as f64 / FIRST_INTERVALS as f64).collect();
-        let gauss = Gauss::new(degree);
+        let gauss = Gauss::of(degree);
         let square = amplitude * amplitude;
         let (mut unknown, mut tangent) = (Vec::new(), Vec::new());
         for pair in mesh.windows(2) {

@@ -158,13 +158,14 @@ impl<'a> Equilibria<'a> {
         let departure = departure.directed(&mut curve)?;
 
         let Continuation { field, at, monitors, observer: told, settings, .. } = &mut self;
+        let bare = |solution: &Solution<Inspection>| EquilibriumPoint::new(solution, None, bound.width());
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = EquilibriumPoint::new(solution, label, bound.width());
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
-        let request = request(&bounds, at, monitors, *settings, &point);
+        let request = request(&bounds, at, monitors, *settings, &bare);
         let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
         let directions = both_ways(|sign| departure.follow(&mut curve, sign, &request, &mut *observe))?;
         drop(observe);

@@ -141,13 +141,14 @@ impl<'a> EquilibriumLocus<'a> {
         let run = Run { field: self.field, parameters: parameters.clone(), ordered, settings: self.settings };
 
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
+        let bare = |solution: &Solution<Inspection>| LocusPoint::new(solution, None, (n, ordered.swapped));
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = LocusPoint::new(solution, label, (n, ordered.swapped));
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
-        let request = request(&ordered.bounds, at, monitors, *settings, &point);
+        let request = request(&ordered.bounds, at, monitors, *settings, &bare);
         let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
         let mut followed = run.from(&start, state, &request, &mut *observe)?;
         drop(observe);

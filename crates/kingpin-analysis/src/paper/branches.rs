@@ -45,6 +45,10 @@ pub(super) struct Branch {
     pub hopf: Option<HopfPoint>,
     /// The cycles by descending speed.
     pub cycles: Vec<CyclePoint>,
+    /// The forces along them under the largest load of figure 4, on which the cycles themselves do not depend.
+    pub forces: Vec<CycleForces>,
+    /// Which points of the branch, its Hopf point among them, need more friction than there is under that load.
+    pub beyond_rolling: Vec<bool>,
 }
 
 /// Everything that figures 5 and 6 are drawn from.
@@ -101,6 +105,25 @@ impl Branches {
 }
 
 impl Branch {
+    fn new(
+        [caster_length, radius]: [f64; 2],
+        hopf: Option<HopfPoint>,
+        cycles: Vec<CyclePoint>,
+    ) -> Result<Self, Error> {
+        let loaded = |speed: f64| paper_wheel(speed, caster_length, radius)?.with(Key::FAz, HEAVIEST);
+        let mut beyond_rolling = Vec::with_capacity(cycles.len() + 1);
+        if let Some(hopf) = &hopf {
+            beyond_rolling.push(!loaded(hopf.value)?.uniform_motion()?.rolls());
+        }
+        let mut forces = Vec::with_capacity(cycles.len());
+        for cycle in &cycles {
+            let found = loaded(cycle.value)?.cycle_forces(&cycle.orbit)?;
+            beyond_rolling.push(found.friction_ratio_max().is_some_and(|ratio| ratio > 1.0 + AT_THE_LIMIT));
+            forces.push(found);
+        }
+        Ok(Self { caster_length, radius, hopf, cycles, forces, beyond_rolling })
+    }
+
     /// The wheel at a speed.
     pub(super) fn wheel(&self, speed: f64) -> Result<Wheel, Error> {
         Ok(paper_wheel(speed, self.caster_length, self.radius)?)
@@ -111,28 +134,14 @@ impl Branch {
         Ok(self.wheel(speed)?.uniform_motion()?.psi())
     }
 
-    /// The forces along a cycle under the largest load of figure 4, on which the cycle itself does not depend.
-    pub(super) fn forces(&self, cycle: &CyclePoint) -> Result<CycleForces, Error> {
-        Ok(self.wheel(cycle.value)?.with(Key::FAz, HEAVIEST)?.cycle_forces(&cycle.orbit)?)
+    /// The cycles and the forces along them.
+    pub(super) fn cycles_with_forces(&self) -> impl Iterator<Item = (&CyclePoint, &CycleForces)> {
+        self.cycles.iter().zip(&self.forces)
     }
 
-    /// Which points of the branch, its Hopf point among them, need more friction than there is under the largest load of figure 4.
-    pub(super) fn beyond_rolling(&self) -> Result<Vec<bool>, Error> {
-        let mut beyond = Vec::with_capacity(self.cycles.len() + 1);
-        if let Some(hopf) = &self.hopf {
-            let motion = self.wheel(hopf.value)?.with(Key::FAz, HEAVIEST)?.uniform_motion()?;
-            beyond.push(!motion.rolls());
-        }
-        for cycle in &self.cycles {
-            let ratio = self.forces(cycle)?.friction_ratio_max();
-            beyond.push(ratio.is_some_and(|ratio| ratio > 1.0 + AT_THE_LIMIT));
-        }
-        Ok(beyond)
-    }
-
-    /// The cycle that was asked for at a speed.
-    pub(super) fn cycle_at(&self, speed: f64) -> Option<&CyclePoint> {
-        self.cycles.iter().find(|cycle| cycle.value == speed)
+    /// The cycle that was asked for at a speed, and the forces along it.
+    pub(super) fn cycle_at(&self, speed: f64) -> Option<(&CyclePoint, &CycleForces)> {
+        self.cycles_with_forces().find(|(cycle, _)| cycle.value == speed)
     }
 
     /// Speed, largest and smallest caster angle along the branch, from its Hopf point on.
@@ -170,7 +179,7 @@ fn from_hopf_point(caster_length: f64, radius: f64) -> Result<Branch, Error> {
     let hopf = hopf_point(caster_length, radius)?;
     let along = Along::new(Key::V, SLOWEST, SEARCH.1 * hopf.value)?;
     let found = hopf.cycles(along, &options(along), |_| ControlFlow::Continue(()))?;
-    Ok(Branch { caster_length, radius, cycles: complete(found)?, hopf: Some(hopf) })
+    Branch::new([caster_length, radius], Some(hopf), complete(found)?)
 }
 
 /// The cycles of a branch that was followed to the ends of its interval, by descending speed.
@@ -194,7 +203,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
     let (radius, speed) = TOWARDS_STRAIGHT;
     let not_found =
         |radius: f64| Error::not_found("limit cycle", &format!("v = {speed} m/s, r = {radius} m"));
-    let cycle = branch.cycle_at(speed).ok_or_else(|| not_found(radius))?;
+    let (cycle, _) = branch.cycle_at(speed).ok_or_else(|| not_found(radius))?;
     let along = Along::new(Key::TurningRadius, radius, f64::INFINITY)?;
     let goal = CycleOptions { at: vec![f64::INFINITY], ..CycleOptions::default() };
     let reached =
@@ -207,6 +216,5 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
     let along = Along::new(Key::V, SLOWEST, FASTEST)?;
     let wheel = paper_wheel(speed, branch.caster_length, f64::INFINITY)?.with(Key::FAz, HEAVIEST)?;
     let found = wheel.cycles_through(&last.orbit, along, &options(along), |_| ControlFlow::Continue(()))?;
-    let cycles = complete(found)?;
-    Ok(Branch { caster_length: branch.caster_length, radius: f64::INFINITY, hopf: None, cycles })
+    Branch::new([branch.caster_length, f64::INFINITY], None, complete(found)?)
 }

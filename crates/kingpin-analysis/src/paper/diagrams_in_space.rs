@@ -140,7 +140,7 @@ impl Diagram {
             };
             points.map(point).collect()
         });
-        for cycle in &branch.cycles {
+        for (cycle, forces) in branch.cycles_with_forces() {
             data.push([
                 "limit cycle".into(),
                 branch.caster_length.into(),
@@ -149,10 +149,10 @@ impl Diagram {
                 cycle.min[2].into(),
                 cycle.period.into(),
                 stability_word(cycle.stable).into(),
-                branch.forces(cycle)?.friction_max.into(),
+                forces.friction_max.into(),
             ]);
         }
-        Ok(Self { uniform, extremes, beyond_rolling: branch.beyond_rolling()? })
+        Ok(Self { uniform, extremes, beyond_rolling: branch.beyond_rolling.clone() })
     }
 
     /// Upright on the chart.

@@ -77,8 +77,8 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         let color = radius_color(radius);
         let [upper, lower] = extremes(branch)?;
         panel = panel
-            .curve(diagram(branch, upper)?.color(color))
-            .curve(diagram(branch, lower)?.color(color))
+            .curve(diagram(branch, upper).color(color))
+            .curve(diagram(branch, lower).color(color))
             .legend_entry(LegendEntry::line(radius_label(radius), color, Dash::Dashed));
         let tori = branch.cycles.iter().filter(|cycle| is_torus(cycle));
         let deviations = tori
@@ -103,7 +103,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
                 hopf.wheel.uniform_motion()?.contact_force().friction().into(),
             ]);
         }
-        for cycle in &branch.cycles {
+        for (cycle, forces) in branch.cycles_with_forces() {
             let uniform = branch.uniform_angle(cycle.value)?;
             data.push([
                 "limit cycle".into(),
@@ -114,7 +114,7 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
                 uniform.into(),
                 cycle.period.into(),
                 if is_torus(cycle) { "torus bifurcation" } else { stability_word(cycle.stable) }.into(),
-                branch.forces(cycle)?.friction_max.into(),
+                forces.friction_max.into(),
             ]);
         }
     }
@@ -182,8 +182,8 @@ fn extremes(branch: &Branch) -> Result<[Vec<(f64, f64)>; 2], Error> {
     Ok([upper, lower])
 }
 
-fn diagram(branch: &Branch, points: Vec<(f64, f64)>) -> Result<Curve, Error> {
+fn diagram(branch: &Branch, points: Vec<(f64, f64)>) -> Curve {
     let start = std::iter::repeat_n(Stability::Changes, usize::from(branch.hopf.is_some()));
     let cycles = branch.cycles.iter().map(|cycle| Stability::from(cycle.stable == Some(true)));
-    Ok(Curve::new(points.into_iter().zip(start.chain(cycles))).dotted(branch.beyond_rolling()?))
+    Curve::new(points.into_iter().zip(start.chain(cycles))).dotted(branch.beyond_rolling.iter().copied())
 }

@@ -150,13 +150,14 @@ impl<'a> CycleLocus<'a> {
             settings: self.settings,
         };
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
+        let bare = |solution: &Solution<Inspection>| CycleLocusPoint::new(solution, None, orbit.degree);
         let point = |solution: &Solution<Inspection>, label: Option<Label>| {
             let mut point = CycleLocusPoint::new(solution, label, orbit.degree);
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
         };
-        let request = request(&bounds, at, monitors, *settings, &point);
+        let request = request(&bounds, at, monitors, *settings, &bare);
         let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
         let mut followed = asked.follow(kind, &orbit, &request, &mut *observe)?;
         drop(observe);

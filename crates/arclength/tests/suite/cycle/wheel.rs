@@ -2,9 +2,11 @@
 
 use crate::common::wheel::{Wheel, wheel_start};
 use approx::assert_relative_eq;
+use arclength::branch::Monitor;
 use arclength::continuation::Stop;
-use arclength::cycle::Cycles;
+use arclength::cycle::{CyclePoint, Cycles};
 use num_complex::Complex64;
+use std::cell::Cell;
 
 /// A cycle from single shooting with a tolerance of 3e-14.
 struct Reference {
@@ -109,4 +111,31 @@ fn wheel_branch_agrees_with_single_shooting() {
     assert!(branch.special().next().is_none(), "{:?}", branch.special().next());
     assert!(matches!(branch.stops[1], Some(Stop::RangeEnd { value: 0.2, .. })));
     assert!(branch.points.len() < 60);
+}
+
+/// Monitors may be expensive: each is computed once where the curve is searched and once for the branch that is told, and a few times
+/// more where its value is located.
+#[test]
+fn monitors_are_computed_no_more_often_than_needed() {
+    let calls = Cell::new(0);
+    let swing = |cycle: &CyclePoint| {
+        calls.set(calls.get() + 1);
+        Some(cycle.max[2] - cycle.min[2])
+    };
+    let (start, v) = wheel_start();
+    let branch = Cycles::of(&Wheel, start)
+        .parameters(&[v])
+        .along("v", 4.0..=9.0)
+        .monitor(Monitor::new("swing", swing).at(&[0.8]))
+        .run()
+        .expect("the branch exists");
+    let found: Vec<_> = branch.points.iter().filter(|cycle| cycle.label.is_some()).collect();
+    assert_eq!(found.len(), 1);
+    assert!((found[0].monitors[0] - 0.8).abs() < 1e-11);
+    assert!(
+        calls.get() <= 2 * branch.points.len() + 15,
+        "{} for {} points",
+        calls.get(),
+        branch.points.len()
+    );
 }

@@ -215,7 +215,7 @@ pub(in crate::paper) fn of_the_radius(branches: &Branches) -> Result<Vec<Claim>,
     // Amplitudes at a speed, of the radii for which there is a cycle.
     let amplitudes = |speed: f64| -> Vec<f64> {
         let cycles = branches.of_figure_6().filter_map(|branch| branch.cycle_at(speed));
-        cycles.map(|cycle| 0.5 * (cycle.max[2] - cycle.min[2])).collect()
+        cycles.map(|(cycle, _)| 0.5 * (cycle.max[2] - cycle.min[2])).collect()
     };
     let spread = |speed: f64| {
         let amplitudes = amplitudes(speed);
@@ -289,7 +289,7 @@ fn branch_of_figure_6(branches: &Branches, radius: f64) -> Result<&Branch, Error
 }
 
 fn cycle_at(branch: &Branch, speed: f64) -> Result<&CyclePoint, Error> {
-    branch.cycle_at(speed).ok_or_else(|| {
+    branch.cycle_at(speed).map(|(cycle, _)| cycle).ok_or_else(|| {
         let place = format!("v = {speed} m/s, l = {} m, r = {} m", branch.caster_length, branch.radius);
         Error::not_found("limit cycle", &place)
     })

@@ -12,18 +12,17 @@ pub(in crate::paper) fn claims(branches: &Branches) -> Result<Vec<Claim>, Error>
     let branch = branches.branch(FIGURE_6_LENGTH, FIGURE_5_RADIUS).ok_or_else(missing)?;
     let mut parts = Vec::new();
     for speed in COMPARED_SPEEDS {
-        if let Some(cycle) = branch.cycle_at(speed) {
-            let forces = branch.forces(cycle)?;
+        if let Some((_, forces)) = branch.cycle_at(speed) {
             parts.push(format!("{} N at {speed} m/s", number(forces.friction_max, 4)));
         }
     }
     let (mut beyond, mut all) = (0, 0);
     for branch in branches.iter() {
-        beyond += branch.beyond_rolling()?.into_iter().filter(|beyond| *beyond).count();
+        beyond += branch.beyond_rolling.iter().filter(|beyond| **beyond).count();
         all += branch.cycles.len();
     }
     let limit = branch.wheel(1.0)?.with(Key::FAz, HEAVIEST)?.static_limit();
-    let rolling_up_to = rolls_up_to(branch)?;
+    let rolling_up_to = rolls_up_to(branch);
     let until =
         rolling_up_to.map_or_else(String::new, |speed| format!(" It rolls up to {} m/s.", number(speed, 5)));
     Ok(vec![Claim {
@@ -44,12 +43,12 @@ pub(in crate::paper) fn claims(branches: &Branches) -> Result<Vec<Claim>, Error>
 }
 
 /// The largest speed of the cycles that are rolled, where others are not.
-fn rolls_up_to(branch: &Branch) -> Result<Option<f64>, Error> {
-    let beyond = branch.beyond_rolling()?;
+fn rolls_up_to(branch: &Branch) -> Option<f64> {
+    let beyond = &branch.beyond_rolling;
     if !beyond.contains(&true) {
-        return Ok(None);
+        return None;
     }
     let cycles = beyond.iter().skip(usize::from(branch.hopf.is_some())).zip(&branch.cycles);
     let rolled = cycles.filter(|(beyond, _)| !**beyond).map(|(_, cycle)| cycle.value);
-    Ok(rolled.reduce(f64::max))
+    rolled.reduce(f64::max)
 }

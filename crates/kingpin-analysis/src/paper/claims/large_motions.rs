@@ -155,7 +155,7 @@ pub(super) fn directions(branches: &Branches) -> Result<Vec<Claim>, Error> {
     let place = || format!("v = {RELEASE_SPEED} m/s, r = {RELEASE_RADIUS} m");
     let branch = branches.branch(FIGURE_6_LENGTH, RELEASE_RADIUS);
     let cycle = branch.and_then(|branch| branch.cycle_at(RELEASE_SPEED));
-    let cycle = cycle.ok_or_else(|| Error::not_found("limit cycle", &place()))?;
+    let (cycle, _) = cycle.ok_or_else(|| Error::not_found("limit cycle", &place()))?;
     let uniform = wheel.uniform_motion()?.psi();
     let (above, below) = (cycle.max[2] - uniform, uniform - cycle.min[2]);
     let of_cycle = (above - below) / (above + below);
