@@ -10,6 +10,7 @@ use super::events::{Events, Happening};
 use super::phase::{Exit, Phase, Stage};
 use super::samples::{Again, Samples};
 use super::section::{Section, SectionWatch};
+use arclength::control::Control;
 use arclength::integration::{Crossing, EventLocator, IntegrationError, Stepper};
 use arclength::{Threshold, VectorField};
 use arclength_ode::{GivenUp, Model, Switch};
@@ -36,6 +37,8 @@ pub(super) struct Course<'a> {
     pub bound: f64,
     /// A section whose crossings are wanted.
     pub section: Option<&'a Section>,
+    /// Ends it where it is.
+    pub control: Control<'a>,
 }
 
 /// A motion as far as it was followed.
@@ -64,6 +67,8 @@ pub(super) enum Ending {
     Stopped(usize),
     /// The event of this index happens again and again while no time passes.
     Accumulation(usize),
+    /// Whoever waits for it asked for the end.
+    Interrupted,
 }
 
 impl Course<'_> {
@@ -197,7 +202,7 @@ impl Pursuit<'_, '_> {
                     }
                     phase = stage.phase_at(time, &self.state);
                 }
-                PhaseEnd::Reached | PhaseEnd::LeftBound => return Ok(()),
+                PhaseEnd::Reached | PhaseEnd::Over => return Ok(()),
             }
             let has_passed = self.time - before > NO_TIME * self.time.abs();
             at_once = if has_passed { 0 } else { at_once + 1 };
@@ -270,7 +275,11 @@ impl Pursuit<'_, '_> {
             if outside {
                 self.motion.ending = Some((reached, Ending::LeftBound));
                 self.motion.samples.leave_out_beyond(bound);
-                return Ok(PhaseEnd::LeftBound);
+                return Ok(PhaseEnd::Over);
+            }
+            if self.course.control.is_stopped() {
+                self.motion.ending = Some((reached, Ending::Interrupted));
+                return Ok(PhaseEnd::Over);
             }
             if crossing.is_none() {
                 self.events.note(&locator.signs()[exits.len()..]);
@@ -310,6 +319,6 @@ enum PhaseEnd {
     Passed(Exit),
     /// By the event of the model with this index.
     Happens(usize),
-    /// By a state beyond the bound.
-    LeftBound,
+    /// With the whole motion, by a state beyond the bound or because somebody asked for the end.
+    Over,
 }
