@@ -200,7 +200,7 @@ fn a_figure_says_where_its_axes_stand() {
         assert!(0.0 < place.top && place.top < place.bottom && place.bottom < height);
         // The frame is drawn there.
         let corner = |value: f64| ((value * 100.0).round() / 100.0).to_string();
-        assert!(svg.contains(&format!("M{} {}", corner(place.left), corner(place.top))), "{place:?} {svg}");
+        assert!(svg.contains(&format!("m{} {} ", corner(place.left), corner(place.top))), "{place:?} {svg}");
     }
     assert!(places[0].right < places[1].left);
 }
