@@ -9,6 +9,14 @@ use kingpin_figure::Figure;
 /// # Errors
 /// A time history, or files over different parameters.
 pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
+    diagram_of(results, &[])
+}
+
+/// The same of some states only, of all where none is named.
+///
+/// # Errors
+/// Those of [`diagram`], and where the first file has none of these states.
+pub fn diagram_of(results: &[ResultFile], shown: &[String]) -> Result<Figure, (usize, String)> {
     let axes = |result: &ResultFile| -> Option<Vec<String>> {
         match result {
             ResultFile::Equilibria(result) => Some(vec![result.along.key.clone()]),
@@ -58,6 +66,14 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
             })
             .collect();
         return Ok(picture::plane(&format!("Special points of {name}"), [one, two], &curves));
+    }
+    if !shown.is_empty() {
+        let all = states.join(", ");
+        states.retain(|state| shown.contains(state));
+        if states.is_empty() {
+            let problem = format!("it has no state {}; allowed: {all}", shown.join(", "));
+            return Err((0, problem));
+        }
     }
     let panels = states.iter().map(|state| {
         let curves = results.iter().flat_map(|result| match result {

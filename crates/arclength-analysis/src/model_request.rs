@@ -1,6 +1,7 @@
 //! Which model an analysis is asked for, with which parameters and from which state.
 
 use crate::error::Error;
+use crate::files::{Disk, Files};
 use crate::model::ChosenModel;
 use crate::point_reference::PointReference;
 use crate::start::LabelledPoint;
@@ -69,13 +70,21 @@ impl ModelRequest {
     /// # Errors
     /// A file that cannot be read, a model that makes no sense, an unknown name or a value that is no number.
     pub fn open(&self) -> Result<OpenedModel, Error> {
+        self.open_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`open`](Self::open).
+    pub fn open_among(&self, files: &dyn Files) -> Result<OpenedModel, Error> {
         let (mut chosen, point, warnings) = match &self.source {
             ModelSource::Point(reference) => {
-                let point = LabelledPoint::read(reference)?;
+                let point = LabelledPoint::read(reference, files)?;
                 (point.chosen.clone(), Some(point), Vec::new())
             }
             ModelSource::File(path) => {
-                let (chosen, warnings) = read(path)?;
+                let (chosen, warnings) = read(path, files)?;
                 (chosen, None, warnings)
             }
             ModelSource::Text(stored) => {
@@ -109,9 +118,9 @@ impl ModelRequest {
 }
 
 /// Reads the file of a model, with what the reader warns of.
-fn read(path: &Path) -> Result<(ChosenModel, Vec<String>), Error> {
+fn read(path: &Path, files: &dyn Files) -> Result<(ChosenModel, Vec<String>), Error> {
     let unreadable = |source| Error::Unreadable { path: path.to_owned(), source };
-    let bytes = std::fs::read(path).map_err(unreadable)?;
+    let bytes = files.read(path).map_err(unreadable)?;
     if bytes.trim_ascii_start().starts_with(b"{") {
         let problem = format!("this is a result, not a model; try: --from {}:LABEL", path.display());
         return Err(Error::ResultFile { path: path.to_owned(), problem });

@@ -1,6 +1,7 @@
 //! A periodic orbit from a file of samples, such as a time history that was cut to one period.
 
 use crate::error::Error;
+use crate::files::{Disk, Files};
 use arclength::cycle::Orbit;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use kingpin_report::numbers::readable;
@@ -24,7 +25,16 @@ const COMPARED: usize = 100;
 /// [`Error::Unreadable`]; [`Error::OrbitFile`] for a column that is missing, what is no finite number, times that do not grow, fewer
 /// than [`Orbit::FEWEST_SAMPLES`] rows, states that do not change, an orbit that does not close, or more than one period.
 pub fn read_orbit(path: &Path, states: &[impl AsRef<str>]) -> Result<Orbit, Error> {
-    let bytes = std::fs::read(path).map_err(|source| Error::Unreadable { path: path.to_owned(), source })?;
+    read_orbit_among(&Disk, path, states)
+}
+
+/// The same from other files than those of this machine.
+pub(crate) fn read_orbit_among(
+    files: &dyn Files,
+    path: &Path,
+    states: &[impl AsRef<str>],
+) -> Result<Orbit, Error> {
+    let bytes = files.read(path).map_err(|source| Error::Unreadable { path: path.to_owned(), source })?;
     let names = std::iter::once(TIME).chain(states.iter().map(AsRef::as_ref)).collect();
     let file = File { path, names };
     file.orbit(&file.rows(&bytes)?)

@@ -2,6 +2,7 @@
 
 use crate::cycles::CyclesResult;
 use crate::equilibria::EquilibriaResult;
+use crate::files::{Disk, Files};
 use crate::locus::{CycleLocusResult, EquilibriumLocusResult};
 use crate::simulate::HistoryResult;
 use kingpin_report::Schema;
@@ -36,12 +37,20 @@ impl ResultFile {
     /// # Errors
     /// It cannot be read, is no result file or not one of `arclength`.
     pub fn read(path: &Path) -> Result<Self, String> {
+        Self::read_among(&Disk, path)
+    }
+
+    /// Reads one of other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn read_among(files: &dyn Files, path: &Path) -> Result<Self, String> {
         const ALLOWED: &str =
             "allowed: a file that --out FILE.json of arclength equilibria, cycles, locus or simulate wrote";
         fn parse<R: DeserializeOwned>(text: &[u8]) -> Result<R, String> {
             serde_json::from_slice(text).map_err(|error| format!("not a result file: {error}; {ALLOWED}"))
         }
-        let text = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let text = files.read(path).map_err(|error| format!("cannot be read: {error}"))?;
         let Header { schema: Schema { name, version } } = parse(&text)?;
         match (name.as_str(), version) {
             (EquilibriaResult::SCHEMA, 1) => parse(&text).map(Self::Equilibria),

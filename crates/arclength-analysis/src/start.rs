@@ -1,6 +1,7 @@
 //! Labelled points of earlier results from which computations start, checked to be what they claim.
 
 use crate::error::Error;
+use crate::files::Files;
 use crate::model::ChosenModel;
 use crate::point_reference::PointReference;
 use crate::result_file::ResultFile;
@@ -41,12 +42,13 @@ pub enum LabelledSolution {
 }
 
 impl LabelledPoint {
-    /// Reads a labelled point from its file.
+    /// Reads a labelled point from its file, which is one of `files`.
     ///
     /// # Errors
     /// [`Error::ResultFile`]: no such file, no such label, or a point that does not fit its model.
-    pub fn read(reference: &PointReference) -> Result<Self, Error> {
-        let file = ResultFile::read(&reference.path).map_err(|problem| reference.failure(problem))?;
+    pub fn read(reference: &PointReference, files: &dyn Files) -> Result<Self, Error> {
+        let file =
+            ResultFile::read_among(files, &reference.path).map_err(|problem| reference.failure(problem))?;
         let labels = file.labels();
         let missing = || reference.no_such_label(&labels);
         let is_wanted = |label: &Option<String>| label.as_ref() == Some(&reference.label);

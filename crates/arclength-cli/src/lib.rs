@@ -5,6 +5,7 @@ mod equilibria;
 mod locus;
 mod model_options;
 mod monitor_options;
+mod serve;
 mod show;
 mod simulate;
 
@@ -31,6 +32,7 @@ enum Command {
     Locus(locus::Locus),
     Simulate(simulate::Simulate),
     Show(show::Show),
+    Serve(serve::Serve),
 }
 
 impl Command {
@@ -41,6 +43,7 @@ impl Command {
             Self::Locus(command) => command.run(),
             Self::Simulate(command) => command.run(),
             Self::Show(command) => command.run(),
+            Self::Serve(command) => command.run(),
         }
     }
 }

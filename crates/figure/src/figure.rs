@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::axis::Scale;
 use crate::draw::draw_panel;
 use crate::draw3d::draw_panel3d;
 use crate::error::FigureError;
@@ -60,6 +61,40 @@ pub enum Content {
     Space(Box<Panel3d>),
 }
 
+/// Where the axes of a panel stand in a picture, and what they span.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// Left edge of the axes.
+    pub left: f64,
+    /// Upper edge.
+    pub top: f64,
+    /// Right edge.
+    pub right: f64,
+    /// Lower edge.
+    pub bottom: f64,
+    /// What the horizontal axis spans, from left to right.
+    pub x: Span,
+    /// What the vertical axis spans, from below.
+    pub y: Span,
+}
+
+/// What an axis spans.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// The value at its beginning.
+    pub low: f64,
+    /// The value at its end.
+    pub high: f64,
+    /// Whether equal lengths are equal factors.
+    pub logarithmic: bool,
+}
+
+impl From<Scale> for Span {
+    fn from(Scale { low, high, logarithmic }: Scale) -> Self {
+        Self { low, high, logarithmic }
+    }
+}
+
 impl From<Panel> for Content {
     fn from(panel: Panel) -> Self {
         Content::Plane(Box::new(panel))
@@ -104,6 +139,11 @@ impl Figure {
     /// A figure over two columns of a journal, 174 mm wide.
     pub fn double_column() -> Self {
         Self::with_width_mm(DOUBLE_COLUMN)
+    }
+
+    /// The same figure with another width in millimetres, kept between 10 and 2000.
+    pub fn width_mm(self, width: f64) -> Self {
+        Self { width: side(width, self.width), ..self }
     }
 
     /// The height in millimetres, kept between 10 and 2000; without it the panels have a pleasant shape.
@@ -178,7 +218,28 @@ impl Figure {
         self.panels.len().div_ceil(self.columns)
     }
 
-    fn scene(&self) -> Scene {
+    /// Where the axes of every panel stand and what they span, for whoever puts something on top of the picture; nothing for a panel
+    /// in space. Lengths are those of the `viewBox` of the SVG text, in points from the upper left corner.
+    pub fn places(&self) -> Vec<Option<Place>> {
+        let page = self.page();
+        let place = |(content, plot): (&Content, &Rect)| match content {
+            Content::Plane(panel) => {
+                let (x, y) = panel.scales();
+                let [left, top, right, bottom] = [plot.left, plot.top, plot.right, plot.bottom];
+                Some(Place { left, top, right, bottom, x: x.into(), y: y.into() })
+            }
+            Content::Space(_) => None,
+        };
+        self.panels.iter().zip(&page.plots).map(place).collect()
+    }
+
+    /// Width and height in points, as in the `viewBox` of the SVG text.
+    pub fn size(&self) -> (f64, f64) {
+        (self.width * POINTS_PER_MM, self.page().height)
+    }
+
+    /// Where everything stands.
+    fn page(&self) -> Page {
         let columns = self.columns.min(self.panels.len().max(1));
         let rows = self.rows().max(1);
         let width = self.width * POINTS_PER_MM;
@@ -194,6 +255,12 @@ impl Figure {
             page = self.arrange(&sizes, width, &across, &down);
             sizes = page.plots.iter().map(|plot| (plot.width(), plot.height())).collect();
         }
+        page
+    }
+
+    fn scene(&self) -> Scene {
+        let page = self.page();
+        let width = self.width * POINTS_PER_MM;
         let mut scene =
             Scene { width, height: page.height, description: self.description.clone(), items: Vec::new() };
         for ((panel, plot), margins) in self.panels.iter().zip(&page.plots).zip(&page.margins) {

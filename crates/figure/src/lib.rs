@@ -66,7 +66,7 @@ pub use axis::Axis;
 pub use color::{Color, ColorMap, palette};
 pub use contour::contour_lines;
 pub use error::FigureError;
-pub use figure::{Content, Figure};
+pub use figure::{Content, Figure, Place, Span};
 pub use geometry::Point;
 pub use grid::{CategoryMap, Grid, HeatMap};
 pub use legend::{Legend, LegendEntry};

@@ -181,3 +181,26 @@ proptest! {
         check(&Figure::single_column().panel(panel).to_svg().unwrap())?;
     }
 }
+
+#[test]
+fn a_figure_says_where_its_axes_stand() {
+    let panel =
+        || Panel::new(Axis::new("x").limits(-1.0, 3.0), Axis::new("y").limits(1.0, 100.0).logarithmic());
+    let figure = Figure::single_column().columns(2).panel(panel()).panel(panel()).width_mm(120.0);
+    let (width, height) = figure.size();
+    let svg = figure.to_svg().unwrap();
+    assert!(svg.contains("width=\"120mm\""), "{svg}");
+    assert!((width - 120.0 * 72.0 / 25.4).abs() < 1e-9);
+    let places: Vec<_> = figure.places().into_iter().flatten().collect();
+    assert_eq!(places.len(), 2);
+    for place in &places {
+        assert_eq!((place.x.low, place.x.high, place.x.logarithmic), (-1.0, 3.0, false));
+        assert_eq!((place.y.low, place.y.high, place.y.logarithmic), (1.0, 100.0, true));
+        assert!(0.0 < place.left && place.left < place.right && place.right < width);
+        assert!(0.0 < place.top && place.top < place.bottom && place.bottom < height);
+        // The frame is drawn there.
+        let corner = |value: f64| ((value * 100.0).round() / 100.0).to_string();
+        assert!(svg.contains(&format!("m{} {} ", corner(place.left), corner(place.top))), "{place:?} {svg}");
+    }
+    assert!(places[0].right < places[1].left);
+}

@@ -14,6 +14,7 @@ mod margin;
 mod paper;
 mod report;
 mod safe_kick;
+mod serve;
 mod shimmy;
 mod simulate;
 mod stability;
@@ -54,6 +55,7 @@ enum Command {
     Margin(margin::Margin),
     Damper(damper::Damper),
     Fit(fit::Fit),
+    Serve(serve::Serve),
 }
 
 impl Command {
@@ -75,6 +77,7 @@ impl Command {
             Self::Margin(command) => command.run(),
             Self::Damper(command) => command.run(),
             Self::Fit(command) => command.run(),
+            Self::Serve(command) => command.run(),
         }
     }
 }

@@ -45,6 +45,9 @@ pub enum Failure {
     /// Signals could not be listened to.
     #[error("cannot listen to signals: {0}")]
     Signals(#[source] std::io::Error),
+    /// The page could not be served.
+    #[error(transparent)]
+    Server(arclength_page::ServeError),
     /// Threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(#[source] rayon::ThreadPoolBuildError),
@@ -85,6 +88,7 @@ impl Failure {
             Self::OutputClosed => return 0,
             Self::Option { .. } => true,
             Self::Analysis { bad_request, .. } => *bad_request,
+            Self::Server(error) => matches!(error, arclength_page::ServeError::Port { .. }),
             Self::BranchInterrupted | Self::Signals(_) | Self::Threads(_) => false,
         };
         if bad_input { BAD_INPUT } else { COMPUTATION_FAILED }

@@ -43,6 +43,14 @@ impl Interruption {
         signals::listen(received).map_err(Failure::Signals)
     }
 
+    /// Runs something that goes on until a signal sets the flag; when the signal comes again it ends the program.
+    pub fn during<T>(work: impl FnOnce(&'static AtomicBool) -> T) -> T {
+        let interruption = Self::of_analysis();
+        let outcome = work(interruption.flag());
+        interruption.analysis_has_ended();
+        outcome
+    }
+
     /// From now on a signal stops the analysis by the flag; when it comes again it ends the program.
     pub(crate) fn of_analysis() -> Self {
         enter(Stage::Analysis);

@@ -9,6 +9,7 @@ mod interruption;
 mod options;
 mod output;
 mod progress;
+mod serve;
 mod shortened;
 mod signals;
 mod streams;
@@ -21,4 +22,5 @@ pub use options::{
 };
 pub use output::{Format, Output, publish};
 pub use progress::ProgressDisplay;
+pub use serve::ServeOptions;
 pub use streams::{print, say};

@@ -4,12 +4,14 @@ use super::result::CyclesResult;
 use crate::branch::Origin;
 use crate::cycle_source::CycleSource;
 use crate::error::Error;
+use crate::files::{Disk, Files};
+use crate::found_point::FoundPoint;
 use crate::interval::{Along, Interval};
 use crate::labels::kind;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, ModelSource};
 use crate::monitor::{CycleMonitor, Monitored};
-use crate::orbit_file::read_orbit;
+use crate::orbit_file::read_orbit_among;
 use crate::point_reference::PointReference;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
@@ -102,11 +104,19 @@ impl CyclesRequest {
     /// # Errors
     /// What is wrong with the point, the samples, the model or a field; a time history that has not settled on a cycle.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<CyclesAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
         let Opened { chosen, start, origin, warnings } = match (&self.from, &self.model) {
-            (CycleSource::Point(reference), None) => self.open_point(reference)?,
-            (CycleSource::Samples { samples }, Some(model)) => self.open_samples(samples, model)?,
+            (CycleSource::Point(reference), None) => self.open_point(reference, files)?,
+            (CycleSource::Samples { samples }, Some(model)) => self.open_samples(samples, model, files)?,
             (CycleSource::Point(reference), Some(_)) => {
                 let given = format!("with {}:{}", reference.path.display(), reference.label);
                 let allowed =
@@ -152,11 +162,11 @@ impl CyclesRequest {
     }
 
     /// Samples of an orbit of a model.
-    fn open_samples(&self, samples: &Path, model: &ModelSource) -> Result<Opened, Error> {
-        let opened = ModelRequest::new(model.clone()).open()?;
+    fn open_samples(&self, samples: &Path, model: &ModelSource, files: &dyn Files) -> Result<Opened, Error> {
+        let opened = ModelRequest::new(model.clone()).open_among(files)?;
         let name = samples.file_name().unwrap_or_default().to_string_lossy();
         let mut chosen = self.change(opened.chosen, &name)?;
-        let orbit = read_orbit(samples, chosen.model.states())?;
+        let orbit = read_orbit_among(files, samples, chosen.model.states())?;
         chosen.start = orbit.state_at(0.0);
         Ok(Opened {
             chosen,
@@ -167,8 +177,8 @@ impl CyclesRequest {
     }
 
     /// A labelled point with its model.
-    fn open_point(&self, reference: &PointReference) -> Result<Opened, Error> {
-        let point = LabelledPoint::read(reference)?;
+    fn open_point(&self, reference: &PointReference, files: &dyn Files) -> Result<Opened, Error> {
+        let point = LabelledPoint::read(reference, files)?;
         let chosen = self.change(point.chosen.clone(), &point.label)?;
         let (start, how) = self.start(reference, &point, &chosen.parameters)?;
         let itself =
@@ -242,6 +252,18 @@ impl CyclesAnalysis {
     /// # Errors
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
+        self.run_watched(control, &mut |_| {})
+    }
+
+    /// The same under the eyes of somebody who is told every point as it is found, in the order in which they are found.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_watched(
+        &self,
+        control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
+    ) -> Result<CyclesResult, Error> {
         let name = &self.chosen.model.parameters()[self.active];
         let monitors = self.monitors.iter().map(|(asked, monitor)| {
             let value = |point: &CyclePoint| {
@@ -262,6 +284,14 @@ impl CyclesAnalysis {
             .observer(|point| {
                 let (value, period) = (readable(point.value), readable(point.period));
                 control.at(&format!("cycles, {name} = {value}, period {period}"));
+                watcher(FoundPoint {
+                    values: &[point.value],
+                    max: &point.max,
+                    min: &point.min,
+                    stable: point.stable,
+                    label: point.label,
+                    orbit: Some(&point.orbit),
+                });
                 control.flow()
             })
             .run()?;

@@ -3,6 +3,8 @@
 use super::result::{ConservedResult, EquilibriaResult};
 use crate::branch::Origin;
 use crate::error::Error;
+use crate::files::{Disk, Files};
+use crate::found_point::FoundPoint;
 use crate::interval::{Along, Interval};
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
@@ -65,8 +67,16 @@ impl EquilibriaRequest {
     /// # Errors
     /// What is wrong with the model or a field.
     pub fn validate(&self) -> Result<EquilibriaAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<EquilibriaAnalysis, Error> {
         self.steps.check()?;
-        let OpenedModel { chosen, point, mut warnings } = self.model.open()?;
+        let OpenedModel { chosen, point, mut warnings } = self.model.open_among(files)?;
         warnings.extend(slowness(chosen.model.states().len()));
         let along = chosen.interval(&self.along)?;
         let active = chosen.along(&["along"], &along)?;
@@ -114,6 +124,18 @@ impl EquilibriaAnalysis {
     /// # Errors
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<EquilibriaResult, Error> {
+        self.run_watched(control, &mut |_| {})
+    }
+
+    /// The same under the eyes of somebody who is told every point as it is found, in the order in which they are found.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_watched(
+        &self,
+        control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
+    ) -> Result<EquilibriaResult, Error> {
         let (branch_point, mut origin) = match &self.point {
             Some(point) => {
                 (self.branch_point(point), Origin::labelled(&point.label, "the branch through it"))
@@ -152,6 +174,14 @@ impl EquilibriaAnalysis {
             .settings(self.steps.settings(equilibrium_settings()))
             .observer(|point| {
                 control.at(&format!("equilibria, {name} = {}", readable(point.value)));
+                watcher(FoundPoint {
+                    values: &[point.value],
+                    max: &point.state,
+                    min: &point.state,
+                    stable: point.stability.is_stable(),
+                    label: point.label,
+                    orbit: None,
+                });
                 control.flow()
             })
             .run()?;

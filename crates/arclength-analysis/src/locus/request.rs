@@ -5,6 +5,8 @@ use super::of_equilibria::EquilibriumLocusResult;
 use super::result::LocusResult;
 use crate::branch::Origin;
 use crate::error::Error;
+use crate::files::{Disk, Files};
+use crate::found_point::FoundPoint;
 use crate::interval::Interval;
 use crate::labels::kind;
 use crate::monitor::{CycleMonitor, Monitored};
@@ -102,9 +104,17 @@ impl LocusRequest {
     /// # Errors
     /// What is wrong with the point or a field.
     pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<LocusAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
-        let point = LabelledPoint::read(&self.from)?;
+        let point = LabelledPoint::read(&self.from, files)?;
         let chosen = &point.chosen;
         let [first, second] = &self.plane;
         let active = [chosen.along(&["in"], first)?, chosen.along(&["in"], second)?];
@@ -231,6 +241,18 @@ impl LocusAnalysis {
     /// # Errors
     /// [`Error::Continuation`].
     pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
+        self.run_watched(control, &mut |_| {})
+    }
+
+    /// The same under the eyes of somebody who is told every point as it is found, in the order in which they are found.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_watched(
+        &self,
+        control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
+    ) -> Result<LocusResult, Error> {
         let field = self.point.chosen.field(&self.active);
         let curve = EquilibriumLocus::of(&field);
         let (curve, how) = match &self.start {
@@ -245,7 +267,7 @@ impl LocusAnalysis {
                     SpecialKind::PeriodDoubling => "the period doublings through it",
                     _ => "the torus bifurcations through it",
                 };
-                return self.of_cycles(curve, how, control).map(LocusResult::Cycles);
+                return self.of_cycles(curve, how, control, watcher).map(LocusResult::Cycles);
             }
             Start::HeldEquilibrium(held) => {
                 let chosen = &self.point.chosen;
@@ -255,7 +277,7 @@ impl LocusAnalysis {
             Start::HeldCycle(held, orbit) => {
                 let curve = CycleLocus::of(&field);
                 let curve = curve.from_held_cycle(held.clone(), orbit, &self.point.chosen.parameters);
-                let result = self.of_cycles(curve, "the cycles through it", control)?;
+                let result = self.of_cycles(curve, "the cycles through it", control, watcher)?;
                 return Ok(LocusResult::Cycles(
                     result.holding(held.name(), held.value().unwrap_or(f64::NAN)),
                 ));
@@ -273,7 +295,17 @@ impl LocusAnalysis {
             .and(&self.names[1], second.start..=second.end)
             .at(&self.at)
             .settings(self.steps.settings(equilibrium_settings()))
-            .observer(|point| self.tell(control, point.values))
+            .observer(|point| {
+                watcher(FoundPoint {
+                    values: &point.values,
+                    max: &point.state,
+                    min: &point.state,
+                    stable: None,
+                    label: point.label,
+                    orbit: None,
+                });
+                self.tell(control, point.values)
+            })
             .run()?;
         let origin = Origin::labelled(&self.point.label, how);
         let curve = EquilibriumLocusResult::new(
@@ -294,6 +326,7 @@ impl LocusAnalysis {
         curve: CycleLocus<'_>,
         how: &str,
         control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
     ) -> Result<CycleLocusResult, Error> {
         let [first, second] = &self.plane;
         let monitors = self.monitors.on_cycles.iter().map(|(asked, monitor)| {
@@ -308,7 +341,17 @@ impl LocusAnalysis {
             .at(&self.at)
             .settings(self.steps.settings(Settings::default()))
             .resolution(self.mesh.resolution())
-            .observer(|point| self.tell(control, point.values))
+            .observer(|point| {
+                watcher(FoundPoint {
+                    values: &point.values,
+                    max: &[],
+                    min: &[],
+                    stable: None,
+                    label: point.label,
+                    orbit: Some(&point.orbit),
+                });
+                self.tell(control, point.values)
+            })
             .run()?;
         let origin = Origin::labelled(&self.point.label, how);
         let names = names(&self.monitors.on_cycles);

@@ -8,6 +8,7 @@ use super::result::{HistoryResult, SectionResult};
 use super::section::{Section, SectionRequest};
 use super::smooth::finer_times;
 use crate::error::Error;
+use crate::files::{Disk, Files};
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::model_request::{ModelRequest, OpenedModel};
@@ -158,6 +159,14 @@ impl SimulateRequest {
     /// # Errors
     /// What is wrong with the model or a field.
     pub fn validate(&self) -> Result<SimulateAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<SimulateAnalysis, Error> {
         check(&["duration"], self.duration, "positive and finite", |value| value > 0.0 && value.is_finite())?;
         check(&["t0"], self.t0, "a finite time", f64::is_finite)?;
         check(&["bound"], self.bound, "a positive number", |value| value > 0.0)?;
@@ -173,7 +182,7 @@ impl SimulateRequest {
             let problem = "samples are at the crossings of the section";
             return Err(Error::invalid(&["points"], points.to_string(), problem, "nothing with a section"));
         }
-        let OpenedModel { chosen, mut warnings, point } = self.model.open()?;
+        let OpenedModel { chosen, mut warnings, point } = self.model.open_among(files)?;
         let goes_on = matches!(point.map(|point| point.solution), Some(LabelledSolution::Motion { .. }));
         if goes_on && self.t0.is_none() && !chosen.model.is_autonomous() {
             let text = "the model depends on the time, which begins anew: to go on where the motion ended, set the time at which it starts (--t0)";
@@ -367,7 +376,7 @@ impl SimulateAnalysis {
         let plots = if self.plots.is_empty() {
             Vec::new()
         } else {
-            let (times, states) = self.smooth(times.clone(), states.clone())?;
+            let (times, states) = self.smooth(times.clone(), states.clone(), control)?;
             self.drawn(&times, &states)
         };
         let phase_planes: Vec<PhasePlane> = plots.iter().filter_map(DrawnPlot::phase_plane).collect();
@@ -413,6 +422,7 @@ impl SimulateAnalysis {
         &self,
         mut times: Vec<f64>,
         mut states: Vec<Vec<f64>>,
+        control: &Control<'_>,
     ) -> Result<(Vec<f64>, Vec<Vec<f64>>), IntegrationError> {
         let pairs: Vec<[Variable; 2]> = self.plots.iter().flat_map(Plot::pairs).collect();
         for _ in 0..SMOOTHINGS {
@@ -423,7 +433,11 @@ impl SimulateAnalysis {
             let Some(finer) = finer_times(&times, &pairs.iter().map(curve).collect::<Vec<_>>()) else {
                 break;
             };
-            let samples = self.follow(&finer, None, &mut Vec::new(), &Control::none())?.samples;
+            let motion = self.follow(&finer, None, &mut Vec::new(), control)?;
+            if control.is_stopped() {
+                break;
+            }
+            let samples = motion.samples;
             (times, states) = (samples.times, samples.states);
         }
         Ok((times, states))
@@ -514,6 +528,8 @@ impl SimulateAnalysis {
             accuracy.absolute = needed;
             accuracy.most_steps = 10_000 + 20 * motion.steps;
             match course.follow(&accuracy, times) {
+                // Half of the second way is worth less than the whole first.
+                Ok(_) if control.is_stopped() => break,
                 Ok(finer) => motion = finer,
                 Err(error) => {
                     warnings.push(format!(

@@ -5,8 +5,8 @@ use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::simulate::SimulateRequest;
 use arclength_analysis::{
-    AnalysisError, Control, CycleSource, Interval, ModelRequest, ModelSource, PointReference, Progress,
-    StoredModel,
+    AnalysisError, Control, CycleSource, FilesInMemory, Interval, ModelRequest, ModelSource, PointReference,
+    Progress, StoredModel,
 };
 use kingpin_report::NamedNumbers;
 use serde_json::{from_value, json, to_value};
@@ -101,4 +101,36 @@ fn a_control_is_told_the_way_and_stops_it() {
     // x' = p - x^2 has its fold at the origin.
     let fold = whole.points.iter().find(|point| point.label.as_deref() == Some("LP1")).unwrap();
     assert!(fold.value.abs() < 1e-12);
+}
+
+#[test]
+fn a_motion_is_stopped_where_it_is() {
+    let stop = AtomicBool::new(true);
+    let analysis = SimulateRequest::new(model(), 1e6).validate().unwrap();
+    let result = analysis.run_under(&Control::unobserved(&stop)).unwrap();
+    assert!(result.t.first() == Some(&0.0) && result.t.len() < 1001, "{} samples", result.t.len());
+    assert!(result.warnings.iter().any(|warning| warning.starts_with("the motion was stopped at t = ")));
+    assert_eq!(analysis.run_under(&Control::none()).unwrap().t, analysis.run().unwrap().t);
+}
+
+#[test]
+fn files_in_memory_are_the_only_ones_there_are() {
+    let from: PointReference = "equilibria.json:LP1".parse().unwrap();
+    let along = Interval::new("p", -1.0, 1.0);
+    let result =
+        EquilibriaRequest::new(model(), along.clone()).validate().unwrap().run(&Control::none()).unwrap();
+    let mut text = Vec::new();
+    kingpin_report::json::write(&result, &mut text).unwrap();
+    let files = FilesInMemory::from_iter([("equilibria.json".to_owned(), text)]);
+    let request = EquilibriaRequest::new(ModelRequest::new(ModelSource::Point(from.clone())), along);
+    let mut found = 0;
+    let again = request.validate_among(&files).unwrap();
+    let again = again.run_watched(&Control::none(), &mut |point| {
+        assert_eq!(point.max, point.min);
+        found += 1;
+    });
+    assert!(found >= again.unwrap().points.len());
+    // Neither is on the disk.
+    assert!(request.validate().is_err());
+    assert!(request.validate_among(&FilesInMemory::default()).is_err());
 }

@@ -1,0 +1,44 @@
+// Saves pictures and results.
+
+import { askFile } from "./ask.js";
+import { html } from "./element.js";
+
+/**
+ * Gives a file to the user.
+ * @param {Blob} contents
+ * @param {string} name
+ */
+export function give(contents, name) {
+  const url = URL.createObjectURL(contents);
+  html("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
+}
+
+/**
+ * A menu of formats.
+ * @param {string} what
+ * @param {string[]} formats
+ * @param {(format: string) => Promise<void>} save
+ */
+export function saveMenu(what, formats, save) {
+  const select = html("select", { class: "save", "aria-label": `Save ${what}` }, html("option", { value: "" }, "Save…"));
+  for (const format of formats) select.append(html("option", { value: format }, format.toUpperCase()));
+  select.addEventListener("change", async () => {
+    const format = select.value;
+    select.value = "";
+    if (format) await save(format);
+  });
+  return select;
+}
+
+/**
+ * Saves results in a format that the server writes.
+ * @param {Record<string, string>} files
+ * @param {string[]} results
+ * @param {string[]} states
+ * @param {string} format
+ * @param {string} name without an ending
+ */
+export async function saveResults(files, results, states, format, name) {
+  give(await askFile("/api/diagram", { request: { results, states, format }, files }), `${name}.${format === "text" ? "txt" : format}`);
+}

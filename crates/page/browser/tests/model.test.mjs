@@ -1,0 +1,172 @@
+// The page for any model, as somebody uses it.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { launch, open, serve } from "./page.mjs";
+
+let server;
+let browser;
+
+before(async () => {
+  server = await serve("arclength");
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  await server?.end();
+});
+
+/** Presses a label in a diagram and chooses what starts there. */
+async function start(opened, label, title) {
+  await opened.page.locator(`.target[data-label="${label}"]`).first().press("Enter");
+  await opened.page.locator("dialog").getByRole("button", { name: title, exact: true }).click();
+  await opened.settled();
+}
+
+test("Lur'e is followed to its period doublings by clicks alone", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  assert.equal(await page.locator("#model-name").textContent(), "lure.ode");
+  await start(opened, "equilibria.json:HB1", "Cycles that are born there");
+  await start(opened, "cycles.json:PD1", "Doubled cycles");
+  await opened.picture("lure");
+  // The first doubling as MatCont has it.
+  await page.locator('.target[data-label="cycles.json:PD1"]').first().press("Enter");
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.querySelector("#point h2")?.textContent?.startsWith("PD1, cycles"));
+  const value = Number(await page.locator("#point dd").first().textContent());
+  assert.ok(Math.abs(value - 0.6303020062) < 1e-9, String(value));
+  await opened.picture("lure-point");
+  await start(opened, "cycles.json:PD1", "Curve of period doublings in two parameters");
+  assert.equal(await page.locator("section.diagram").count(), 2);
+  const lines = await page.locator("#lines").textContent();
+  assert.match(lines, /^arclength equilibria lure\.ode --along alpha=-1:2\.5 -o equilibria\.json$/m);
+  assert.match(lines, /^arclength cycles --from equilibria\.json:HB1 --along alpha=-1:2\.5 -o cycles\.json$/m);
+  assert.match(lines, /^arclength cycles --from cycles\.json:PD1 /m);
+  await opened.picture("lure-plane");
+
+  // The address is the page: another one that opens it has the same curves.
+  const copy = await open(browser, page.url());
+  await copy.settled();
+  assert.equal(await copy.page.locator("#steps li").count(), 4);
+  assert.equal(await copy.page.locator("#lines").textContent(), lines);
+  await copy.close();
+
+  // Back is undo.
+  await page.goBack();
+  await page.waitForFunction(() => document.querySelectorAll("#steps li").length === 3);
+  await opened.settled();
+  assert.equal(await page.locator("section.diagram").count(), 1);
+  await opened.close();
+});
+
+test("a mistake in a pasted model is underlined, and mended", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  await page.locator("#source").fill("par gamma=1\nx' = gama - x^2\ninit x=1\n");
+  await page.locator("#source-under mark").waitFor();
+  assert.equal(await page.locator("#source-under mark").textContent(), "gama");
+  assert.match(await page.locator("#source-message").textContent(), /line 2, column 6: .*did you mean `gamma`/);
+  await opened.picture("mistake");
+  await page.locator("#source").fill("par gamma=1\nx' = gamma - x^2\ninit x=1\n");
+  await page.waitForFunction(() => document.querySelector("#source-message").hidden);
+  await opened.settled();
+  assert.equal(await page.locator("#source-under mark").count(), 0);
+  await page.locator('.target[data-label="equilibria.json:LP1"]').waitFor({ state: "attached" });
+  await opened.close();
+});
+
+test("a slider moves the diagram, and a number is exact", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  // At beta = 2 the Hopf point of the origin is at alpha = 1/2.
+  await page.locator("#quantity-beta").fill("2");
+  await page.locator("#quantity-beta").press("Tab");
+  await page.waitForFunction(() => document.querySelector("#lines").textContent.includes("beta=2"));
+  await opened.settled();
+  await page.locator('.target[data-label="equilibria.json:HB1"]').first().press("Enter");
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => Math.abs(Number(document.querySelector("#point dd")?.textContent) - 0.5) < 1e-9);
+  await opened.close();
+});
+
+test("a point is picked with the pointer, walked from, and the phase plane starts motions", async () => {
+  const opened = await open(browser, `${server.url}`);
+  const { page } = opened;
+  await opened.settled();
+  await page.locator("#gallery").selectOption("fitzhugh_nagumo.ode");
+  await page.waitForFunction(() => document.querySelector("#model-name").textContent === "fitzhugh_nagumo.ode");
+  await opened.settled();
+  await start(opened, "equilibria.json:HB1", "Cycles that are born there");
+  await page.locator("#steps li[data-step='cycles.json'] button.label", { hasText: "EP2" }).click();
+  await page.locator("#point .plot.pickable").waitFor();
+  await page.locator("#point .plot.pickable").click({ position: { x: 150, y: 100 } });
+  await page.locator("#point .curve.motion").waitFor({ state: "attached" });
+  await page.getByRole("button", { name: "Nullclines" }).click();
+  await page.locator("#point .nullcline-x").first().waitFor({ state: "attached" });
+  await opened.picture("nerve");
+  const before = await page.locator("#point h2").textContent();
+  await page.getByRole("button", { name: "one point back" }).click();
+  assert.notEqual(await page.locator("#point h2").textContent(), before);
+  await opened.close();
+});
+
+test("it fits a phone, and keys are enough", async () => {
+  const opened = await open(browser, server.url, { viewport: { width: 390, height: 800 } });
+  const { page } = opened;
+  await opened.settled();
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await opened.picture("phone");
+  // Whatever can be pressed has a name.
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, textarea, [role=button]")]
+      .filter((element) => !element.hidden && !(element.getAttribute("aria-label") || element.textContent?.trim() || element.labels?.length))
+      .map((element) => element.outerHTML));
+  assert.deepEqual(nameless, []);
+  await opened.close();
+});
+
+for (const colorScheme of ["light", "dark"]) {
+  test(`nobody stumbles, ${colorScheme}`, async () => {
+    const opened = await open(browser, server.url, { colorScheme });
+    const { page } = opened;
+    await opened.settled();
+    await page.locator("#steps button.label", { hasText: "HB1" }).click();
+    await page.locator("#point dl").waitFor();
+    assert.deepEqual(await opened.obstacles(), []);
+    await page.locator("#start-here").click();
+    await page.locator("dialog").waitFor();
+    assert.deepEqual(await opened.obstacles(), []);
+    await opened.picture(colorScheme);
+    await opened.close();
+  });
+}
+
+test("the whole page is small", async () => {
+  let bytes = 0;
+  const names = ["", "style.css", "icon.svg"];
+  const text = await (await fetch(server.url + "model.js")).text();
+  for (const [, name] of text.matchAll(/from "\.\/(\w+\.js)"/g)) names.push(name);
+  for (const name of [...new Set(names), "model.js"]) bytes += (await (await fetch(server.url + name)).arrayBuffer()).byteLength;
+  console.log(`the page has ${bytes} bytes`);
+  assert.ok(bytes < 300_000);
+});
+
+test("the server ends in the middle, and the page says so", async () => {
+  const other = await serve("arclength");
+  const opened = await open(browser, other.url);
+  await opened.settled();
+  assert.equal(await other.end(), 0);
+  await opened.page.locator("#along-end").fill("2");
+  await opened.page.locator("#follow").click();
+  await opened.page.locator("#steps .problem", { hasText: "is it still running?" }).waitFor();
+  // The browser itself reports the refused connection.
+  const own = opened.problems.filter((problem) => !problem.includes("net::ERR_"));
+  assert.deepEqual(own, []);
+  opened.problems.length = 0;
+  await opened.close();
+});

@@ -1,0 +1,78 @@
+// A server and a browser for a test. Every page is watched: an error on the console or a request that leaves this machine fails the test.
+
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdirSync, readFileSync } from "node:fs";
+import { once } from "node:events";
+import { chromium } from "playwright-core";
+
+const PROGRAMS = process.env.PROGRAMS ?? new URL("../../../../target/debug", import.meta.url).pathname;
+/** Where pictures of the page are kept; nowhere unless asked for. */
+const PICTURES = process.env.PICTURES;
+
+const AXE = readFileSync(new URL("../node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
+
+/** Starts `program serve`; `end` stops it as Ctrl-C does. */
+export async function serve(program, ...options) {
+  const child = spawn(`${PROGRAMS}/${program}`, ["serve", "--port", "0", ...options], { stdio: ["ignore", "pipe", "inherit"] });
+  const [line] = await once(child.stdout, "data");
+  const url = String(line).trim();
+  return {
+    url,
+    async end() {
+      if (child.exitCode !== null) return child.exitCode;
+      child.kill("SIGINT");
+      const [code] = await once(child, "exit");
+      return code;
+    },
+  };
+}
+
+export async function launch() {
+  return chromium.launch({
+    executablePath: "/usr/bin/chromium",
+    args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
+      "--disable-component-update", "--disable-sync"],
+  });
+}
+
+/** Opens a page; `problems` gathers what must not happen. */
+export async function open(browser, url, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
+  const page = await context.newPage();
+  const problems = [];
+  page.on("console", (message) => {
+    if (message.type() === "error") problems.push(`console: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => problems.push(`script: ${error.stack}`));
+  page.on("request", (request) => {
+    const { protocol, hostname } = new URL(request.url());
+    if (protocol === "http:" && hostname !== "127.0.0.1") problems.push(`request: ${request.url()}`);
+  });
+  await page.goto(url);
+  return {
+    page,
+    problems,
+    /** Waits until everything is computed and drawn. */
+    async settled() {
+      await page.waitForFunction(() => {
+        const rows = [...document.querySelectorAll("#steps li")];
+        return rows.length > 0 && rows.every((row) => row.dataset.state !== "running") && !document.querySelector(".growing");
+      }, null, { timeout: 120_000 });
+    },
+    /** What axe-core finds that people with disabilities would stumble over. */
+    async obstacles() {
+      await page.evaluate(AXE);
+      return page.evaluate(async () => (await axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join("; ")}`));
+    },
+    async picture(name) {
+      if (!PICTURES) return;
+      mkdirSync(PICTURES, { recursive: true });
+      await page.screenshot({ path: `${PICTURES}/${name}.png`, fullPage: true });
+    },
+    async close() {
+      await context.close();
+      assert.deepEqual(problems, []);
+    },
+  };
+}
