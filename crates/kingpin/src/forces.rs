@@ -46,6 +46,8 @@ struct Motion<T> {
     forward: [T; 2],
     /// With a tyre `V2`, `V2'` and `T2`.
     tyre: Option<[T; 3]>,
+    /// Moment of dry friction about the king pin.
+    friction_moment: T,
 }
 
 impl<T: Scalar> Forces<T> {
@@ -70,7 +72,8 @@ impl<T: Scalar> Forces<T> {
             None => {
                 let inertia = value(Key::JCz) + value(Key::JWzeta) + static_moment * arm;
                 let about_king_pin = value(Key::CPsi) * turning - value(Key::KPsi) * psi;
-                let moment = inertia * yaw_acceleration + static_moment * forward * yaw_rate + about_king_pin;
+                let moment = inertia * yaw_acceleration + static_moment * forward * yaw_rate + about_king_pin
+                    - motion.friction_moment;
                 let across = moment / l;
                 ([along, across], centripetal - across)
             }
@@ -89,6 +92,12 @@ impl<T: Scalar> Forces<T> {
 impl RollingModel {
     /// The forces at a state of the vector field.
     pub(crate) fn forces<T: Scalar>(&self, state: &[T], parameters: &[T]) -> Forces<T> {
+        self.forces_under(T::zero(), state, parameters)
+    }
+
+    /// The same under a moment of dry friction about the king pin in N m. Where the king pin is elastic in both directions it makes no
+    /// difference to the force on that.
+    fn forces_under<T: Scalar>(&self, friction_moment: T, state: &[T], parameters: &[T]) -> Forces<T> {
         let zero = T::zero();
         match self {
             Self::Elastic(wheel) => {
@@ -101,12 +110,13 @@ impl RollingModel {
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [state[3], rates[3]],
                     tyre: None,
+                    friction_moment: zero,
                 };
                 Forces::of(wheel.active_parameters(), parameters, &motion)
             }
             Self::Lateral(wheel) => {
                 let mut rates = [zero; 3];
-                let forward = wheel.forward_motion(state, parameters, &mut rates);
+                let forward = wheel.forward_motion(state, parameters, friction_moment, &mut rates);
                 let motion = Motion {
                     psi: state[1],
                     yaw_rate: state[2],
@@ -114,12 +124,14 @@ impl RollingModel {
                     king_pin_speeds: [zero, rates[0]],
                     forward,
                     tyre: None,
+                    friction_moment,
                 };
                 Forces::of(wheel.active_parameters(), parameters, &motion)
             }
             Self::Tyre(wheel) => {
                 let full = wheel.full_state(state, parameters);
-                let (rates, lateral_force) = wheel.rates_and_lateral_force(state, parameters);
+                let (rates, lateral_force) =
+                    wheel.rates_and_lateral_force(state, parameters, friction_moment);
                 let motion = Motion {
                     psi: full[2],
                     yaw_rate: full[5],
@@ -127,6 +139,7 @@ impl RollingModel {
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [full[3], rates[3]],
                     tyre: Some([full[4], rates[4], lateral_force]),
+                    friction_moment,
                 };
                 Forces::of(wheel.active_parameters(), parameters, &motion)
             }
@@ -225,7 +238,8 @@ pub struct KingPinLoad {
 }
 
 impl Wheel {
-    /// The load of the king pin at [all states](Self::states) of a motion that rolls. Dry friction about the king pin is no damper.
+    /// The load of the king pin at [all states](Self::states) of a motion that rolls, each with the moment of dry friction about the king pin
+    /// in N m, which is no damper.
     ///
     /// # Errors
     /// Those of [`rolling_model`](Self::rolling_model).
@@ -234,11 +248,11 @@ impl Wheel {
     /// Where there are fewer states than the wheel has.
     pub fn king_pin_loads<'a>(
         &self,
-        states: impl IntoIterator<Item = &'a [f64]>,
+        states: impl IntoIterator<Item = (&'a [f64], f64)>,
     ) -> Result<Vec<KingPinLoad>, KingpinError> {
         let model = self.rolling_model(&[])?;
-        let load = |states: &[f64]| {
-            let forces = model.forces(&model.free_state(states), &[]);
+        let load = |(states, friction_moment): (&[f64], f64)| {
+            let forces = model.forces_under(friction_moment, &model.free_state(states), &[]);
             let [along, across] = forces.king_pin;
             KingPinLoad { force: along.hypot(across), damper_power: forces.damper_power }
         };

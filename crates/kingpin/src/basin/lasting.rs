@@ -3,7 +3,8 @@
 //! A motion near an unstable cycle, or one that hardly decays, keeps its amplitude for long, so that a steady amplitude
 //! alone says nothing. Here a motion is shimmy if the maxima of the caster angle repeat themselves (Poincare's return map, seen through
 //! one coordinate) *and* the motion comes back to them after it was pushed, outwards and inwards: from an
-//! unstable cycle it would go away. A motion that never repeats itself is shimmy if its size scatters without a trend.
+//! unstable cycle it would go away. Of a motion that never repeats itself, and whose size scatters without a trend, no time of following
+//! tells whether it lasts: swinging of this kind was seen to die out after hundreds of seconds.
 
 use super::attractor::Attractor;
 use super::course::Course;
@@ -12,12 +13,15 @@ use super::maxima::{Cycle, Maxima, Maximum, RUN, WINDOWS};
 use crate::simulation::SimulationError;
 use arclength::control::Control;
 use arclength::integration::IntegrationError;
+use std::f64::consts::TAU;
 
 /// Part of its deviation from the uniform motion by which a motion is pushed.
 const PUSH: f64 = 1e-3;
 /// It has come back when its maxima are so near, in units of the push and the range of the angle, and is gone when so far.
 const BACK: f64 = 0.1;
 const GONE: f64 = 30.0;
+/// Nodes are so many times as far apart while the caster turns right round.
+const COARSER: f64 = 16.0;
 /// The size of an irregular motion is taken in windows of so many natural periods.
 const PERIODS_PER_WINDOW: f64 = 10.0;
 /// Natural periods for which a motion is looked at in passing, and those which it takes to tell whether it is irregular.
@@ -81,7 +85,7 @@ impl<'a> Lasting<'a> {
         control: &Control<'_>,
     ) -> Result<Seen, SimulationError> {
         let piece = target.piece();
-        let spacing = target.spacing();
+        let mut spacing = target.spacing();
         let mut nodes = Vec::new();
         while self.time < until {
             let duration = piece.min(until - self.time);
@@ -95,6 +99,12 @@ impl<'a> Lasting<'a> {
                 }
                 self.maxima.take(self.time, node, PERIODS_PER_WINDOW * target.natural_period);
             }
+            // The maxima of a caster that turns right round tell nothing.
+            let angles = nodes.iter().map(|node| node.angle[0]);
+            let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
+                [low.min(angle), high.max(angle)]
+            });
+            spacing = target.spacing() * if high - low > TAU { COARSER } else { 1.0 };
             // The end itself, not the sum of the pieces, where rounding would leave a rest.
             self.time = if duration < piece { until } else { self.time + duration };
             if self.known.iter().any(|attractor| attractor.is_followed_by(self.maxima.list(), target)) {
@@ -128,7 +138,7 @@ impl<'a> Lasting<'a> {
         let until = PATIENCE * watch.duration();
         match self.follow(until, target, &mut watch, control)? {
             Seen::Ends(fate) => Ok(fate),
-            Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Shimmy),
+            Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Irregular),
             Seen::Swings => Ok(Fate::Undecided),
         }
     }
@@ -185,6 +195,7 @@ fn ended_by(error: SimulationError, watch: &Watch) -> Result<Fate, SimulationErr
         SimulationError::Integration(IntegrationError::TooManySteps { .. }) => {
             Ok(watch.fate_when_cut_short())
         }
+        SimulationError::ModelEnds { .. } => Ok(Fate::ModelEnds),
         other => Err(other),
     }
 }

@@ -31,6 +31,15 @@
 //! the slow manifold leads back to zero. Sliding ends when `|s|` falls to [`VANISHING_SLIP`] and is followed to zero along the straight line
 //! of its limit direction. There the wheel rolls on if `|T*| <= mu_s N`; otherwise it slides on, out along the one
 //! growing limit direction.
+//!
+//! # Whether slip vanishes
+//!
+//! Slip that has become small does not always vanish. Its direction turns to a limit direction to which nearby ones turn, and only if
+//! `lambda < 0` there it gets to zero. Where `|T*| < mu_d N` it always does. Where `mu_d N < |T*| < mu_s N` zero slip is not
+//! attracting: slip that shrinks passes by zero and grows along the one growing direction. There are two exceptions, in which it gets to
+//! zero and the wheel rolls on: motion along one line, as of a block that is thrown straight up a slope and stays, and mobilities so
+//! different that a shrinking direction attracts, `mu_d N e'.B e' > -lambda`, as for `T*` across a caster with
+//! `B_1 > B_2 (1 + |T*|/(mu_d N))`.
 
 mod history;
 pub(crate) mod model;
@@ -73,7 +82,7 @@ const SLIP_RESOLUTION: f64 = 1e-4;
 pub const RESTING_ANGLE: f64 = 1e-9;
 
 /// Part of `M_f` by which rounding may exceed it at rest.
-const RESTING_EXCESS: f64 = 1e-9;
+pub(crate) const RESTING_EXCESS: f64 = 1e-9;
 
 /// Relative tolerance of the integration unless another is set.
 pub const SLIDING_TOLERANCE: f64 = 1e-10;

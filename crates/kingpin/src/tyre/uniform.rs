@@ -28,7 +28,7 @@ const SHORTEST_STEP: f64 = 1e-6;
 const LARGEST_TURN: f64 = 0.2;
 
 /// Free states, filled up with zeros.
-type Padded<T> = [T; STATES];
+pub(super) type Padded<T> = [T; STATES];
 
 /// The vector field at free states and its Jacobian over any scalar, from the parameters as such. Rows behind the free states are those
 /// of the unit matrix.
@@ -44,7 +44,7 @@ fn linearise<T: Scalar>(
     let towing = (v, v * constant(Key::Curvature));
     let variables: [_; STATES] = std::array::from_fn(|index| Dual::variable(free[index], index));
     let state = kind.full_state(&body, towing, &variables);
-    let motion = kind.motion(&body, towing, None, &state);
+    let motion = kind.motion(&body, towing, None, Dual::constant(T::zero()), &state);
     let mut values = [T::zero(); STATES];
     let mut jacobian: [Padded<T>; STATES] =
         std::array::from_fn(|row| std::array::from_fn(|column| T::from(f64::from(u8::from(row == column)))));
@@ -160,7 +160,7 @@ impl Wheel {
                 let rolls_on = self.tyre_state(&found, curvature)[3] > 0.0;
                 if is_near && rolls_on { Ok(found) } else { Err(f64::INFINITY) }
             };
-            match self.newton_with_tyre(&free, curvature).and_then(near) {
+            match self.newton_with_tyre(&free, curvature, None).and_then(near) {
                 Ok(found) => (free, part, step) = (found, next, 2.0 * step),
                 Err(residual) if step < SHORTEST_STEP => {
                     return Err(NoUniformMotion::LostOnTheCircle { curvature: part * target, residual });
@@ -178,15 +178,29 @@ impl Wheel {
         self.tyre_kind().full_state(&body, (v, v * curvature), free)
     }
 
-    /// Newton's method for the uniform motion on a path of a curvature; the error is the residual where it gave up.
-    fn newton_with_tyre(&self, start: &Padded<f64>, curvature: f64) -> Result<Padded<f64>, f64> {
+    /// Newton's method for the uniform motion on a path of a curvature, of a caster that is held at an angle where there is one; the error
+    /// is the residual where it gave up.
+    pub(super) fn newton_with_tyre(
+        &self,
+        start: &Padded<f64>,
+        curvature: f64,
+        held: Option<f64>,
+    ) -> Result<Padded<f64>, f64> {
         let parameter = |key| if key == Key::Curvature { curvature } else { self.get(key) };
         let (v, l) = (self.get(Key::V), self.get(Key::L));
         let scale = self.padded(&[l, l, 1.0, v, v, v / l, l]);
+        let states = self.tyre_kind().king_pin.free();
         let mut free = *start;
         let (mut residual, mut last) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..NEWTON_STEPS {
-            let (values, jacobian) = linearise(self, parameter, &free);
+            let (mut values, mut jacobian) = linearise(self, parameter, &free);
+            if let Some(psi) = held {
+                // In place of the balance of the moments about the king pin.
+                let [angle, yaw] = [2, 5].map(|state| states.iter().position(|free| *free == state));
+                let (Some(angle), Some(yaw)) = (angle, yaw) else { break };
+                values[yaw] = free[angle] - psi;
+                jacobian[yaw] = std::array::from_fn(|column| f64::from(u8::from(column == angle)));
+            }
             residual = largest(&values);
             let Some(step) = solve(jacobian, values) else { break };
             let mut size: f64 = 0.0;
