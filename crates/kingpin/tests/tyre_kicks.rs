@@ -140,8 +140,8 @@ fn the_inside_of_the_interval_of_rests_is_safe() {
 #[test]
 fn shimmy_of_a_brush_is_its_cycle() {
     let gear = wheel(
-        "tyre = \"brush\"\nl = 0.1\nv = 25.0\nr = inf\nm_w = 1.0\nm_c = 1.0\nl_c = 0.05\nJ_wzeta = 0.5\nJ_Cz = 0.48\nk = inf\n\
-         F_Az = -8980.0\nsigma = 0.3\na = 0.1\nC_alpha = 180000.0\nkappa = 270.0\nk_psi = 0.0\nc_psi = 10.0",
+        "tyre = \"brush\"\nl = 0.1\nl_c = 0.05\nv = 25.0\nr = inf\nm_w = 1.0\nm_c = 1.0\nJ_wzeta = 0.9\nJ_Cz = 0.0875\nk = inf\n\
+         k_psi = 1e5\nc_psi = 10.0\nF_Az = -8980.0\nsigma = 0.3\na = 0.1\nC_alpha = 180000.0\nt_p = 0.1\nkappa = 270.0",
     );
     assert_eq!(gear.uniform_motion().unwrap().is_stable(), Some(false));
     let settings = ClassificationSettings { duration: 10.0 };

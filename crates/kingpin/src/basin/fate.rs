@@ -131,6 +131,8 @@ pub(super) struct Target {
     states: Vec<f64>,
     /// Where a wheel with a tyre rests with dry friction about its king pin: the caster has to stick there.
     rests: Option<Rests>,
+    /// That of a caster that sticks, in rad/s.
+    towing_yaw_rate: f64,
     /// Turns differences of the states into speeds in m/s. In rectilinear towing `u` and `V` do not count: near straight
     /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy. On a circle, neither
     /// do they nor `q` where dry friction about the king pin may hold the caster, behind which all of them ring.
@@ -216,6 +218,7 @@ impl Target {
             state: motion.state(),
             states: motion.states(),
             rests: wheel.rests()?,
+            towing_yaw_rate: wheel.towing_yaw_rate(),
             attracts,
             sticks_up_to,
             weights: [longitudinal * frequency, lateral * frequency, reference_speed, longitudinal, length],
@@ -273,12 +276,12 @@ impl Target {
 
     /// Whether the caster sticks, `Omega = omega` to the last bit, at an angle up to a largest one.
     fn sticks(&self, state: &[f64; 5], largest: f64) -> bool {
-        state[4] == self.state[4] && within_a_turn(state[2] - self.state[2]).abs() <= largest
+        state[4] == self.towing_yaw_rate && within_a_turn(state[2] - self.state[2]).abs() <= largest
     }
 
     /// Whether to be near at a state means anything: motions may return, and the caster sticks where it has to for a rest.
     fn may_linger(&self, state: &[f64; 5]) -> bool {
-        self.attracts != Some(false) && (self.rests.is_none() || state[4] == self.state[4])
+        self.attracts != Some(false) && (self.rests.is_none() || state[4] == self.towing_yaw_rate)
     }
 
     /// Whether a state is near the uniform motion in a way that means anything.

@@ -10,6 +10,7 @@ use super::attractor::Attractor;
 use super::course::Course;
 use super::fate::{Fate, PATIENCE, Target, Watch};
 use super::maxima::{Cycle, Maxima, Maximum, RUN, WINDOWS};
+use super::pushed::comes_back;
 use crate::simulation::SimulationError;
 use arclength::control::Control;
 use arclength::integration::IntegrationError;
@@ -114,7 +115,7 @@ impl<'a> Lasting<'a> {
                 && let Some(cycle) = self.maxima.cycle()
             {
                 let patience = watch.duration().max(BRIEF * target.natural_period);
-                if self.comes_back(&cycle, patience, target, control)? {
+                if self.regains(&cycle, patience, target, control)? {
                     self.found = Some(Attractor::new(cycle.maxima, PUSH, target));
                     return Ok(Seen::Ends(Fate::Shimmy));
                 }
@@ -144,41 +145,28 @@ impl<'a> Lasting<'a> {
     }
 
     /// Whether it comes back to the maxima of its cycle, pushed outwards and inwards.
-    fn comes_back(
+    fn regains(
         &self,
         cycle: &Cycle,
         patience: f64,
         target: &Target,
         control: &Control<'_>,
     ) -> Result<bool, SimulationError> {
+        let distance = |maximum: &Maximum| {
+            let nearest = cycle.maxima.iter().map(|of_cycle| (maximum.angle - of_cycle.angle).abs());
+            nearest.fold(f64::INFINITY, f64::min) / (PUSH * cycle.range)
+        };
         for factor in [1.0 + PUSH, 1.0 - PUSH] {
-            let mut course = self.course.pushed(target, factor);
-            let mut maxima = Maxima::default();
-            let mut nodes = Vec::new();
-            let piece = target.piece();
-            let (mut time, mut known) = (0.0, 0);
-            let mut is_back = false;
-            while time < patience && !is_back {
-                let spacing = target.spacing();
-                match course.follow(piece, spacing, &mut nodes, control) {
-                    Ok(()) => {}
-                    Err(SimulationError::Interrupted(interrupted)) => return Err(interrupted.into()),
-                    Err(_) => return Ok(false),
+            let mut known = 0;
+            let verdict = |motion: &[Maximum]| {
+                if motion[known..].iter().any(|maximum| distance(maximum) > GONE) {
+                    return Some(false);
                 }
-                nodes.iter().for_each(|node| maxima.take(time, node, f64::INFINITY));
-                time += piece;
-                let distance = |maximum: &Maximum| {
-                    let nearest = cycle.maxima.iter().map(|of_cycle| (maximum.angle - of_cycle.angle).abs());
-                    nearest.fold(f64::INFINITY, f64::min) / (PUSH * cycle.range)
-                };
-                if maxima.list()[known..].iter().any(|maximum| distance(maximum) > GONE) {
-                    return Ok(false);
-                }
-                known = maxima.list().len();
-                let last = maxima.list().iter().rev().take(RUN);
-                is_back = known >= RUN && last.clone().all(|maximum| distance(maximum) < BACK);
-            }
-            if !is_back {
+                known = motion.len();
+                let last = motion.len().checked_sub(RUN).map(|first| &motion[first..]);
+                last.is_some_and(|last| last.iter().all(|maximum| distance(maximum) < BACK)).then_some(true)
+            };
+            if !comes_back(self.course.pushed(target, factor), patience, target, control, verdict)? {
                 return Ok(false);
             }
         }

@@ -16,6 +16,7 @@ mod kick;
 mod lasting;
 mod map;
 mod maxima;
+mod pushed;
 #[cfg(test)]
 mod tests;
 

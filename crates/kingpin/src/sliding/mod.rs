@@ -35,11 +35,11 @@
 //! # Whether slip vanishes
 //!
 //! Slip that has become small does not always vanish. Its direction turns to a limit direction to which nearby ones turn, and only if
-//! `lambda < 0` there it gets to zero. Where `|T*| < mu_d N` it always does. Where `mu_d N < |T*| < mu_s N` zero slip is not
-//! attracting: slip that shrinks passes by zero and grows along the one growing direction. There are two exceptions, in which it gets to
-//! zero and the wheel rolls on: motion along one line, as of a block that is thrown straight up a slope and stays, and mobilities so
-//! different that a shrinking direction attracts, `mu_d N e'.B e' > -lambda`, as for `T*` across a caster with
-//! `B_1 > B_2 (1 + |T*|/(mu_d N))`.
+//! `lambda < 0` there it gets to zero. Where `|T*| < mu_d N` it always does. Where `mu_d N < |T*| < mu_s N` there is a growing direction, to
+//! which slip turns that passes by zero, however near. Other slip still gets to zero, and the wheel rolls on, where a shrinking
+//! direction attracts, `mu_d N e'.B e' > -lambda`: with `T*` across the caster where `B_1 > B_2 (1 + |T*|/(mu_d N))`, which is so for
+//! most wheels, as they are far more mobile along the caster; were `B` isotropic, only on the line of `T*` itself, as a block that is
+//! thrown straight up a slope stays there.
 
 mod history;
 pub(crate) mod model;
