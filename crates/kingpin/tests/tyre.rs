@@ -13,7 +13,15 @@ use std::ops::ControlFlow;
 
 #[path = "common/tyres.rs"]
 mod tyres;
-use tyres::{inertia_about_king_pin, wheel};
+use tyres::wheel;
+
+fn inertia_about_king_pin(wheel: &Wheel) -> f64 {
+    let get = |key| wheel.get(key);
+    get(Key::JCz)
+        + get(Key::JWzeta)
+        + get(Key::MW) * get(Key::L).powi(2)
+        + get(Key::MC) * get(Key::LC).powi(2)
+}
 
 /// Of the size of the paper's wheel, towed straight.
 fn caster(tyre: Tyre, more: &[(Key, f64)]) -> Wheel {

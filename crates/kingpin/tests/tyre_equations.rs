@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 #[path = "common/tyres.rs"]
 mod tyres;
-use tyres::{inertia_about_king_pin, wheel};
+use tyres::wheel;
 
 /// Force and moment of the tyre, from the formulas of the law.
 fn tyre_forces(wheel: &Wheel, forward: f64, yaw_rate: f64, deflection: f64) -> [f64; 2] {
