@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use kingpin::basin::{ClassificationSettings, ContactModel, Fate};
-use kingpin::{Key, KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_figure::{Color, palette};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -47,9 +47,12 @@ impl Classification {
         self.contact.unwrap_or_default()
     }
 
-    /// The contact where it is said, else what a designer means: a wheel whose load is known may slide.
+    /// The contact where it is said, else what a designer means: a wheel whose load is known may slide, unless it has a tyre, or
+    /// lateral elasticity only, with which that is not computed.
     pub fn contact_by_load(&self, wheel: &Wheel) -> Contact {
-        let loaded = if wheel.get(Key::FAz) == 0.0 { Contact::Rolling } else { Contact::Sliding };
+        let never_slides = wheel.tyre() != Tyre::Rigid || wheel.has_lateral_elasticity_only();
+        let loaded =
+            if wheel.get(Key::FAz) == 0.0 || never_slides { Contact::Rolling } else { Contact::Sliding };
         self.contact.unwrap_or(loaded)
     }
 
@@ -79,6 +82,12 @@ impl Classification {
     pub fn warnings(&self, wheel: &Wheel, contact: Contact) -> Result<Vec<String>, KingpinError> {
         let motion = wheel.uniform_motion()?;
         let mut warnings = Vec::new();
+        if contact == Contact::Rolling && wheel.has_lateral_elasticity_only() && wheel.tyre() == Tyre::Rigid {
+            warnings.push(
+                "with k_u = inf the wheel rolls whatever force that takes: sliding is computed with a finite k_u only"
+                    .to_owned(),
+            );
+        }
         if contact == Contact::Rolling && !motion.rolls() {
             warnings.push(
                 "rolling takes more than the static friction even in uniform motion; it is assumed to roll"
@@ -92,12 +101,30 @@ impl Classification {
                     .to_owned(),
             ),
             Some(_) => {}
-            None if motion.is_stable() == Some(false) => {
+            None if motion.is_stable() == Some(false) && wheel.resting_angles()?.is_none() => {
                 warnings.push("the uniform motion is unstable: see `kingpin stability`".to_owned());
             }
             None => {}
         }
         Ok(warnings)
+    }
+}
+
+/// What happens to the wheel where its equations cease to hold.
+pub(crate) fn end_of_the_model(wheel: &Wheel) -> &'static str {
+    match wheel.tyre() {
+        Tyre::Rigid => "with k_u = inf the caster comes to lie across the towing direction",
+        _ => "the wheel stops rolling forwards (V1 = 0), where the law of the tyre ends",
+    }
+}
+
+/// What the contact of the wheel with the ground is, in words.
+pub(crate) fn contact_in_words(wheel: &Wheel, contact: &str) -> &'static str {
+    match wheel.tyre() {
+        Tyre::Linear => "a linear tyre",
+        Tyre::Brush => "a brush tyre",
+        Tyre::Rigid if contact == Contact::Rolling.model().name() => "ideal rolling",
+        Tyre::Rigid => "rolling and sliding",
     }
 }
 
@@ -126,6 +153,8 @@ pub(crate) fn color(fate: Fate) -> Color {
         Fate::Shimmy => palette::YELLOW,
         Fate::Tumbling => palette::VERMILION,
         Fate::Escape => palette::BLACK,
+        Fate::Irregular => palette::ORANGE,
+        Fate::ModelEnds => palette::PURPLE,
         Fate::Undecided => palette::LIGHT_GREY,
     }
 }

@@ -47,12 +47,23 @@ pub struct Edge {
     pub fails: f64,
     /// Where that one ends; nothing where no uniform motion is left to return to.
     pub fate: Option<NamedFate>,
+    /// Whether it is not known of smaller ones whether they return: with dry friction about the king pin on a circle on which small motions
+    /// grow without it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub smaller_are_undecided: bool,
 }
 
 impl Edge {
-    /// Whether it is unknown what becomes of the motions beyond: then this is no edge, but where the patience ends.
+    /// Whether this is no edge, but where the patience ends: the motions beyond did nothing that can be told, or it is not known of the
+    /// smaller ones whether they return. Beyond an edge motions may swing irregularly to the end, or come to the end of the model.
     pub fn is_undecided(&self) -> bool {
-        !self.is_unstable() && self.fate.is_some_and(|fate| fate.0 == Fate::Undecided)
+        let unknown_beyond = self.fate.is_some_and(|fate| fate.0 == Fate::Undecided);
+        !self.is_unstable() && (unknown_beyond || self.smaller_are_undecided)
+    }
+
+    /// Whether no disturbance was found to return, however small, though the uniform motion is stable.
+    pub fn none_returns(&self) -> bool {
+        self.returns == 0.0 && !self.is_unstable() && !self.smaller_are_undecided
     }
 
     /// Whether nothing returns, since the uniform motion is unstable.
@@ -140,10 +151,11 @@ impl DisturbanceRequest {
         let largest = self.largest(wheel);
         let edge = |largest: f64, control: &Control<'_>| -> Result<Option<Edge>, SimulationError> {
             let kick = SafeKick::find(wheel, model, settings, self.disturbance(), largest, control)?;
-            Ok(kick.map(|SafeKick { returns, fails, fate, .. }| Edge {
-                returns,
-                fails,
-                fate: fate.map(NamedFate),
+            Ok(kick.map(|kick| Edge {
+                returns: kick.returns,
+                fails: kick.fails,
+                fate: kick.fate.map(NamedFate),
+                smaller_are_undecided: kick.smaller_are_undecided,
             }))
         };
         if self.kind == DisturbanceKind::StepSteer {

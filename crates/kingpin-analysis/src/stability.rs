@@ -41,6 +41,7 @@ impl StabilityRequest {
             critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
             swing_factor: wheel.swing_factor(),
             critical_speed_with_friction: wheel.critical_speed_with_friction(),
+            resting_angles: wheel.resting_angles()?,
             resting_deflections: if wheel.get(Key::MF) > 0.0 { wheel.resting_deflections()? } else { None },
             largest_resting_angle_while_sliding: wheel.largest_resting_angle_while_sliding(),
             wheel,
@@ -73,6 +74,9 @@ pub struct StabilityResult {
     /// without, and on a circle with k_u other than k_q.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resting_deflections: Option<[f64; 2]>,
+    /// With a tyre besides, the smallest and largest caster angle in rad at which it rests.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resting_angles: Option<[f64; 2]>,
     /// The largest caster angle in rad that dry friction about the king pin holds while the wheel slides sideways, towed straight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_resting_angle_while_sliding: Option<f64>,
@@ -149,6 +153,14 @@ impl StabilityResult {
                 writeln!(
                     out,
                     "with it the rolling wheel rests with q from {} to {} m",
+                    readable(low),
+                    readable(high)
+                )?;
+            }
+            if let Some([low, high]) = self.resting_angles {
+                writeln!(
+                    out,
+                    "with it the wheel rests with psi from {} to {} rad, and motions near those inside return to rest",
                     readable(low),
                     readable(high)
                 )?;

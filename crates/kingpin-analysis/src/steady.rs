@@ -29,6 +29,7 @@ impl SteadyRequest {
         let mut result = SteadyResult::of(&wheel.uniform_motion()?);
         if wheel.get(Key::MF) > 0.0 {
             result.resting_deflections = wheel.resting_deflections()?;
+            result.resting_angles = wheel.resting_angles()?;
         }
         Ok(result)
     }
@@ -55,6 +56,9 @@ pub struct SteadyResult {
     /// without, and on a circle with k_u other than k_q.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resting_deflections: Option<[f64; 2]>,
+    /// With a tyre and dry friction about the king pin, the smallest and largest caster angle in rad at which it rests.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resting_angles: Option<[f64; 2]>,
 }
 
 impl SteadyResult {
@@ -68,6 +72,7 @@ impl SteadyResult {
             normal_force: contact.normal,
             rolls: contact.rolls(),
             resting_deflections: None,
+            resting_angles: None,
         }
     }
 }
@@ -102,6 +107,15 @@ impl Report for SteadyResult {
         table.write(out)?;
         writeln!(out, "rolls           {rolling}")?;
         let moment = self.wheel.get(Key::MF);
+        if let Some([low, high]) = self.resting_angles {
+            return writeln!(
+                out,
+                "\ndry friction about the king pin, M_f = {} N m, lets it rest with any psi from {} to {} rad",
+                readable(moment),
+                readable(low),
+                readable(high)
+            );
+        }
         match self.resting_deflections {
             Some([low, high]) => writeln!(
                 out,

@@ -13,15 +13,15 @@ const EXAMPLE: &str = "kingpin basin --x psi=-1:1:161 --y Omega=-60:60:121 -s v=
 /// Where motions end, depending on where they start: the basin of attraction of the uniform motion
 ///
 /// Two states of the initial condition vary, the others are those of the uniform motion. A motion ends in the uniform motion,
-/// in shimmy (the caster swings to and fro: the motion repeats itself and comes back after a push, or is irregular with a size that
-/// has no trend), tumbling (it turns right round), escape (the motion grows beyond fifty times the reference speed), or is
-/// undecided. In rectilinear towing only the lateral motion counts: without c_u the longitudinal oscillation rings for ever
+/// in shimmy (the caster swings to and fro: the motion repeats itself and comes back after a push), tumbling (it turns right round),
+/// escape (the motion grows beyond fifty times the reference speed), or is undecided: irregular swinging, the end of the model (with
+/// a tyre V1 = 0, with k_u = inf the caster across), or none of these. In rectilinear towing only the lateral motion counts: without c_u the longitudinal oscillation rings for ever
 /// and is no shimmy. With --out every finished part is kept in PATH.journal until the result is written, so that an interrupted
 /// run can be resumed.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Basin {
-    /// State across (u, q, psi, V, Omega), from A to B at N points
+    /// State across (u, q, psi, V, Omega; with a tyre u, q, psi, V1, V2, Omega, y_t), from A to B at N points
     #[arg(long, value_name = "STATE=A:B:N", default_value_t = BasinRequest::default().x, allow_hyphen_values = true)]
     x: SampledInterval,
 

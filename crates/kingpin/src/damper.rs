@@ -40,6 +40,18 @@ pub struct SmallestDamper {
 }
 
 impl Wheel {
+    /// A damper about the king pin, in N m s/rad, that would take the lateral motion of the rolling wheel about a period to die out: `l` times
+    /// the root of `k_q J`. Where the king pin is rigid sideways the tyre gives way in its place, `C_alpha/l`.
+    pub fn natural_rotational_damping(&self) -> f64 {
+        let body = self.body();
+        let arm = body.caster_length;
+        let stiffness = match body.lateral_stiffness {
+            stiffness if stiffness.is_finite() => stiffness,
+            _ => self.get(Key::CAlpha) / arm,
+        };
+        (stiffness * arm * arm / body.inverse_yaw_inertia).sqrt()
+    }
+
     /// The smallest value of a damping parameter (`c_u`, `c_q` or `c_psi`, the others as they are) with which the uniform motion is
     /// stable at every speed from a thousandth of `up_to` to `up_to`; `None` where no value is found that is enough.
     ///
@@ -131,12 +143,10 @@ impl Search<'_> {
 
     /// A damper about the king pin, in N m s/rad, that would take the lateral motion about a period to die out.
     fn rotational_scale(&self) -> f64 {
-        let body = self.wheel.body();
-        let inertia = body.inverse_yaw_inertia.recip();
         if self.wheel.tyre() == Tyre::Rigid {
-            let arm = body.caster_length;
-            return (body.lateral_stiffness * arm * arm * inertia).sqrt();
+            return self.wheel.natural_rotational_damping();
         }
+        let inertia = self.wheel.body().inverse_yaw_inertia.recip();
         let fastest = self.wheel.with(Key::V, self.up_to).and_then(|wheel| wheel.uniform_motion());
         let eigenvalues = fastest.map(|motion| motion.eigenvalues()).unwrap_or_default();
         let frequency = eigenvalues.iter().map(|eigenvalue| eigenvalue.norm()).fold(0.0, f64::max);

@@ -80,7 +80,7 @@ impl Wheel {
 
     /// The lateral deflections `q` in m of the king pin, from lowest to highest, at which the rolling wheel rests with the caster along
     /// its path: there dry friction takes the moment of the spring, `|k l b + m omega V| <= M_f`. `None` where there is no closed
-    /// form: on a circle with unequal stiffnesses.
+    /// form: on a circle with unequal stiffnesses, and with a tyre, where there are [resting angles](Self::resting_angles).
     ///
     /// Towed straight they are those up to `M_f/(k_q l)`. On a circle the caster rests at the angle of the uniform motion only; with
     /// `q` the speed and `u` vary, `u' = q' = V' = 0`.
@@ -98,6 +98,9 @@ impl Wheel {
         let motion = self.uniform_motion()?;
         let [_, q, psi, ..] = motion.state();
         let omega = self.towing_yaw_rate();
+        if self.tyre() != Tyre::Rigid {
+            return Ok(None);
+        }
         if omega != 0.0 && self.get(Key::KU) != self.get(Key::KQ) {
             return Ok(None);
         }

@@ -33,7 +33,7 @@ impl fmt::Display for Position {
 }
 
 /// What there is of a wheel with a tyre.
-const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters and simulations";
+const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters, simulations and where kicked wheels end";
 
 /// Why a wheel has no uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

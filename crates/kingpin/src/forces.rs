@@ -49,6 +49,8 @@ struct Motion<T> {
     forward: [T; 2],
     /// With a tyre `V2`, `V2'` and `T2`.
     tyre: Option<[T; 3]>,
+    /// Moment of dry friction about the king pin.
+    friction_moment: T,
 }
 
 /// What the forces need of the wheel, at values of the active parameters.
@@ -103,7 +105,8 @@ impl<T: Scalar> ForceParameters<T> {
                 let about_king_pin = self.rotational_damping * turning - self.rotational_stiffness * psi;
                 let moment = self.inertia * yaw_acceleration
                     + self.static_moment * forward * yaw_rate
-                    + about_king_pin;
+                    + about_king_pin
+                    - motion.friction_moment;
                 let across = moment / self.l;
                 ([along, across], centripetal - across)
             }
@@ -133,13 +136,15 @@ impl RollingModel {
 
     /// The forces at a state of the vector field.
     pub(crate) fn forces<T: Scalar>(&self, state: &[T], parameters: &[T]) -> Forces<T> {
-        self.forces_along(&self.force_parameters(parameters), state, parameters)
+        self.forces_along(&self.force_parameters(parameters), T::zero(), state, parameters)
     }
 
-    /// The forces at a state of a motion of which the parameters of the forces are known.
+    /// The forces at a state of a motion of which the parameters of the forces are known, under a moment of dry friction about the king pin
+    /// in N m. Where the king pin is elastic in both directions that makes no difference to the force on it.
     fn forces_along<T: Scalar>(
         &self,
         known: &ForceParameters<T>,
+        friction_moment: T,
         state: &[T],
         parameters: &[T],
     ) -> Forces<T> {
@@ -155,11 +160,12 @@ impl RollingModel {
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [state[3], rates[3]],
                     tyre: None,
+                    friction_moment: zero,
                 })
             }
             Self::Lateral(wheel) => {
                 let mut rates = [zero; 3];
-                let forward = wheel.forward_motion(state, parameters, &mut rates);
+                let forward = wheel.forward_motion(state, parameters, friction_moment, &mut rates);
                 known.forces(&Motion {
                     psi: state[1],
                     yaw_rate: state[2],
@@ -167,11 +173,13 @@ impl RollingModel {
                     king_pin_speeds: [zero, rates[0]],
                     forward,
                     tyre: None,
+                    friction_moment,
                 })
             }
             Self::Tyre(wheel) => {
                 let full = wheel.full_state(state, parameters);
-                let (rates, lateral_force) = wheel.rates_and_lateral_force(state, parameters);
+                let (rates, lateral_force) =
+                    wheel.rates_and_lateral_force(state, parameters, friction_moment);
                 known.forces(&Motion {
                     psi: full[2],
                     yaw_rate: full[5],
@@ -179,6 +187,7 @@ impl RollingModel {
                     king_pin_speeds: [rates[0], rates[1]],
                     forward: [full[3], rates[3]],
                     tyre: Some([full[4], rates[4], lateral_force]),
+                    friction_moment,
                 })
             }
         }
@@ -203,7 +212,7 @@ impl RollingModel {
             friction_max,
             static_limit,
             king_pin_force_max,
-            damper_power: orbit.mean(|state| self.forces_along(&known, state, parameters).damper_power),
+            damper_power: orbit.mean(|state| self.forces_along(&known, 0.0, state, parameters).damper_power),
         }
     }
 
@@ -233,7 +242,7 @@ impl RollingModel {
         let known = self.force_parameters(&parameters);
         // The square is smooth where the force vanishes.
         let squares = orbit.ranges_of(|state| {
-            let forces = self.forces_along(&known, state, &parameters);
+            let forces = self.forces_along(&known, Scalar::zero(), state, &parameters);
             chosen(&forces).map(|[along, across]| along * along + across * across)
         });
         squares.map(|[_, largest]| largest.sqrt())
@@ -287,7 +296,8 @@ pub struct KingPinLoad {
 }
 
 impl Wheel {
-    /// The load of the king pin at [all states](Self::states) of a motion that rolls. Dry friction about the king pin is no damper.
+    /// The load of the king pin at [all states](Self::states) of a motion that rolls, each with the moment of dry friction about the king pin
+    /// in N m, which is no damper.
     ///
     /// # Errors
     /// Those of [`rolling_model`](Self::rolling_model).
@@ -296,11 +306,12 @@ impl Wheel {
     /// Where there are fewer states than the wheel has.
     pub fn king_pin_loads<'a>(
         &self,
-        states: impl IntoIterator<Item = &'a [f64]>,
+        states: impl IntoIterator<Item = (&'a [f64], f64)>,
     ) -> Result<Vec<KingPinLoad>, KingpinError> {
         let model = self.rolling_model(&[])?;
-        let load = |states: &[f64]| {
-            let forces = model.forces(&model.free_state(states), &[]);
+        let known = model.force_parameters(&[]);
+        let load = |(states, friction_moment): (&[f64], f64)| {
+            let forces = model.forces_along(&known, friction_moment, &model.free_state(states), &[]);
             let [along, across] = forces.king_pin;
             KingPinLoad { force: along.hypot(across), damper_power: forces.damper_power }
         };

@@ -37,11 +37,12 @@ struct Kinematics<T> {
     forward_acceleration: T,
 }
 
-/// The equations, once for all scalars.
+/// The equations, once for all scalars, under a moment of dry friction about the king pin.
 #[inline(always)]
 fn right_hand_side<T, C>(
     body: &Body<C>,
     (v, omega): (T, T),
+    friction_moment: T,
     state: &[T],
     derivative: &mut [T],
 ) -> Kinematics<T>
@@ -61,7 +62,8 @@ where
 
     let force_y = -(q * body.lateral_stiffness + q_rate * body.lateral_damping);
     let moving_static_moment = yaw_rate * body.static_moment;
-    let about_king_pin = psi * body.rotational_stiffness + psi_rate * body.rotational_damping;
+    let about_king_pin =
+        psi * body.rotational_stiffness + psi_rate * body.rotational_damping + friction_moment;
     let along = free * body.rolling_mass - moving_static_moment * yaw_rate;
     let moment =
         force_y * body.caster_length / cosine + about_king_pin + (tangent * along) * body.caster_length
@@ -138,16 +140,17 @@ impl Wheel {
     /// The states `(u, q, psi, V, Omega)` of the uniform motion.
     pub(crate) fn lateral_uniform_state(&self) -> Result<[f64; 5], NoUniformMotion> {
         let state = self.lateral_uniform_free_state()?;
-        let (kinematics, _) = self.lateral_motion(&state);
+        let (kinematics, _) = self.lateral_motion(0.0, &state);
         let [q, psi, yaw_rate] = state;
         Ok([0.0, q, psi, kinematics.forward_speed, yaw_rate])
     }
 
-    /// What follows from the constraints at a state `(q, psi, Omega)`, and the vector field.
-    fn lateral_motion(&self, state: &[f64; 3]) -> (Kinematics<f64>, [f64; 3]) {
+    /// What follows from the constraints at a state `(q, psi, Omega)`, and the vector field, under a moment of dry friction about the king
+    /// pin in N m.
+    fn lateral_motion(&self, friction_moment: f64, state: &[f64; 3]) -> (Kinematics<f64>, [f64; 3]) {
         let mut derivative = [0.0; 3];
         let towing = (self.get(Key::V), self.towing_yaw_rate());
-        let kinematics = right_hand_side(&self.body(), towing, state, &mut derivative);
+        let kinematics = right_hand_side(&self.body(), towing, friction_moment, state, &mut derivative);
         (kinematics, derivative)
     }
 
@@ -157,16 +160,21 @@ impl Wheel {
         let state: [Gradient; 3] = std::array::from_fn(|index| Gradient::variable(state[index], index));
         let towing = [self.get(Key::V), self.towing_yaw_rate()].map(Gradient::constant);
         let mut derivative = [Gradient::constant(0.0); 3];
-        right_hand_side(&self.body(), towing.into(), &state, &mut derivative);
+        right_hand_side(&self.body(), towing.into(), Gradient::constant(0.0), &state, &mut derivative);
         (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
     }
 
     /// The force of the ground on the wheel at a state `(q, psi, Omega)`. The longitudinal force on the king pin, which
     /// holds it at `u = 0`, is on the way: `M V' - m Omega^2 = F1`.
     pub(crate) fn lateral_contact_force(&self, state: &[f64; 3]) -> ContactForce {
+        self.lateral_contact_force_under(0.0, state)
+    }
+
+    /// The same under a moment of dry friction about the king pin in N m.
+    pub(crate) fn lateral_contact_force_under(&self, friction_moment: f64, state: &[f64; 3]) -> ContactForce {
         let body = self.body();
         let (Kinematics { forward_speed, forward_acceleration }, [q_rate, _, yaw_acceleration]) =
-            self.lateral_motion(state);
+            self.lateral_motion(friction_moment, state);
         let [q, psi, yaw_rate] = *state;
         let force_y = -body.lateral_stiffness * q - body.lateral_damping * q_rate;
         let force_along = body.rolling_mass * forward_acceleration - body.static_moment * yaw_rate * yaw_rate;
@@ -190,7 +198,13 @@ pub(crate) fn jacobian_over<T: Scalar>(
     let state: [Dual<T, 3>; 3] = std::array::from_fn(|index| Dual::variable(state[index], index));
     let v = constant(Key::V);
     let mut derivative = [Dual::constant(T::zero()); 3];
-    right_hand_side(&body, (v, v * constant(Key::Curvature)), &state, &mut derivative);
+    right_hand_side(
+        &body,
+        (v, v * constant(Key::Curvature)),
+        Dual::constant(T::zero()),
+        &state,
+        &mut derivative,
+    );
     (derivative.map(|component| component.value), derivative.map(|component| component.derivatives))
 }
 
@@ -233,22 +247,24 @@ impl LateralWheel {
 
     /// Forward speed `V` of the wheel in m/s at a state `(q, psi, Omega)`.
     pub fn forward_speed(&self, state: &[f64; 3]) -> f64 {
-        self.wheel().lateral_motion(state).0.forward_speed
+        self.wheel().lateral_motion(0.0, state).0.forward_speed
     }
 
     /// The same at other values of the active keys.
     pub(crate) fn forward_speed_at<T: Scalar>(&self, state: &[T], parameters: &[T]) -> T {
-        self.motion(state, parameters, &mut [T::from(0.0); 3]).forward_speed
+        self.motion(state, parameters, T::zero(), &mut [T::zero(); 3]).forward_speed
     }
 
-    /// The forward speed and its rate of change at other values of the active keys, with the vector field.
+    /// The forward speed and its rate of change at other values of the active keys, with the vector field, under a moment of dry friction
+    /// about the king pin.
     pub(crate) fn forward_motion<T: Scalar>(
         &self,
         state: &[T],
         parameters: &[T],
+        friction_moment: T,
         derivative: &mut [T],
     ) -> [T; 2] {
-        let motion = self.motion(state, parameters, derivative);
+        let motion = self.motion(state, parameters, friction_moment, derivative);
         [motion.forward_speed, motion.forward_acceleration]
     }
 
@@ -258,11 +274,19 @@ impl LateralWheel {
     }
 
     #[inline]
-    fn motion<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) -> Kinematics<T> {
+    fn motion<T: Scalar>(
+        &self,
+        state: &[T],
+        parameters: &[T],
+        friction_moment: T,
+        derivative: &mut [T],
+    ) -> Kinematics<T> {
         let towing = self.active.towing(parameters);
         match self.active.fixed_body() {
-            Some(body) => right_hand_side(body, towing, state, derivative),
-            None => right_hand_side(&self.active.body(parameters), towing, state, derivative),
+            Some(body) => right_hand_side(body, towing, friction_moment, state, derivative),
+            None => {
+                right_hand_side(&self.active.body(parameters), towing, friction_moment, state, derivative)
+            }
         }
     }
 }
@@ -282,6 +306,6 @@ impl VectorField for LateralWheel {
 
     #[inline]
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        self.motion(state, parameters, derivative);
+        self.motion(state, parameters, T::zero(), derivative);
     }
 }

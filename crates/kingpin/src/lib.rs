@@ -48,6 +48,7 @@ pub mod rolling_model;
 pub mod shimmy;
 pub mod simulation;
 pub mod sliding;
+mod swinging;
 mod tracing;
 pub mod tyre;
 pub mod uniform_motion;

@@ -155,7 +155,7 @@ impl Wheel {
     ///
     /// # Errors
     /// [`MissingOfTyre`](KingpinError::MissingOfTyre), [`NoFrictionLimit`](KingpinError::NoFrictionLimit),
-    /// [`NoTyre`](KingpinError::NoTyre), [`RigidKingPin`](KingpinError::RigidKingPin), and [`DryFriction`](KingpinError::DryFriction), with
+    /// [`NoTyre`](KingpinError::NoTyre), [`RigidKingPin`](KingpinError::RigidKingPin), and, with
     /// which it is not computed.
     pub fn check_tyre(&self) -> Result<(), KingpinError> {
         let tyre = self.tyre();
@@ -168,7 +168,6 @@ impl Wheel {
                 _ => Ok(()),
             };
         }
-        self.check_without_dry_friction("a wheel with a tyre", "set M_f = 0, or tyre = rigid")?;
         let missing = [Key::Sigma, Key::CAlpha].into_iter().find(|key| self.get(*key) == key.default_value());
         if let Some(key) = missing {
             return Err(KingpinError::MissingOfTyre { tyre, key });

@@ -7,6 +7,7 @@ use crate::journal::Journal;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Control, SampledInterval};
+use kingpin::Wheel;
 use kingpin::basin::{Axis, BasinMap, Destinations, Fate, Tile};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ pub struct BasinRequest {
     /// Which wheel.
     #[serde(flatten)]
     pub wheel: WheelRequest,
-    /// State across (u, q, psi, V, Omega).
+    /// State across (u, q, psi, V, Omega; with a tyre u, q, psi, V1, V2, Omega, y_t; of those the ones that the wheel can take).
     pub x: SampledInterval,
     /// State upwards.
     pub y: SampledInterval,
@@ -67,8 +68,8 @@ impl BasinRequest {
     /// # Errors
     /// What is wrong with the wheel or a field; no uniform motion.
     pub fn validate(&self) -> Result<BasinAnalysis, Error> {
-        let axes = self.axes()?;
         let wheel = self.wheel.read()?;
+        let axes = self.axes(&wheel)?;
         let settings = self.classification.settings(&wheel)?;
         let contact = self.classification.contact_or_rolling();
         let model = contact.model();
@@ -96,11 +97,12 @@ impl BasinRequest {
         })
     }
 
-    fn axes(&self) -> Result<[Axis; 2], Error> {
+    fn axes(&self, wheel: &Wheel) -> Result<[Axis; 2], Error> {
         self.x.check_count(&["x"])?;
         self.y.check_count(&["y"])?;
-        let axis =
-            |axis: &SampledInterval| Axis::new(&axis.interval.key, axis.interval.start, axis.interval.end);
+        let axis = |axis: &SampledInterval| {
+            Axis::of_wheel(wheel, &axis.interval.key, axis.interval.start, axis.interval.end)
+        };
         let axes = [axis(&self.x)?, axis(&self.y)?];
         if axes[0].name() == axes[1].name() {
             return Err(Error::invalid(

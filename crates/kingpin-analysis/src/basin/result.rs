@@ -1,10 +1,10 @@
 //! Fates of initial conditions as a result.
 
-use crate::classification::{NamedFate, color};
+use crate::classification::{NamedFate, color, contact_in_words, end_of_the_model};
 use crate::description;
 use crate::parameters::parameters_of;
+use crate::states;
 use kingpin::basin::{Axis, Destinations, Fate, Fraction, Tile};
-use kingpin::rolling::STATE_NAMES;
 use kingpin_figure::{
     CategoryMap, Figure, FigureError, Grid, Legend, LegendEntry, Marker, MarkerShape, Markers, Panel,
 };
@@ -18,18 +18,17 @@ const PRINTED: [usize; 2] = [72, 24];
 /// Size in points of the marks of random initial conditions.
 const MARK_SIZE: f64 = 2.6;
 
-/// Units of the states, and their labels on axes.
-const STATES: [(&str, &str); 5] = [
-    ("m", "$u$ (m)"),
-    ("m", "$q$ (m)"),
-    ("rad", "$\\psi$ (rad)"),
-    ("m/s", "$V$ (m/s)"),
-    ("rad/s", "$\\Omega$ (rad/s)"),
+/// Labels of the states on axes.
+const LABELS: [(&str, &str); 8] = [
+    ("u", "$u$ (m)"),
+    ("q", "$q$ (m)"),
+    ("psi", "$\\psi$ (rad)"),
+    ("V", "$V$ (m/s)"),
+    ("V1", "$V_1$ (m/s)"),
+    ("V2", "$V_2$ (m/s)"),
+    ("Omega", "$\\Omega$ (rad/s)"),
+    ("y_t", "$y_t$ (m)"),
 ];
-
-fn unit_and_label(name: &str) -> (&'static str, &'static str) {
-    STATE_NAMES.iter().zip(STATES).find(|(state, _)| **state == name).map_or(("", ""), |(_, texts)| texts)
-}
 
 /// The values of one state, of the columns or rows of a grid or of every member of a sample.
 #[derive(Debug, Serialize)]
@@ -44,11 +43,11 @@ pub struct StateValues {
 
 impl StateValues {
     fn new(axis: &Axis, values: Vec<f64>) -> Self {
-        Self { state: axis.name(), unit: unit_and_label(axis.name()).0, values }
+        Self { state: axis.name(), unit: states::unit(axis.name()), values }
     }
 
     fn label(&self) -> &'static str {
-        unit_and_label(self.state).1
+        LABELS.iter().find(|(state, _)| *state == self.state).map_or("", |(_, label)| label)
     }
 }
 
@@ -67,11 +66,8 @@ impl Starts {
     }
 
     /// A sample.
-    pub(super) fn sample(axes: &[Axis; 2], states: &[[f64; 5]], seed: u64) -> Self {
-        let values = |axis: &Axis| {
-            let place = STATE_NAMES.iter().position(|name| *name == axis.name()).unwrap_or(0);
-            states.iter().map(|state| state[place]).collect()
-        };
+    pub(super) fn sample(axes: &[Axis; 2], states: &[[f64; 7]], seed: u64) -> Self {
+        let values = |axis: &Axis| states.iter().map(|state| axis.value_in(state)).collect();
         Self { x: values(&axes[0]), y: values(&axes[1]), seed: Some(seed) }
     }
 }
@@ -132,7 +128,14 @@ impl BasinResult {
         });
         let [tile] = tile;
         Self {
-            fractions: fractions.collect(),
+            // What cannot be is not listed.
+            fractions: fractions
+                .filter(|fraction| {
+                    fraction.count > 0
+                        || !fraction.fate.0.is_undecided()
+                        || fraction.fate.0 == Fate::Undecided
+                })
+                .collect(),
             ends: [0, 1].map(|index| [axes[index].value(0.0), axes[index].value(1.0)]),
             contact: destinations.model().name(),
             duration: destinations.settings().duration,
@@ -150,7 +153,7 @@ impl BasinResult {
     }
 
     fn description(&self) -> String {
-        let how = if self.contact == "rolling" { "ideal rolling" } else { "rolling and sliding" };
+        let how = contact_in_words(self.destinations.wheel(), self.contact);
         format!("{how} at {}", description::of(self.destinations.wheel(), &[]))
     }
 
@@ -181,6 +184,8 @@ fn symbol(fate: Fate) -> char {
         Fate::Shimmy => 's',
         Fate::Tumbling => 't',
         Fate::Escape => 'e',
+        Fate::Irregular => 'i',
+        Fate::ModelEnds => '|',
         Fate::Undecided => '?',
     }
 }
@@ -228,7 +233,27 @@ impl Report for BasinResult {
                 fraction.interval.map_or_else(|| "".into(), |ends| interval(ends).into()),
             ]);
         }
-        table.write(out)
+        table.write(out)?;
+        let occurs = |fate: Fate| self.fractions.iter().any(|other| other.fate.0 == fate && other.count > 0);
+        if occurs(Fate::Irregular) {
+            writeln!(
+                out,
+                "\nirregular swinging lasted to the end, {} s: whether for ever is undecided",
+                readable(10.0 * self.duration)
+            )?;
+        }
+        if occurs(Fate::ModelEnds) {
+            let why = end_of_the_model(self.destinations.wheel());
+            writeln!(out, "\nend of the model: {why}, and what becomes of the motion is undecided")?;
+        }
+        if self.destinations.attracts().is_none() {
+            writeln!(
+                out,
+                "\non a circle at this speed it is not known whether small motions, which grow without M_f, die out with it: those that stay \
+                 near the uniform motion are undecided"
+            )?;
+        }
+        Ok(())
     }
 
     fn columns(&self) -> Columns {

@@ -6,7 +6,7 @@ use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
-use kingpin::{Key, KingpinError, Tyre, Wheel};
+use kingpin::{Key, KingpinError, Wheel};
 use serde::Serialize;
 use std::fmt;
 
@@ -32,7 +32,8 @@ pub struct KickedWheels {
     pub kicks: usize,
     /// Number of those that returned to the uniform motion.
     pub returned: usize,
-    /// Number of those of which it is undecided where they end, as where the longitudinal motion rings for long.
+    /// Number of those of which it is undecided where they end, as where the longitudinal motion rings for long, or where
+    /// the equations cease to hold.
     pub undecided: usize,
     /// Where others ended.
     pub ends: Vec<NamedFate>,
@@ -59,8 +60,8 @@ impl fmt::Display for KickedWheels {
     }
 }
 
-/// Kicks a wheel with a damper, and with stronger ones until no kick ends elsewhere than in the uniform motion. Nothing where there are no motions to kick: a tyre, or
-/// lateral elasticity only.
+/// Kicks a wheel with a damper, and with stronger ones until no kick ends elsewhere than in the uniform motion. Nothing where no
+/// damper is allowed.
 ///
 /// # Errors
 /// A motion that cannot be followed, [`Error::Stopped`].
@@ -70,9 +71,6 @@ pub(super) fn kick(
     [damping, up_to]: [f64; 2],
     control: &Control<'_>,
 ) -> Result<Option<KickedWheels>, Error> {
-    if wheel.tyre() != Tyre::Rigid || wheel.get(Key::KU).is_infinite() {
-        return Ok(None);
-    }
     let mut first = None;
     for raise in 0..RAISES {
         let damper = STRONGER * damping * FACTOR.powi(raise as i32);
@@ -91,8 +89,10 @@ pub(super) fn kick(
             }
         }
         let returned = fates.iter().filter(|fate| **fate == Fate::UniformMotion).count();
-        let undecided = fates.iter().filter(|fate| **fate == Fate::Undecided).count();
-        let is_lost = |fate: &Fate| !matches!(fate, Fate::UniformMotion | Fate::Undecided);
+        // A wheel that swings on irregularly for so long is no better than one that shimmies.
+        let is_undecided = |fate: &Fate| matches!(fate, Fate::Undecided | Fate::ModelEnds);
+        let undecided = fates.iter().filter(|fate| is_undecided(fate)).count();
+        let is_lost = |fate: &Fate| *fate != Fate::UniformMotion && !is_undecided(fate);
         let mut ends: Vec<Fate> = fates.iter().copied().filter(is_lost).collect();
         ends.sort();
         ends.dedup();
@@ -117,7 +117,7 @@ fn fates_at(wheel: &Wheel, control: &Control<'_>) -> Result<Vec<Fate>, Error> {
     let duration = PERIODS * natural_period(wheel);
     let destinations = Destinations::new(wheel, model, ClassificationSettings { duration })?;
     let blow = wheel.get(Key::V) * wheel.mass();
-    let [_, turn] = wheel.velocity_change(blow, ContactModel::Rolling);
+    let [_, turn] = wheel.velocity_change(blow, ContactModel::Rolling)?.map(f64::abs);
     let yaw = wheel.towing_yaw_rate();
     let axes =
         [Axis::new("psi", -LARGEST_ANGLE, LARGEST_ANGLE)?, Axis::new("Omega", yaw - turn, yaw + turn)?];

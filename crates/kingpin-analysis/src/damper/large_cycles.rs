@@ -101,12 +101,8 @@ impl LastCycle {
 
 /// A damper that would take the lateral motion about a period to die out.
 fn natural_damper(wheel: &Wheel, key: Key) -> f64 {
-    let [arm, stiffness] = [Key::L, Key::KQ].map(|key| wheel.get(key));
-    let centre = arm - wheel.get(Key::LC);
-    let inertia = wheel.get(Key::JCz) + wheel.get(Key::JWzeta) + wheel.get(Key::MC) * centre * centre;
-    let stiffness = if stiffness.is_finite() { stiffness } else { wheel.get(Key::CAlpha) / arm };
-    let rotational = (stiffness * arm * arm * inertia).sqrt();
-    if key == Key::CPsi { rotational } else { rotational / (arm * arm) }
+    let rotational = wheel.natural_rotational_damping();
+    if key == Key::CPsi { rotational } else { rotational / wheel.get(Key::L).powi(2) }
 }
 
 struct Search<'a> {

@@ -178,8 +178,9 @@ impl WithoutCycles {
         }
         write!(
             out,
-            "  {} branches of cycles and {} curves of folds were followed",
-            self.branches, self.curves
+            "  {} of cycles and {} of folds were followed",
+            counted(self.branches, "branch", "branches"),
+            counted(self.curves, "curve", "curves")
         )?;
         if let Some(kicked) = &self.kicked {
             write!(out, "; {kicked}")?;
@@ -280,4 +281,9 @@ impl Report for DamperResult {
             .numbers("c_psi", self.front.c_psi.iter().copied())
             .unit("N m s/rad")
     }
+}
+
+/// A number of things, in words for one of them and for several.
+fn counted(number: usize, one: &str, several: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { several })
 }

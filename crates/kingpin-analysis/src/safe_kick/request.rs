@@ -95,6 +95,8 @@ impl SafeKickAnalysis {
             false => None,
         };
         let smallest = edges.iter().copied().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
+        // Where nothing returns there are no two sides.
+        let smallest = smallest.filter(|edge| !edge.is_unstable());
         let motions = match smallest {
             Some(edge) => Some(self.motions(&self.wheel, &edge, self.settings.duration, control)?),
             None => None,

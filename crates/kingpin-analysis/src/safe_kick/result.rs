@@ -1,11 +1,12 @@
 //! The edges of what the wheel returns from as a result, with the motions on both sides of the nearer one.
 
+use crate::classification::{contact_in_words, end_of_the_model};
 use crate::description;
 use crate::disturbance::{Edge, reached};
 use crate::margin::Found;
 use crate::parameters::parameters_of;
-use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, SafeKick};
-use kingpin::{Key, Wheel};
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, Fate, SafeKick};
+use kingpin::{Key, Tyre, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::history::drawn;
 use kingpin_report::numbers::{readable, significant};
@@ -39,14 +40,20 @@ pub struct DisturbedMotionResult {
     /// Speed of the rim in m/s.
     #[serde(rename = "W", skip_serializing_if = "Option::is_none")]
     pub rim_speed: Option<Vec<f64>>,
-    /// Speed of the contact point over the ground.
-    pub slip: Vec<f64>,
+    /// Lateral deflection of the tyre in m, where there is one.
+    #[serde(rename = "y_t", skip_serializing_if = "Option::is_none")]
+    pub deflection: Option<Vec<f64>>,
+    /// Speed of the contact point over the ground, where there is no tyre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slip: Option<Vec<f64>>,
 }
 
 impl DisturbedMotionResult {
-    fn new(magnitude: f64, motion: DisturbedMotion, model: ContactModel) -> Self {
+    fn new(magnitude: f64, motion: DisturbedMotion, model: ContactModel, tyre: Tyre) -> Self {
         let state = |index: usize| motion.states.iter().map(|state| state[index]).collect();
         let slides = model == ContactModel::Sliding;
+        let has_tyre = tyre != Tyre::Rigid;
+        let slip = || motion.states.iter().map(|state| (state[3] - state[6]).hypot(state[4])).collect();
         Self {
             magnitude,
             u: state(0),
@@ -54,9 +61,10 @@ impl DisturbedMotionResult {
             psi: state(2),
             forward_speed: state(3),
             yaw_rate: state(5),
-            lateral_speed: slides.then(|| state(4)),
+            lateral_speed: (slides || has_tyre).then(|| state(4)),
             rim_speed: slides.then(|| state(6)),
-            slip: motion.states.iter().map(|state| (state[3] - state[6]).hypot(state[4])).collect(),
+            deflection: has_tyre.then(|| state(6)),
+            slip: (!has_tyre).then(slip),
             t: motion.times,
         }
     }
@@ -127,8 +135,8 @@ impl SafeKickResult {
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let (returns, fails) = match (smallest, motions) {
             (Some(edge), Some([returns, fails])) => (
-                Some(DisturbedMotionResult::new(edge.returns, returns, model)),
-                Some(DisturbedMotionResult::new(edge.fails, fails, model)),
+                Some(DisturbedMotionResult::new(edge.returns, returns, model, wheel.tyre())),
+                Some(DisturbedMotionResult::new(edge.fails, fails, model, wheel.tyre())),
             ),
             _ => (None, None),
         };
@@ -168,7 +176,7 @@ impl SafeKickResult {
     }
 
     fn description(&self) -> String {
-        let how = if self.contact == "rolling" { "ideal rolling" } else { "rolling and sliding" };
+        let how = contact_in_words(&self.wheel, self.contact);
         format!("{how} at {}", description::of(&self.wheel, self.replaced()))
     }
 }
@@ -191,8 +199,12 @@ impl SafeKickResult {
             match edge {
                 Some(edge) => table.row([
                     direction.into(),
-                    edge.returns.into(),
-                    if edge.is_undecided() { "undecided".into() } else { edge.fails.into() },
+                    if edge.smaller_are_undecided { "undecided".into() } else { edge.returns.into() },
+                    if edge.is_undecided() && !edge.smaller_are_undecided {
+                        "undecided".into()
+                    } else {
+                        edge.fails.into()
+                    },
                     edge.ending().into(),
                 ]),
                 None => table.row([
@@ -261,7 +273,36 @@ impl Report for SafeKickResult {
                 "\nthe smallest that does not return, for the same wheel: kingpin simulate {replay}"
             )?;
         }
-        if [self.positive, self.negative].into_iter().flatten().any(|edge| edge.is_undecided()) {
+        let edges = || [self.positive, self.negative].into_iter().flatten();
+        if edges().any(|edge| edge.none_returns()) {
+            writeln!(
+                out,
+                "\nfrom where 0 returns none does, however small: down to a billionth of the largest magnitude none was found to"
+            )?;
+        }
+        let ends_in = |fate: Fate| edges().any(|edge| edge.fate.is_some_and(|ending| ending.0 == fate));
+        if ends_in(Fate::Irregular) {
+            writeln!(
+                out,
+                "\nirregular swinging lasted to the end, ten times {} s: whether for ever is undecided",
+                readable(self.duration)
+            )?;
+        }
+        if ends_in(Fate::ModelEnds) {
+            writeln!(
+                out,
+                "\nend of the model: {}, and what becomes of the motion is undecided",
+                end_of_the_model(&self.wheel)
+            )?;
+        }
+        if edges().any(|edge| edge.smaller_are_undecided) {
+            writeln!(
+                out,
+                "\nundecided: on a circle at this speed it is not known whether small motions, which grow without M_f, die out with it; \
+                 from {} {unit} on a motion was found that ends elsewhere",
+                readable(edges().map(|edge| edge.fails.abs()).fold(f64::INFINITY, f64::min))
+            )?;
+        } else if edges().any(|edge| edge.is_undecided()) {
             writeln!(
                 out,
                 "\nundecided: beyond what returned the motion neither returns nor settles in ten times {} s; a longer \
@@ -289,12 +330,13 @@ impl Report for SafeKickResult {
         let sides =
             motions.iter().flat_map(|(side, motion)| motion.t.iter().map(|_| Some((*side).to_owned())));
         let magnitudes = motions.iter().flat_map(|(_, motion)| motion.t.iter().map(|_| motion.magnitude));
-        let optional =
-            |columns: Columns, name: &str, values: fn(&DisturbedMotionResult) -> &Option<Vec<f64>>| {
-                let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
-                let values: Vec<f64> = present.flatten().copied().collect();
-                if values.is_empty() { columns } else { columns.numbers(name, values).unit("m/s") }
-            };
+        let optional = |columns: Columns,
+                        (name, unit): (&str, &str),
+                        values: fn(&DisturbedMotionResult) -> &Option<Vec<f64>>| {
+            let present = motions.iter().filter_map(|(_, motion)| values(motion).as_ref());
+            let values: Vec<f64> = present.flatten().copied().collect();
+            if values.is_empty() { columns } else { columns.numbers(name, values).unit(unit) }
+        };
         let columns = Columns::new()
             .texts("side", sides)
             .numbers("magnitude", magnitudes)
@@ -311,9 +353,10 @@ impl Report for SafeKickResult {
             .unit("m/s")
             .numbers("Omega", numbers(|motion| &motion.yaw_rate))
             .unit("rad/s");
-        let columns = optional(columns, "V2", |motion| &motion.lateral_speed);
-        let columns = optional(columns, "W", |motion| &motion.rim_speed);
-        columns.numbers("slip", numbers(|motion| &motion.slip)).unit("m/s")
+        let columns = optional(columns, ("V2", "m/s"), |motion| &motion.lateral_speed);
+        let columns = optional(columns, ("W", "m/s"), |motion| &motion.rim_speed);
+        let columns = optional(columns, ("y_t", "m"), |motion| &motion.deflection);
+        optional(columns, ("slip", "m/s"), |motion| &motion.slip)
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

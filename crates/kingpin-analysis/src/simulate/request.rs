@@ -81,15 +81,6 @@ impl SimulateRequest {
             let allowed = "finite, in N s; negative from the other side";
             return Err(Error::invalid(&["blow"], self.blow.to_string(), "no blow", allowed));
         }
-        if self.blow != 0.0 && wheel.has_lateral_elasticity_only() {
-            let allowed = "with k_u = inf: `--perturb Omega=` in its place, or a finite k_u";
-            return Err(Error::invalid(
-                &["blow"],
-                self.blow.to_string(),
-                "with lateral elasticity only a blow goes to the rigid support too",
-                allowed,
-            ));
-        }
         Ok(SimulateAnalysis {
             wheel,
             duration: self.duration,
@@ -112,9 +103,9 @@ impl SimulateAnalysis {
         let mut perturbations: Vec<(&str, f64)> =
             self.perturb.0.iter().map(|(name, change)| (name.as_str(), *change)).collect();
         if self.blow != 0.0 {
-            let [lateral, yaw] = wheel.velocity_change(self.blow, self.contact.model());
+            let [lateral, yaw] = wheel.velocity_change(self.blow, self.contact.model())?;
             perturbations.push(("Omega", yaw));
-            if lateral != 0.0 {
+            if wheel.free_states().contains(&"V2") || self.contact == Contact::Sliding {
                 perturbations.push(("V2", lateral));
             }
         }

@@ -69,7 +69,8 @@ impl RollingHistory {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
         let dry = wheel.get(Key::MF) > 0.0;
-        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]))?;
+        let moments = history.friction_moment.iter().copied().chain(std::iter::repeat(0.0));
+        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
         let friction_force = history.friction_force();
         Ok(Self {
             wheel,

@@ -1,11 +1,12 @@
 //! Time histories of a wheel with a tyre as a result.
 
 use super::loads::{largest_ratio, loads};
+use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
 use crate::states;
 use kingpin::tyre::{TYRE_STATE_NAMES, TyreHistory};
-use kingpin::{ContactForce, KingpinError, Tyre, Wheel};
+use kingpin::{ContactForce, Key, KingpinError, Tyre, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, extremes, summary};
 use kingpin_report::numbers::readable;
@@ -60,6 +61,18 @@ pub struct TyreHistoryResult {
     pub king_pin_force: Vec<f64>,
     /// What the dampers take in W, at every time.
     pub damper_power: Vec<f64>,
+    /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub king_pin: Option<Vec<&'static str>>,
+    /// Moment of dry friction about the king pin in N m, at every time, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction_moment: Option<Vec<f64>>,
+    /// Work in J that it took, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_work: Option<f64>,
+    /// The stretches of time in which the caster only swings or only sticks, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub phases: Vec<Phase>,
 }
 
 impl TyreHistoryResult {
@@ -69,7 +82,10 @@ impl TyreHistoryResult {
     /// Those of [`Wheel::king_pin_loads`].
     pub(super) fn new(wheel: Wheel, duration: f64, history: TyreHistory) -> Result<Self, KingpinError> {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
-        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]))?;
+        let moments = history.friction_moment.iter().copied().chain(std::iter::repeat(0.0));
+        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
+        let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
+        let dry = wheel.get(Key::MF) > 0.0;
         let friction_force: Vec<f64> = history.contact_forces.iter().map(ContactForce::friction).collect();
         Ok(Self {
             wheel,
@@ -88,6 +104,10 @@ impl TyreHistoryResult {
             deflection: state(6),
             friction_force,
             normal_force: history.contact_forces.iter().map(|force| force.normal).collect(),
+            king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
+            friction_moment: dry.then(|| history.friction_moment.clone()),
+            dry_friction_work: dry.then_some(history.dry_friction_work),
+            phases: Phase::list(&wheel, &history.phases),
             t: history.times,
         })
     }
@@ -152,6 +172,7 @@ impl Report for TyreHistoryResult {
         if let Some(time) = self.stopped_at {
             writeln!(out, "the wheel stops rolling forwards at {} s: undecided from there", readable(time))?;
         }
+        Phase::tell_swings(&self.phases, self.psi.last().copied(), self.dry_friction_work, out)?;
         match self.friction_exceeded_at {
             Some(time) => {
                 writeln!(out, "the force exceeds the static friction first at {} s", readable(time))
@@ -171,7 +192,8 @@ impl Report for TyreHistoryResult {
             .unit("N")
             .numbers("normal_force", self.normal_force.iter().copied())
             .unit("N");
-        loads(columns, &self.king_pin_force, &self.damper_power)
+        let columns = loads(columns, &self.king_pin_force, &self.damper_power);
+        phase::columns(columns, self.friction_moment.as_deref(), self.king_pin.as_deref())
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
@@ -187,7 +209,7 @@ impl Report for TyreHistoryResult {
             }
             panel
         };
-        let limit = self.wheel.get(kingpin::Key::MuS) * self.wheel.normal_force();
+        let limit = self.wheel.get(Key::MuS) * self.wheel.normal_force();
         let force = panel(&self.friction_force, "$|T|$ (N)", true).curve(
             Line::new([(0.0, limit), (self.duration, limit)])
                 .dashed()

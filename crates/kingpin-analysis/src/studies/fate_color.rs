@@ -10,6 +10,8 @@ pub(super) fn fate_color(fate: Fate) -> Color {
         Fate::Shimmy => palette::VERMILION,
         Fate::Tumbling => palette::ORANGE.lightened(0.35),
         Fate::Escape => palette::GREY,
+        Fate::Irregular => palette::VERMILION.lightened(0.5),
+        Fate::ModelEnds => palette::BLACK,
         Fate::Undecided => palette::LIGHT_GREY,
     }
 }

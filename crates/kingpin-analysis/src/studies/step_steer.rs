@@ -158,7 +158,7 @@ impl Map {
         let part = |fits: &dyn Fn(Fate) -> bool| {
             rolling.iter().filter(|&&fate| fits(fate)).count() as f64 / rolling.len().max(1) as f64
         };
-        let undecided = |fate: Fate| fate == Fate::Undecided;
+        let undecided = |fate: Fate| fate.is_undecided();
         let fails = |fate: Fate| fate != Fate::UniformMotion && !undecided(fate);
         let name = self.name();
         let mut findings = vec![

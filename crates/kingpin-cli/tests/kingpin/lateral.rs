@@ -156,9 +156,9 @@ fn what_cannot_be_done_says_what_can() {
         }
     };
     let possible = ["k_u = inf", "finite k_u", "cycles and simulations"];
-    fails("basin --x psi=-1:1:3 --y Omega=-1:1:3", &possible);
-    fails("safe-kick --kind release-angle", &possible);
-    fails("margin --along v=3:5:3 --kind release-angle", &possible);
+    fails("basin --x psi=-1:1:3 --y Omega=-1:1:3 --contact sliding", &possible);
+    fails("safe-kick --contact sliding", &possible);
+    fails("basin --x u=-1:1:3 --y Omega=-1:1:3", &["`u`", "q, psi, Omega"]);
     for state in ["u", "V"] {
         fails(
             &format!("simulate --duration 1 --perturb {state}=0.1"),

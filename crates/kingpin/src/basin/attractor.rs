@@ -2,9 +2,10 @@
 //!
 //! How near is near is tried: a motion on the cycle is pushed in every state by a part of its size, both ways, and comes back.
 
-use super::course::{Course, Node};
+use super::course::Course;
 use super::fate::Target;
-use super::maxima::{Maxima, Maximum};
+use super::maxima::Maximum;
+use super::pushed::comes_back;
 use crate::simulation::SimulationError;
 use arclength::control::Control;
 
@@ -93,27 +94,13 @@ impl Attractor {
         for state in 0..5 {
             for sign in [1.0, -1.0] {
                 let amount = sign * part * self.size / target.scale(state);
-                let mut pushed = course.displaced(state, amount);
-                let (mut maxima, mut nodes, mut time) = (Maxima::default(), Vec::<Node>::new(), 0.0);
-                let mut is_back = false;
-                while !is_back {
-                    if time >= patience {
-                        return Ok(false);
-                    }
-                    let piece = target.piece();
-                    match pushed.follow(piece, target.spacing(), &mut nodes, control) {
-                        Ok(()) => {}
-                        Err(SimulationError::Interrupted(interrupted)) => return Err(interrupted.into()),
-                        Err(_) => return Ok(false),
-                    }
-                    nodes.iter().for_each(|node| maxima.take(time, node, f64::INFINITY));
-                    time += piece;
-                    if let Some(deviation) = self.deviation(maxima.list(), target) {
-                        if deviation > FARTHER * part {
-                            return Ok(false);
-                        }
-                        is_back = deviation < NEARER * part;
-                    }
+                let verdict = |motion: &[Maximum]| match self.deviation(motion, target)? {
+                    deviation if deviation > FARTHER * part => Some(false),
+                    deviation if deviation < NEARER * part => Some(true),
+                    _ => None,
+                };
+                if !comes_back(course.displaced(state, amount), patience, target, control, verdict)? {
+                    return Ok(false);
                 }
             }
         }

@@ -5,6 +5,7 @@ use crate::rolling::RollingWheel;
 use crate::shimmy::passage::passages;
 use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
 use crate::sliding::{HybridState, SlidingWheel};
+use crate::swinging::{FreeState, Stretch, SwingingWheel};
 use crate::wheel::Wheel;
 use arclength::VectorField;
 use arclength::control::Control;
@@ -27,6 +28,7 @@ pub(super) struct Node {
 pub(super) enum Course<'a> {
     Rolling { field: Box<RollingWheel>, state: [f64; 5] },
     Hybrid { wheel: &'a SlidingWheel, state: HybridState },
+    Swinging { wheel: &'a SwingingWheel, state: FreeState },
 }
 
 impl<'a> Course<'a> {
@@ -38,11 +40,17 @@ impl<'a> Course<'a> {
         Self::Hybrid { wheel, state }
     }
 
+    /// Of a wheel with a tyre, or with lateral elasticity only, from all its states.
+    pub(super) fn swinging(wheel: &'a SwingingWheel, states: &[f64]) -> Self {
+        Self::Swinging { wheel, state: wheel.free_state(states) }
+    }
+
     /// The state `(u, q, psi, V, Omega)`.
     pub(super) fn state(&self) -> [f64; 5] {
         match self {
             Self::Rolling { state, .. } => *state,
             Self::Hybrid { state, .. } => reduced(&state.public()),
+            Self::Swinging { wheel, state } => wheel.reduced(state),
         }
     }
 
@@ -87,6 +95,25 @@ impl<'a> Course<'a> {
                 }
                 *state = end;
             }
+            Self::Swinging { wheel, state } => {
+                let reached = wheel.follow(&*state, duration, &times[1..count], control, |stretch| {
+                    let Stretch { phase, friction_moment, initial, solution } = stretch;
+                    let mut add = |time: f64, free: &[f64]| {
+                        let angle = wheel.angle(friction_moment, free);
+                        nodes.push(Node { time, angle, state: wheel.reduced(free) });
+                    };
+                    add(phase.start, initial);
+                    let inside = solution.samples();
+                    inside
+                        .filter(|(time, _)| phase.start < *time && *time < phase.end)
+                        .for_each(|(time, free)| add(time, free));
+                    add(phase.end, &solution.state);
+                })?;
+                if let Some(time) = reached.border {
+                    return Err(SimulationError::ModelEnds { time, what: wheel.at_the_border() });
+                }
+                *state = reached.state;
+            }
         }
         Ok(())
     }
@@ -106,6 +133,13 @@ impl<'a> Course<'a> {
                 let centre = [u, q, turned(state.state[2]), speed, 0.0, yaw, 0.0];
                 state.state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
             }
+            Self::Swinging { wheel, state } => {
+                let mut centre = wheel.free_state(target.states());
+                if let Some(place) = wheel.position(2) {
+                    centre[place] = turned(state[place]);
+                }
+                state.iter_mut().zip(centre).for_each(|(value, centre)| stretch(value, centre));
+            }
         }
         pushed
     }
@@ -119,6 +153,12 @@ impl Course<'_> {
             Self::Rolling { state: states, .. } => states[state] += amount,
             Self::Hybrid { state: present, .. } => {
                 present.state[if state == 4 { 5 } else { state }] += amount
+            }
+            // A state that is not free stays as it follows.
+            Self::Swinging { wheel, state: free } => {
+                if let Some(place) = wheel.place_of(state) {
+                    free[place] += amount;
+                }
             }
         }
         displaced

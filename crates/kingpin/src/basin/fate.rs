@@ -1,8 +1,9 @@
 //! What becomes of a motion.
 
 use super::contact_model::ContactModel;
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::simulation::SimulationError;
+use crate::tyre::Rests;
 use crate::wheel::Wheel;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -11,6 +12,8 @@ use std::ops::ControlFlow;
 const NEAR: f64 = 0.02;
 /// ... for this many natural periods of the springs.
 const PERIODS_NEAR: f64 = 3.0;
+/// Part of the duration for which a motion has to be near where it is not known whether small ones die out; then it is undecided.
+const LINGERING: f64 = 0.25;
 /// A motion has escaped when it is this many reference speeds away from the uniform motion.
 const FAR: f64 = 50.0;
 /// A motion that turns right round is given up for tumbling at the end of the duration; one that swings to and fro then is
@@ -36,20 +39,33 @@ pub enum Fate {
     /// It returns to the uniform motion.
     UniformMotion,
     /// The caster swings to and fro for ever: the motion repeats itself to a millionth of its size and, pushed a thousandth
-    /// outwards or inwards, comes back to a tenth of that; or it is irregular and its size has no trend.
+    /// outwards or inwards, comes back to a tenth of that.
     Shimmy,
     /// It lasts to the end of the duration, the caster turning right round.
     Tumbling,
     /// It grows beyond fifty times the reference speed.
     Escape,
+    /// The caster swings to and fro irregularly, with a size that has no trend, to the end of the time it was followed, ten times the
+    /// duration: whether for ever or as a long transient is undecided.
+    Irregular,
+    /// It comes to where the equations cease to hold, `V1 = 0` with a tyre and `psi = +-pi/2` with `k_u = inf`: what becomes of it
+    /// is undecided.
+    ModelEnds,
     /// It did none of these in the time it was followed: ten times the duration, where the caster swings to and fro.
     Undecided,
 }
 
 impl Fate {
     /// All fates.
-    pub const ALL: [Fate; 5] =
-        [Fate::UniformMotion, Fate::Shimmy, Fate::Tumbling, Fate::Escape, Fate::Undecided];
+    pub const ALL: [Fate; 7] = [
+        Fate::UniformMotion,
+        Fate::Shimmy,
+        Fate::Tumbling,
+        Fate::Escape,
+        Fate::Irregular,
+        Fate::ModelEnds,
+        Fate::Undecided,
+    ];
 
     /// Name as it is written in results.
     pub const fn name(self) -> &'static str {
@@ -58,8 +74,15 @@ impl Fate {
             Fate::Shimmy => "shimmy",
             Fate::Tumbling => "tumbling",
             Fate::Escape => "escape",
+            Fate::Irregular => "irregular swinging",
+            Fate::ModelEnds => "end of the model",
             Fate::Undecided => "undecided",
         }
+    }
+
+    /// Whether it is unknown what becomes of the motion in the end.
+    pub const fn is_undecided(self) -> bool {
+        matches!(self, Fate::Irregular | Fate::ModelEnds | Fate::Undecided)
     }
 }
 
@@ -104,6 +127,12 @@ impl ClassificationSettings {
 #[derive(Clone, Debug)]
 pub(super) struct Target {
     state: [f64; 5],
+    /// [All states](Wheel::states) of the uniform motion.
+    states: Vec<f64>,
+    /// Where a wheel with a tyre rests with dry friction about its king pin: the caster has to stick there.
+    rests: Option<Rests>,
+    /// That of a caster that sticks, in rad/s.
+    towing_yaw_rate: f64,
     /// Turns differences of the states into speeds in m/s. In rectilinear towing `u` and `V` do not count: near straight
     /// running the longitudinal oscillation is decoupled, without a damper it rings for ever, and it is no shimmy. On a circle, neither
     /// do they nor `q` where dry friction about the king pin may hold the caster, behind which all of them ring.
@@ -115,11 +144,28 @@ pub(super) struct Target {
     /// Natural frequency of the wheel on its springs in rad/s, and its period in s.
     frequency: f64,
     pub natural_period: f64,
-    /// Whether motions return at all: near an unstable uniform motion they only linger.
-    attracts: bool,
+    /// Whether motions return at all: near an unstable uniform motion they only linger. Nothing where that is not known.
+    attracts: Option<bool>,
     /// Where dry friction alone makes small motions die out, the largest angle in rad at which the caster must come to stick: to be
     /// near means nothing then, since motions that are large beside the friction grow.
     sticks_up_to: Option<f64>,
+}
+
+/// Angular frequency in rad/s with which displacements of the king pin are counted, that of the lateral spring, and the slowest of wheel
+/// and caster. On its tyre the caster turns about the king pin; where that is rigid sideways it is the only frequency.
+fn frequencies(wheel: &Wheel) -> [f64; 2] {
+    let get = |key: Key| wheel.get(key);
+    let spring = (get(Key::KQ) * wheel.body().inverse_rolling_mass).sqrt();
+    if wheel.tyre() == Tyre::Rigid {
+        return [spring; 2];
+    }
+    let inertia = get(Key::JCz)
+        + get(Key::JWzeta)
+        + get(Key::MW) * get(Key::L).powi(2)
+        + get(Key::MC) * get(Key::LC).powi(2);
+    let stiffness = (get(Key::CAlpha) * (get(Key::L) + get(Key::TP))).abs() + get(Key::KPsi);
+    let turning = (stiffness / inertia).sqrt();
+    [if spring.is_finite() { spring } else { turning }, turning.min(spring)]
 }
 
 /// Growth rate of the disturbances on which the fate depends: in rectilinear towing those of the lateral motion.
@@ -134,59 +180,68 @@ fn decisive_growth_rate(wheel: &Wheel) -> Result<f64, SimulationError> {
 
 /// Whether small motions that grow without dry friction about the king pin die out with it, and the largest angle from which they do
 /// once the caster sticks.
-fn returning_angle(wheel: &Wheel, model: ContactModel) -> Result<(bool, Option<f64>), SimulationError> {
+fn returning_angle(wheel: &Wheel, model: ContactModel) -> (Option<bool>, Option<f64>) {
     // On a circle there is no closed form.
-    let Some(factor) = wheel.swing_factor() else {
-        wheel.check_without_dry_friction(
-            "whether small motions die out on a circle, where they grow without it,",
-            "tow it straight (r = inf), lower v, or look at motions with `simulate`",
-        )?;
-        return Ok((false, None));
-    };
+    let Some(factor) = wheel.swing_factor() else { return (None, None) };
     let ground = wheel.get(Key::MuS) * wheel.normal_force() * wheel.get(Key::L);
     if model == ContactModel::Sliding && wheel.get(Key::MF) > ground {
         // The wheel slides before the caster breaks away.
-        return Ok((true, Some(f64::INFINITY)));
+        return (Some(true), Some(f64::INFINITY));
     }
     // However slowly they grow at a larger factor: no simulation would tell.
     let angle = wheel.largest_returning_angle().map(|angle| LINEAR * angle);
-    Ok((factor.abs() < 1.0, angle))
+    (Some(factor.abs() < 1.0), angle)
 }
 
 impl Target {
     pub(super) fn new(wheel: &Wheel, model: ContactModel) -> Result<Self, SimulationError> {
-        let body = wheel.body();
-        let frequency = (wheel.get(Key::KQ) * body.inverse_rolling_mass).sqrt();
-        let length = body.caster_length;
+        let [frequency, slowest] = frequencies(wheel);
+        let length = wheel.get(Key::L);
+        let has_tyre = wheel.tyre() != Tyre::Rigid;
         let reference_speed = wheel.get(Key::V).max(frequency * length);
         let straight = wheel.get(Key::Curvature) == 0.0;
         let dry = wheel.get(Key::MF) > 0.0;
         let longitudinal = if straight || dry { 0.0 } else { 1.0 };
-        let lateral = if dry && !straight { 0.0 } else { 1.0 };
+        let lateral = if dry && !straight && !has_tyre { 0.0 } else { 1.0 };
         let [low, high] = wheel.resting_deflections()?.unwrap_or_default();
         let is_stable = decisive_growth_rate(wheel)? <= NEUTRAL * frequency;
-        let (attracts, sticks_up_to) =
-            if is_stable || !dry { (is_stable, None) } else { returning_angle(wheel, model)? };
+        let (attracts, sticks_up_to) = if dry && has_tyre {
+            // The inside of the interval of rests is safe.
+            (Some(true), None)
+        } else if is_stable || !dry {
+            (Some(is_stable), None)
+        } else {
+            returning_angle(wheel, model)
+        };
+        let motion = wheel.uniform_motion()?;
         Ok(Self {
-            state: wheel.uniform_motion()?.state(),
+            state: motion.state(),
+            states: motion.states(),
+            rests: wheel.rests()?,
+            towing_yaw_rate: wheel.towing_yaw_rate(),
             attracts,
             sticks_up_to,
             weights: [longitudinal * frequency, lateral * frequency, reference_speed, longitudinal, length],
             resting_deflection: 0.5 * (high - low),
             reference_speed,
             frequency,
-            natural_period: TAU / frequency,
+            natural_period: TAU / slowest,
         })
     }
 
-    /// Whether motions return at all.
-    pub(super) fn attracts(&self) -> bool {
+    /// Whether motions return at all; nothing where that is not known.
+    pub(super) fn attracts(&self) -> Option<bool> {
         self.attracts
     }
 
     /// The uniform motion.
     pub(super) fn state(&self) -> &[f64; 5] {
         &self.state
+    }
+
+    /// The uniform motion in [all states](Wheel::states).
+    pub(super) fn states(&self) -> &[f64] {
+        &self.states
     }
 
     /// Distance of two states in units of the reference speed, with every state counted; angles count modulo a turn.
@@ -221,13 +276,28 @@ impl Target {
 
     /// Whether the caster sticks, `Omega = omega` to the last bit, at an angle up to a largest one.
     fn sticks(&self, state: &[f64; 5], largest: f64) -> bool {
-        state[4] == self.state[4] && within_a_turn(state[2] - self.state[2]).abs() <= largest
+        state[4] == self.towing_yaw_rate && within_a_turn(state[2] - self.state[2]).abs() <= largest
+    }
+
+    /// Whether to be near at a state means anything: motions may return, and the caster sticks where it has to for a rest.
+    fn may_linger(&self, state: &[f64; 5]) -> bool {
+        self.attracts != Some(false) && (self.rests.is_none() || state[4] == self.towing_yaw_rate)
+    }
+
+    /// Whether a state is near the uniform motion in a way that means anything.
+    fn is_near(&self, state: &[f64; 5]) -> bool {
+        self.distance(state) < NEAR && self.may_linger(state)
     }
 
     /// Distance from the uniform motion in units of the reference speed; the caster angle counts modulo a turn.
     fn distance(&self, state: &[f64; 5]) -> f64 {
         let mut sum = 0.0;
-        for (i, (&weight, &target)) in self.weights.iter().zip(&self.state).enumerate() {
+        let rest = self.rests.as_ref().map(|rests| {
+            let centre = self.state[2];
+            rests.nearest(centre + within_a_turn(state[2] - centre))
+        });
+        let nearest = rest.as_ref().unwrap_or(&self.state);
+        for (i, (&weight, &target)) in self.weights.iter().zip(nearest).enumerate() {
             let difference = state[i] - target;
             let difference = match i {
                 1 => difference - difference.clamp(-self.resting_deflection, self.resting_deflection),
@@ -264,7 +334,7 @@ impl Watch {
     /// Watches a motion from its initial state.
     pub(super) fn new(target: &Target, settings: &ClassificationSettings, initial: &[f64; 5]) -> Self {
         // Steps can be longer than the time near the uniform motion that is asked for: the start counts.
-        let is_near = target.attracts && target.distance(initial) < NEAR;
+        let is_near = target.is_near(initial);
         Self {
             target: target.clone(),
             duration: settings.duration,
@@ -283,14 +353,19 @@ impl Watch {
         if distance >= FAR || distance.is_nan() {
             return self.decide(Fate::Escape);
         }
-        if distance < NEAR && self.target.attracts {
+        if distance < NEAR && self.target.may_linger(state) {
             let since = *self.near_since.get_or_insert(time);
-            let returns = match self.target.sticks_up_to {
-                None => time - since >= PERIODS_NEAR * self.target.natural_period,
-                Some(largest) => self.target.sticks(state, largest),
+            let lingers = time - since;
+            let decided = match (self.target.attracts, self.target.sticks_up_to) {
+                // Whether it leaves again no closed form tells.
+                (None, _) => (lingers >= LINGERING * self.duration).then_some(Fate::Undecided),
+                (_, None) => {
+                    (lingers >= PERIODS_NEAR * self.target.natural_period).then_some(Fate::UniformMotion)
+                }
+                (_, Some(largest)) => self.target.sticks(state, largest).then_some(Fate::UniformMotion),
             };
-            if returns {
-                return self.decide(Fate::UniformMotion);
+            if let Some(fate) = decided {
+                return self.decide(fate);
             }
         } else {
             self.near_since = None;

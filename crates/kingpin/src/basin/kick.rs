@@ -18,6 +18,8 @@ const SCOUTS: [f64; 2] = [0.5, 1.0];
 const PARTS: [f64; 2] = [0.5, 0.7];
 /// The edge is narrowed down to this part of it.
 const RESOLUTION: f64 = 1e-6;
+/// Where nothing down to this part of the largest magnitude returns, nothing does.
+const SMALLEST: f64 = 1e-9;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
 const SHORTENINGS: usize = 20;
 
@@ -83,6 +85,9 @@ impl Disturbance {
         let mut duration = duration;
         for _ in 0..SHORTENINGS {
             let motion = match model {
+                ContactModel::Rolling if wheel.tyre() != Tyre::Rigid => wheel
+                    .simulate_with_tyre_from(&state, duration, samples, control)
+                    .map(|history| DisturbedMotion { times: history.times, states: history.states }),
                 ContactModel::Rolling => {
                     wheel.simulate_from(&[u, q, psi, speed, yaw], duration, samples, control).map(|history| {
                         let widen = |&[u, q, psi, speed, yaw]: &[f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
@@ -103,23 +108,27 @@ impl Disturbance {
         Ok(DisturbedMotion { times: vec![0.0], states: vec![state] })
     }
 
-    /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W).
+    /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W), with a tyre (u, q, psi, V1, V2, Omega, y_t). Of the states
+    /// those that are not [free](Wheel::free_states) follow from the others.
     ///
     /// # Errors
-    /// A magnitude at which there is no uniform motion, or `k_u = inf`.
+    /// A magnitude at which there is no uniform motion.
     pub fn apply(
         self,
         wheel: &Wheel,
         model: ContactModel,
         magnitude: f64,
     ) -> Result<(Wheel, [f64; 7]), SimulationError> {
-        wheel.check_elastic()?;
-        let rolling = |[u, q, psi, speed, yaw]: [f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
-        let start = |wheel: &Wheel| Ok::<_, SimulationError>(rolling(wheel.uniform_motion()?.state()));
+        let start = |wheel: &Wheel| {
+            let motion = wheel.uniform_motion()?;
+            let [u, q, psi, speed, yaw] = motion.state();
+            let rolling = [u, q, psi, speed, 0.0, yaw, speed];
+            Ok::<_, SimulationError>(motion.tyre_state().unwrap_or(rolling))
+        };
         match self {
             Disturbance::Impulse => {
                 let mut state = start(wheel)?;
-                let [lateral, yaw] = wheel.velocity_change(magnitude, model);
+                let [lateral, yaw] = wheel.velocity_change(magnitude, model)?;
                 state[4] += lateral;
                 state[5] += yaw;
                 Ok((*wheel, state))
@@ -139,21 +148,53 @@ impl Disturbance {
 }
 
 impl Wheel {
-    /// What a sideways blow in N s on the rim of the wheel, `R` ahead of its centre, changes `V2` (m/s) and `Omega` (rad/s) by. In
-    /// ideal rolling the ground takes the sideways momentum; a wheel that may slide, or that has a tyre, moves sideways.
-    pub fn velocity_change(&self, blow: f64, model: ContactModel) -> [f64; 2] {
+    /// What a sideways blow in N s on the rim of the wheel, `R` ahead of its centre, changes `V2` (m/s) and `Omega` (rad/s) of the uniform
+    /// motion by. In ideal rolling the ground takes the sideways momentum, and the support what it is rigid against; a wheel that may
+    /// slide, or that has a tyre, moves sideways as far as its king pin lets it.
+    ///
+    /// # Errors
+    /// No uniform motion.
+    pub fn velocity_change(&self, blow: f64, model: ContactModel) -> Result<[f64; 2], KingpinError> {
         let body = self.body();
         let mass = self.mass();
         // Ahead is along +e1; the yaw rate counts from e2 to e1.
         let moment = blow * self.get(Key::WheelRadius);
+        let motion = self.uniform_motion()?;
+        let (sine, cosine) = motion.psi().sin_cos();
+        let lateral_only = self.has_lateral_elasticity_only();
         if model == ContactModel::Rolling && self.tyre() == Tyre::Rigid {
-            return [0.0, moment * body.inverse_yaw_inertia];
+            if lateral_only {
+                // The forward speed follows the yaw rate, V cos psi = v - omega q - l Omega sin psi.
+                let arm = body.caster_length * sine / cosine;
+                return Ok([0.0, moment / (body.yaw_inertia + body.rolling_mass * arm * arm)]);
+            }
+            return Ok([0.0, moment * body.inverse_yaw_inertia]);
         }
-        let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
-        [
-            (body.yaw_inertia * blow - body.static_moment * moment) / determinant,
-            (mass * moment - body.static_moment * blow) / determinant,
-        ]
+        if !lateral_only && self.get(Key::KQ).is_finite() {
+            let determinant = mass * body.yaw_inertia - body.static_moment.powi(2);
+            return Ok([
+                (body.yaw_inertia * blow - body.static_moment * moment) / determinant,
+                (mass * moment - body.static_moment * blow) / determinant,
+            ]);
+        }
+        // About the king pin, which moves in the direction that is left to it.
+        let length = body.caster_length;
+        let about_king_pin = body.yaw_inertia + (mass * length - 2.0 * body.static_moment) * length;
+        let turned = moment - blow * length;
+        let [along, across] = match (lateral_only, self.get(Key::KQ).is_finite()) {
+            (true, true) => [-sine, cosine],
+            (false, _) => [cosine, sine],
+            (true, false) => {
+                let yaw = turned / about_king_pin;
+                return Ok([-length * yaw, yaw]);
+            }
+        };
+        let moved = along * along * body.rolling_mass + across * across * mass;
+        let coupling = across * (mass * length - body.static_moment);
+        let determinant = moved * about_king_pin - coupling * coupling;
+        let speed = (across * blow * about_king_pin + coupling * turned) / determinant;
+        let yaw = (moved * turned + coupling * across * blow) / determinant;
+        Ok([across * speed - length * yaw, yaw])
     }
 }
 
@@ -162,25 +203,29 @@ impl Wheel {
 pub struct DisturbedMotion {
     /// Times in s.
     pub times: Vec<f64>,
-    /// States (u, q, psi, V1, V2, Omega, W), one for each time.
+    /// States (u, q, psi, V1, V2, Omega, W), with a tyre (u, q, psi, V1, V2, Omega, y_t), one for each time.
     pub states: Vec<[f64; 7]>,
 }
 
 /// The edge of what the wheel returns from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SafeKick {
-    /// Largest magnitude, below the first failure, from which it was seen to return.
+    /// Largest magnitude, below the first failure, from which it was seen to return; 0 where it is not known whether small motions die out
+    /// ([`Destinations::attracts`]), so that smaller ones are undecided.
     pub returns: f64,
     /// Smallest magnitude, next to that, from which it does not; both are 0 where the uniform motion is unstable, and the fate is
-    /// that of a small disturbance.
+    /// that of a small disturbance. Where it is stable and yet nothing down to a billionth of the largest magnitude returns, as where slip
+    /// grows that is however small, `returns` is 0 and this is the smallest that was tried.
     pub fails: f64,
     /// What becomes of it from there. [`Fate::Undecided`] where it did none of the other things in the time that it was
     /// followed: then this is only where the patience ends and no edge. `None` where there is no uniform motion (that rolls)
     /// to return to after a step of the curvature.
     pub fate: Option<Fate>,
+    /// Whether it is not known of smaller magnitudes whether they return: see [`Destinations::attracts`].
+    pub smaller_are_undecided: bool,
     /// The wheel after the disturbance that fails: at the edge its motion lingers where the basin ends.
     pub wheel: Wheel,
-    /// State (u, q, psi, V1, V2, Omega, W) after the disturbance that fails.
+    /// State after the disturbance that fails, as that of [`Disturbance::apply`].
     pub state: [f64; 7],
 }
 
@@ -221,7 +266,7 @@ impl SafeKick {
         let mut destinations = Destinations::new(&undisturbed, model, settings)?;
         let steers = disturbance == Disturbance::StepSteer;
         let attracts = destinations.attracts();
-        if attracts && !steers {
+        if attracts != Some(false) && !steers {
             // The strongest ones show the shimmy that others end in.
             let scouts = SCOUTS.map(|part| Ok(disturbance.apply(wheel, model, part * largest)?.1));
             let scouts = scouts.into_iter().collect::<Result<Vec<_>, SimulationError>>()?;
@@ -230,10 +275,10 @@ impl SafeKick {
         let fate = |magnitude: f64| -> Result<Option<Fate>, SimulationError> {
             let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
             if !steers {
-                return destinations.of_sliding_state(&state, &control.quiet()).map(Some);
+                return destinations.of_disturbed(&state, &control.quiet()).map(Some);
             }
             match Destinations::new(&wheel, model, settings) {
-                Ok(destinations) => destinations.of_sliding_state(&state, &control.quiet()).map(Some),
+                Ok(destinations) => destinations.of_disturbed(&state, &control.quiet()).map(Some),
                 Err(
                     SimulationError::UniformMotionSlides { .. }
                     | SimulationError::Wheel(KingpinError::NoUniformMotion { .. }),
@@ -241,13 +286,24 @@ impl SafeKick {
                 Err(error) => Err(error),
             }
         };
-        if !attracts {
+        if attracts == Some(false) {
             // Nothing returns; a small one tells where motions end.
             let (wheel, state) = disturbance.apply(wheel, model, 0.0)?;
             let beyond = fate(Self::resolution(largest).copysign(largest))?;
-            return Ok(Some(Self { returns: 0.0, fails: 0.0, fate: beyond, wheel, state }));
+            return Ok(Some(Self {
+                returns: 0.0,
+                fails: 0.0,
+                fate: beyond,
+                smaller_are_undecided: false,
+                wheel,
+                state,
+            }));
         }
-        let returned = |&fate: &Option<Fate>| fate == Some(Fate::UniformMotion);
+        // Where nothing is known to return, the first is sought that ends elsewhere.
+        let returned = |&fate: &Option<Fate>| match attracts {
+            Some(_) => fate == Some(Fate::UniformMotion),
+            None => fate.is_some_and(|fate| fate == Fate::UniformMotion || fate.is_undecided()),
+        };
         let scan = |magnitudes: Vec<f64>, control: &Control<'_>| -> Result<_, SimulationError> {
             let progress = control.count(magnitudes.len());
             let fates = magnitudes.par_iter().map(|&magnitude| {
@@ -264,11 +320,16 @@ impl SafeKick {
         };
         let narrow = |(mut returns, mut fails, mut beyond): (f64, f64, Option<Fate>),
                       control: &Control<'_>| {
-            while (fails - returns).abs() > RESOLUTION * fails.abs() {
+            let unresolved = |returns: f64, fails: f64| {
+                (fails - returns).abs() > RESOLUTION * fails.abs() && fails.abs() > SMALLEST * largest.abs()
+            };
+            while unresolved(returns, fails) {
                 let middle = 0.5 * (returns + fails);
-                match fate(middle)? {
-                    Some(Fate::UniformMotion) => returns = middle,
-                    other => (fails, beyond) = (middle, other),
+                let found = fate(middle)?;
+                if returned(&found) {
+                    returns = middle
+                } else {
+                    (fails, beyond) = (middle, found)
                 }
                 control.check()?;
             }
@@ -289,6 +350,14 @@ impl SafeKick {
             (returns, fails, beyond) = narrow(lower, &control.quiet())?;
         }
         let (wheel, state) = disturbance.apply(wheel, model, fails)?;
-        Ok(Some(Self { returns, fails, fate: beyond, wheel, state }))
+        let returns = if attracts.is_some() { returns } else { 0.0 };
+        Ok(Some(Self {
+            returns,
+            fails,
+            fate: beyond,
+            smaller_are_undecided: attracts.is_none(),
+            wheel,
+            state,
+        }))
     }
 }

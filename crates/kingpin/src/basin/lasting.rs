@@ -3,21 +3,26 @@
 //! A motion near an unstable cycle, or one that hardly decays, keeps its amplitude for long, so that a steady amplitude
 //! alone says nothing. Here a motion is shimmy if the maxima of the caster angle repeat themselves (Poincare's return map, seen through
 //! one coordinate) *and* the motion comes back to them after it was pushed, outwards and inwards: from an
-//! unstable cycle it would go away. A motion that never repeats itself is shimmy if its size scatters without a trend.
+//! unstable cycle it would go away. Of a motion that never repeats itself, and whose size scatters without a trend, no time of following
+//! tells whether it lasts: swinging of this kind was seen to die out after hundreds of seconds.
 
 use super::attractor::Attractor;
 use super::course::Course;
 use super::fate::{Fate, PATIENCE, Target, Watch};
 use super::maxima::{Cycle, Maxima, Maximum, RUN, WINDOWS};
+use super::pushed::comes_back;
 use crate::simulation::SimulationError;
 use arclength::control::Control;
 use arclength::integration::IntegrationError;
+use std::f64::consts::TAU;
 
 /// Part of its deviation from the uniform motion by which a motion is pushed.
 const PUSH: f64 = 1e-3;
 /// It has come back when its maxima are so near, in units of the push and the range of the angle, and is gone when so far.
 const BACK: f64 = 0.1;
 const GONE: f64 = 30.0;
+/// Nodes are so many times as far apart while the caster turns right round.
+const COARSER: f64 = 16.0;
 /// The size of an irregular motion is taken in windows of so many natural periods.
 const PERIODS_PER_WINDOW: f64 = 10.0;
 /// Natural periods for which a motion is looked at in passing, and those which it takes to tell whether it is irregular.
@@ -81,7 +86,7 @@ impl<'a> Lasting<'a> {
         control: &Control<'_>,
     ) -> Result<Seen, SimulationError> {
         let piece = target.piece();
-        let spacing = target.spacing();
+        let mut spacing = target.spacing();
         let mut nodes = Vec::new();
         while self.time < until {
             let duration = piece.min(until - self.time);
@@ -95,6 +100,12 @@ impl<'a> Lasting<'a> {
                 }
                 self.maxima.take(self.time, node, PERIODS_PER_WINDOW * target.natural_period);
             }
+            // The maxima of a caster that turns right round tell nothing.
+            let angles = nodes.iter().map(|node| node.angle[0]);
+            let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
+                [low.min(angle), high.max(angle)]
+            });
+            spacing = target.spacing() * if high - low > TAU { COARSER } else { 1.0 };
             // The end itself, not the sum of the pieces, where rounding would leave a rest.
             self.time = if duration < piece { until } else { self.time + duration };
             if self.known.iter().any(|attractor| attractor.is_followed_by(self.maxima.list(), target)) {
@@ -104,7 +115,7 @@ impl<'a> Lasting<'a> {
                 && let Some(cycle) = self.maxima.cycle()
             {
                 let patience = watch.duration().max(BRIEF * target.natural_period);
-                if self.comes_back(&cycle, patience, target, control)? {
+                if self.regains(&cycle, patience, target, control)? {
                     self.found = Some(Attractor::new(cycle.maxima, PUSH, target));
                     return Ok(Seen::Ends(Fate::Shimmy));
                 }
@@ -128,47 +139,34 @@ impl<'a> Lasting<'a> {
         let until = PATIENCE * watch.duration();
         match self.follow(until, target, &mut watch, control)? {
             Seen::Ends(fate) => Ok(fate),
-            Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Shimmy),
+            Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Irregular),
             Seen::Swings => Ok(Fate::Undecided),
         }
     }
 
     /// Whether it comes back to the maxima of its cycle, pushed outwards and inwards.
-    fn comes_back(
+    fn regains(
         &self,
         cycle: &Cycle,
         patience: f64,
         target: &Target,
         control: &Control<'_>,
     ) -> Result<bool, SimulationError> {
+        let distance = |maximum: &Maximum| {
+            let nearest = cycle.maxima.iter().map(|of_cycle| (maximum.angle - of_cycle.angle).abs());
+            nearest.fold(f64::INFINITY, f64::min) / (PUSH * cycle.range)
+        };
         for factor in [1.0 + PUSH, 1.0 - PUSH] {
-            let mut course = self.course.pushed(target, factor);
-            let mut maxima = Maxima::default();
-            let mut nodes = Vec::new();
-            let piece = target.piece();
-            let (mut time, mut known) = (0.0, 0);
-            let mut is_back = false;
-            while time < patience && !is_back {
-                let spacing = target.spacing();
-                match course.follow(piece, spacing, &mut nodes, control) {
-                    Ok(()) => {}
-                    Err(SimulationError::Interrupted(interrupted)) => return Err(interrupted.into()),
-                    Err(_) => return Ok(false),
+            let mut known = 0;
+            let verdict = |motion: &[Maximum]| {
+                if motion[known..].iter().any(|maximum| distance(maximum) > GONE) {
+                    return Some(false);
                 }
-                nodes.iter().for_each(|node| maxima.take(time, node, f64::INFINITY));
-                time += piece;
-                let distance = |maximum: &Maximum| {
-                    let nearest = cycle.maxima.iter().map(|of_cycle| (maximum.angle - of_cycle.angle).abs());
-                    nearest.fold(f64::INFINITY, f64::min) / (PUSH * cycle.range)
-                };
-                if maxima.list()[known..].iter().any(|maximum| distance(maximum) > GONE) {
-                    return Ok(false);
-                }
-                known = maxima.list().len();
-                let last = maxima.list().iter().rev().take(RUN);
-                is_back = known >= RUN && last.clone().all(|maximum| distance(maximum) < BACK);
-            }
-            if !is_back {
+                known = motion.len();
+                let last = motion.len().checked_sub(RUN).map(|first| &motion[first..]);
+                last.is_some_and(|last| last.iter().all(|maximum| distance(maximum) < BACK)).then_some(true)
+            };
+            if !comes_back(self.course.pushed(target, factor), patience, target, control, verdict)? {
                 return Ok(false);
             }
         }
@@ -185,6 +183,7 @@ fn ended_by(error: SimulationError, watch: &Watch) -> Result<Fate, SimulationErr
         SimulationError::Integration(IntegrationError::TooManySteps { .. }) => {
             Ok(watch.fate_when_cut_short())
         }
+        SimulationError::ModelEnds { .. } => Ok(Fate::ModelEnds),
         other => Err(other),
     }
 }

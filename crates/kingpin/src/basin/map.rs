@@ -1,8 +1,10 @@
 //! Fates over grids and random samples of initial states, in tiles.
 
-use super::{ContactModel, Destinations, Fate};
+use super::{Destinations, Fate};
 use crate::rolling::STATE_NAMES;
 use crate::simulation::SimulationError;
+use crate::tyre::TYRE_STATE_NAMES;
+use crate::wheel::Wheel;
 use arclength::control::Control;
 use rayon::prelude::*;
 
@@ -10,37 +12,60 @@ use rayon::prelude::*;
 /// long and a tile that was not finished is lost.
 const ROLLING_TILE: usize = 64;
 const SLIDING_TILE: usize = 4;
+/// Index of the forward speed among the states.
+const FORWARD: usize = 3;
 /// So many of the initial states, from the first to the last, are followed beforehand to become acquainted with shimmy.
 const SCOUTS: usize = 4;
 
 /// A state that is varied between two values; the states that are not varied are those of the uniform motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
+    name: &'static str,
+    /// Its index among `(u, q, psi, V1, V2, Omega, W or y_t)`.
     state: usize,
     from: f64,
     to: f64,
 }
 
 impl Axis {
-    /// The state with this name from one value to another.
+    /// The state with this name, one of `(u, q, psi, V, Omega)`, from one value to another.
     ///
     /// # Errors
     /// An unknown name or a value that is not finite.
     pub fn new(name: &str, from: f64, to: f64) -> Result<Self, SimulationError> {
-        let state = STATE_NAMES.iter().position(|&candidate| candidate == name).ok_or_else(|| {
-            SimulationError::UnknownState { given: name.to_owned(), allowed: STATE_NAMES.join(", ") }
+        Self::among(&STATE_NAMES, name, from, to)
+    }
+
+    /// The same, one of the [states that a wheel can take](Wheel::free_states).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_wheel(wheel: &Wheel, name: &str, from: f64, to: f64) -> Result<Self, SimulationError> {
+        Self::among(wheel.free_states(), name, from, to)
+    }
+
+    fn among(names: &[&'static str], name: &str, from: f64, to: f64) -> Result<Self, SimulationError> {
+        let name = names.iter().copied().find(|&candidate| candidate == name).ok_or_else(|| {
+            SimulationError::UnknownState { given: name.to_owned(), allowed: names.join(", ") }
         })?;
+        // What is not among those of a tyre is the speed without one.
+        let state = TYRE_STATE_NAMES.iter().position(|&candidate| candidate == name).unwrap_or(FORWARD);
         for value in [from, to] {
             if !value.is_finite() {
                 return Err(SimulationError::out_of_range(name, value, "a finite range"));
             }
         }
-        Ok(Self { state, from, to })
+        Ok(Self { name, state, from, to })
     }
 
     /// Name of the state.
     pub fn name(&self) -> &'static str {
-        STATE_NAMES[self.state]
+        self.name
+    }
+
+    /// The value of the state in one of the [initial states](BasinMap::initial_states).
+    pub fn value_in(&self, initial: &[f64; 7]) -> f64 {
+        initial[self.state]
     }
 
     /// Equidistant values from one end to the other.
@@ -99,16 +124,13 @@ pub struct Fraction {
 #[derive(Clone, Debug)]
 pub struct BasinMap<'a> {
     destinations: &'a Destinations,
-    initial: Vec<[f64; 5]>,
+    initial: Vec<[f64; 7]>,
     tile: usize,
 }
 
 impl<'a> BasinMap<'a> {
-    fn new(destinations: &'a Destinations, initial: Vec<[f64; 5]>) -> Self {
-        let tile = match destinations.model() {
-            ContactModel::Rolling => ROLLING_TILE,
-            ContactModel::Sliding => SLIDING_TILE,
-        };
+    fn new(destinations: &'a Destinations, initial: Vec<[f64; 7]>) -> Self {
+        let tile = if destinations.follows_many_at_once() { ROLLING_TILE } else { SLIDING_TILE };
         Self { destinations, initial, tile }
     }
 
@@ -126,14 +148,14 @@ impl<'a> BasinMap<'a> {
                 return Err(SimulationError::out_of_range("number of points", count as f64, "at least 2"));
             }
         }
-        let origin = destinations.wheel().uniform_motion()?.state();
+        let origin = destinations.disturbed_state(&destinations.wheel().uniform_motion()?.state());
         let mut initial = Vec::with_capacity(counts[0] * counts[1]);
         for outer in 0..counts[1] {
             for inner in 0..counts[0] {
                 let mut state = origin;
                 state[axes[0].state] = axes[0].value(fraction(inner, counts[0]));
                 state[axes[1].state] = axes[1].value(fraction(outer, counts[1]));
-                initial.push(state);
+                initial.push(destinations.without_slip(state));
             }
         }
         Ok(Self::new(destinations, initial))
@@ -149,7 +171,7 @@ impl<'a> BasinMap<'a> {
         count: usize,
         seed: u64,
     ) -> Result<Self, SimulationError> {
-        let origin = destinations.wheel().uniform_motion()?.state();
+        let origin = destinations.disturbed_state(&destinations.wheel().uniform_motion()?.state());
         let initial = (0..count)
             .map(|index| {
                 let mut state = origin;
@@ -157,20 +179,20 @@ impl<'a> BasinMap<'a> {
                     let counter = (index * axes.len() + dimension) as u64;
                     state[axis.state] = axis.value(uniform_number(seed, counter));
                 }
-                state
+                destinations.without_slip(state)
             })
             .collect();
         Ok(Self::new(destinations, initial))
     }
 
     /// The states of one tile.
-    pub fn states_of(&self, tile: usize) -> &[[f64; 5]] {
+    pub fn states_of(&self, tile: usize) -> &[[f64; 7]] {
         let last = self.initial.len();
         &self.initial[(tile * self.tile).min(last)..((tile + 1) * self.tile).min(last)]
     }
 
-    /// The initial states, in order.
-    pub fn initial_states(&self) -> &[[f64; 5]] {
+    /// The initial states `(u, q, psi, V1, V2, Omega, W)`, with a tyre `(u, q, psi, V1, V2, Omega, y_t)`, in order.
+    pub fn initial_states(&self) -> &[[f64; 7]] {
         &self.initial
     }
 
@@ -197,10 +219,7 @@ impl<'a> BasinMap<'a> {
             return Ok(Vec::new());
         }
         // The same for every tile, whichever are wanted.
-        let scout = |scout: usize| {
-            let [u, q, psi, speed, yaw] = self.initial[scout * (self.initial.len() - 1) / (SCOUTS - 1)];
-            [u, q, psi, speed, 0.0, yaw, speed]
-        };
+        let scout = |scout: usize| self.initial[scout * (self.initial.len() - 1) / (SCOUTS - 1)];
         let scouts: Vec<[f64; 7]> = (0..SCOUTS).map(scout).collect();
         let destinations = match self.destinations.clone().acquainted(&scouts, &control.quiet()) {
             Err(SimulationError::Interrupted(_)) => return Ok(Vec::new()),
@@ -212,7 +231,7 @@ impl<'a> BasinMap<'a> {
                 return None;
             }
             let first = index * self.tile;
-            let tile = match destinations.of(self.states_of(index), &control.quiet()) {
+            let tile = match destinations.of_all(self.states_of(index), &control.quiet()) {
                 Ok(fates) => Tile { index, first, fates },
                 Err(SimulationError::Interrupted(_)) => return None,
                 Err(error) => return Some(Err(error)),

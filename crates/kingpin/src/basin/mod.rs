@@ -16,6 +16,7 @@ mod kick;
 mod lasting;
 mod map;
 mod maxima;
+mod pushed;
 #[cfg(test)]
 mod tests;
 
@@ -25,9 +26,10 @@ pub use kick::{Disturbance, DisturbedMotion, SafeKick};
 pub use map::{Axis, BasinMap, Fraction, Tile, wilson_interval};
 
 use crate::ensemble::{Ending, Ensemble, Outcome, Progress};
-use crate::parameters::Key;
+use crate::parameters::{Key, Tyre};
 use crate::simulation::SimulationError;
 use crate::sliding::SlidingWheel;
+use crate::swinging::SwingingWheel;
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use attractor::Attractor;
@@ -80,6 +82,8 @@ enum Follower {
     Rolling,
     /// Wheels that may slide, or whose caster swings and sticks.
     Hybrid(Box<SlidingWheel>),
+    /// Wheels with a tyre, or with lateral elasticity only.
+    Swinging(Box<SwingingWheel>),
 }
 
 impl Destinations {
@@ -94,7 +98,6 @@ impl Destinations {
         settings: ClassificationSettings,
     ) -> Result<Self, SimulationError> {
         settings.check()?;
-        wheel.check_elastic()?;
         let motion = wheel.uniform_motion()?;
         if model == ContactModel::Sliding && !motion.rolls() {
             return Err(SimulationError::UniformMotionSlides {
@@ -110,6 +113,9 @@ impl Destinations {
                     .slips(ONSET_SLIP, VANISHING_SLIP)
                     .tolerance(SLIDING_CLASSIFICATION_TOLERANCE),
             )),
+            ContactModel::Rolling if wheel.tyre() != Tyre::Rigid || wheel.has_lateral_elasticity_only() => {
+                Follower::Swinging(Box::new(wheel.swinging(CLASSIFICATION_TOLERANCE)?))
+            }
             ContactModel::Rolling if wheel.get(Key::MF) > 0.0 => {
                 Follower::Hybrid(Box::new(wheel.always_rolling()?.tolerance(CLASSIFICATION_TOLERANCE)))
             }
@@ -132,8 +138,9 @@ impl Destinations {
         self.settings
     }
 
-    /// Whether small motions die out: without dry friction about the king pin by the eigenvalues, with it by the factor of a swing.
-    pub fn attracts(&self) -> bool {
+    /// Whether small motions die out: without dry friction about the king pin by the eigenvalues, with it by the factor of a swing, with a
+    /// tyre besides always. Nothing where that is not known: on a circle, where they grow without dry friction.
+    pub fn attracts(&self) -> Option<bool> {
         self.target.attracts()
     }
 
@@ -142,13 +149,17 @@ impl Destinations {
         self.model
     }
 
-    /// Fates of the motions from states `(u, q, psi, V, Omega)` without slip.
+    /// Fates of the motions from states `(u, q, psi, V, Omega)` without slip; with a tyre the others are those of the uniform motion.
     ///
     /// # Errors
     /// A motion that cannot be followed for another reason than that it grows without bound;
     /// [`SimulationError::Interrupted`].
     pub fn of(&self, initial: &[[f64; 5]], control: &Control<'_>) -> Result<Vec<Fate>, SimulationError> {
         match &self.follower {
+            Follower::Swinging(_) => {
+                let all = |state: &[f64; 5]| self.of_disturbed(&self.disturbed_state(state), control);
+                initial.par_iter().map(all).collect()
+            }
             Follower::Ensemble(ensemble) => self.of_ensemble(ensemble, initial, control),
             Follower::Rolling => {
                 let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?, control);
@@ -163,16 +174,45 @@ impl Destinations {
         }
     }
 
-    /// Fate of a motion from the seven states of the wheel that slides; without sliding only `V1` and `Omega` count.
+    /// The seven states `(u, q, psi, V1, V2, Omega, W)`, with a tyre `(u, q, psi, V1, V2, Omega, y_t)`, of a wheel without slip, with a
+    /// tyre with the lateral speed and the deflection of the uniform motion, from `(u, q, psi, V, Omega)`.
+    pub fn disturbed_state(&self, &[u, q, psi, speed, yaw]: &[f64; 5]) -> [f64; 7] {
+        match *self.target.states() {
+            [_, _, _, _, lateral, _, deflection] => [u, q, psi, speed, lateral, yaw, deflection],
+            _ => [u, q, psi, speed, 0.0, yaw, speed],
+        }
+    }
+
+    /// States `(u, q, psi, V1, V2, Omega, W or y_t)` whose rim has the speed of the wheel where there is no tyre.
+    fn without_slip(&self, mut states: [f64; 7]) -> [f64; 7] {
+        if self.wheel.tyre() == Tyre::Rigid {
+            states[6] = states[3];
+        }
+        states
+    }
+
+    /// Whether many motions are followed side by side.
+    fn follows_many_at_once(&self) -> bool {
+        matches!(self.follower, Follower::Ensemble(_))
+    }
+
+    /// Fates of motions from the states after disturbances.
+    fn of_all(&self, initial: &[[f64; 7]], control: &Control<'_>) -> Result<Vec<Fate>, SimulationError> {
+        if let Follower::Ensemble(ensemble) = &self.follower {
+            let reduced = |&[u, q, psi, speed, _, yaw, _]: &[f64; 7]| [u, q, psi, speed, yaw];
+            return self.of_ensemble(ensemble, &initial.iter().map(reduced).collect::<Vec<_>>(), control);
+        }
+        initial.par_iter().map(|state| self.of_disturbed(state, control)).collect()
+    }
+
+    /// Fate of a motion from the states after a [`Disturbance`]: the seven of the wheel that slides, of which without sliding only `V1`
+    /// and `Omega` count, or those of the wheel with a tyre.
     ///
     /// # Errors
     /// As [`of`](Self::of).
-    pub fn of_sliding_state(
-        &self,
-        initial: &[f64; 7],
-        control: &Control<'_>,
-    ) -> Result<Fate, SimulationError> {
+    pub fn of_disturbed(&self, initial: &[f64; 7], control: &Control<'_>) -> Result<Fate, SimulationError> {
         match &self.follower {
+            Follower::Swinging(wheel) => self.of_course(self.swinging_course(wheel, initial), control),
             Follower::Hybrid(sliding) => {
                 self.of_course(Course::hybrid(sliding, sliding.slipping_state(initial)), control)
             }
@@ -183,7 +223,16 @@ impl Destinations {
         }
     }
 
-    /// The same, acquainted with the shimmy that motions from some states, the seven of the wheel that slides, settle on: others that
+    /// The motion of a wheel with a tyre, or with lateral elasticity only, from the states after a disturbance.
+    fn swinging_course<'a>(&self, wheel: &'a SwingingWheel, initial: &[f64; 7]) -> Course<'a> {
+        let [u, q, psi, speed, _, yaw, _] = *initial;
+        match self.wheel.tyre() {
+            Tyre::Rigid => Course::swinging(wheel, &[u, q, psi, speed, yaw]),
+            _ => Course::swinging(wheel, initial),
+        }
+    }
+
+    /// The same, acquainted with the shimmy that motions from some states after a disturbance settle on: others that
     /// come as near to it as one was pushed from which it came back need not be followed any longer.
     ///
     /// # Errors
@@ -196,6 +245,7 @@ impl Destinations {
             let course = match &self.follower {
                 Follower::Hybrid(sliding) => Course::hybrid(sliding, sliding.slipping_state(state)),
                 Follower::Rolling => Course::rolling(&self.wheel, [u, q, psi, speed, yaw])?,
+                Follower::Swinging(wheel) => self.swinging_course(wheel, state),
                 // Many at once are as fast without.
                 Follower::Ensemble(_) => return Ok(None),
             };
@@ -221,7 +271,9 @@ impl Destinations {
 
     /// One motion by itself.
     fn of_course(&self, course: Course<'_>, control: &Control<'_>) -> Result<Fate, SimulationError> {
-        if !self.attracts() && self.target.separation(&course.state(), self.target.state()) == 0.0 {
+        if self.attracts() != Some(true)
+            && self.target.separation(&course.state(), self.target.state()) == 0.0
+        {
             // Undisturbed, it stays at a uniform motion from which the least disturbance leads away.
             return Ok(Fate::Undecided);
         }

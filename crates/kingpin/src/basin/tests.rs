@@ -76,7 +76,7 @@ fn straight_running_is_judged_by_the_lateral_motion() {
     for impulse in [0.19, 0.191, 0.3, 0.5] {
         let (_, state) = Disturbance::Impulse.apply(&wheel, ContactModel::Rolling, impulse).unwrap();
         assert_eq!(
-            destinations.of_sliding_state(&state, &Control::none()).unwrap(),
+            destinations.of_disturbed(&state, &Control::none()).unwrap(),
             Fate::UniformMotion,
             "{impulse} N s"
         );

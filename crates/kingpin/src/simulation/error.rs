@@ -51,6 +51,15 @@ pub enum SimulationError {
         /// Largest static friction in N.
         available: f64,
     },
+    /// The motion came to where the equations cease to hold: with a tyre the wheel stops rolling forwards, with `k_u = inf` the caster lies
+    /// across.
+    #[error("the model ends after {time} s: {what}")]
+    ModelEnds {
+        /// Time in s after which it came there.
+        time: f64,
+        /// What happens there.
+        what: &'static str,
+    },
     /// The motion could not be followed to its end.
     #[error("the motion cannot be followed: {0}")]
     Integration(#[source] IntegrationError),

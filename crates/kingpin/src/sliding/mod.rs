@@ -31,6 +31,15 @@
 //! the slow manifold leads back to zero. Sliding ends when `|s|` falls to [`VANISHING_SLIP`] and is followed to zero along the straight line
 //! of its limit direction. There the wheel rolls on if `|T*| <= mu_s N`; otherwise it slides on, out along the one
 //! growing limit direction.
+//!
+//! # Whether slip vanishes
+//!
+//! Slip that has become small does not always vanish. Its direction turns to a limit direction to which nearby ones turn, and only if
+//! `lambda < 0` there it gets to zero. Where `|T*| < mu_d N` it always does. Where `mu_d N < |T*| < mu_s N` there is a growing direction, to
+//! which slip turns that passes by zero, however near. Other slip still gets to zero, and the wheel rolls on, where a shrinking
+//! direction attracts, `mu_d N e'.B e' > -lambda`: with `T*` across the caster where `B_1 > B_2 (1 + |T*|/(mu_d N))`, which is so for
+//! most wheels, as they are far more mobile along the caster; were `B` isotropic, only on the line of `T*` itself, as a block that is
+//! thrown straight up a slope stays there.
 
 mod history;
 pub(crate) mod model;
@@ -73,7 +82,7 @@ const SLIP_RESOLUTION: f64 = 1e-4;
 pub const RESTING_ANGLE: f64 = 1e-9;
 
 /// Part of `M_f` by which rounding may exceed it at rest.
-const RESTING_EXCESS: f64 = 1e-9;
+pub(crate) const RESTING_EXCESS: f64 = 1e-9;
 
 /// Relative tolerance of the integration unless another is set.
 pub const SLIDING_TOLERANCE: f64 = 1e-10;

@@ -9,6 +9,7 @@ use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
 use arclength::Scalar;
+use std::f64::consts::TAU;
 
 /// Halvings of the bracket of the secular equation: enough for every bit of a double.
 const BISECTIONS: usize = 200;
@@ -212,6 +213,45 @@ impl<T: Scalar> Equations<T> {
     #[inline]
     pub(crate) fn sliding_reserve(&self, state: &[T]) -> T {
         reserve(self.sliding_friction, self.holding_force(state))
+    }
+
+    /// Rate of the length of slip with a direction, given by its angle from the caster, and the rate at which that turns, times the length:
+    /// where the slip is so small that the holding force does not change.
+    fn small_slip(&self, holding_force: [f64; 2], angle: f64) -> [f64; 2] {
+        let (across, along) = angle.sin_cos();
+        let friction = self.sliding_friction.value();
+        let rate = |i: usize, e: f64| -self.mobility[i].value() * (friction * e + holding_force[i]);
+        let (rate_along, rate_across) = (rate(0, along), rate(1, across));
+        [along * rate_along + across * rate_across, along * rate_across - across * rate_along]
+    }
+
+    /// Whether slip so small that nothing else changes shrinks to nothing. Its direction turns to a limit direction, and it does where that
+    /// one shrinks. Where rolling takes less than the sliding friction they all do; where it takes more, most slip grows again, however
+    /// small it has become.
+    pub(crate) fn slip_vanishes(&self, state: &[T]) -> bool {
+        /// Part of a turn by which the direction is followed, and halvings of the last one.
+        const TURN: f64 = TAU / 720.0;
+        const HALVINGS: usize = 50;
+        let holding_force = self.holding_force(state).map(|force| force.value());
+        let mut angle = state[S2].value().atan2(state[S1].value());
+        let sense = self.small_slip(holding_force, angle)[1].signum();
+        let turns_on = |angle: f64| self.small_slip(holding_force, angle)[1] * sense > 0.0;
+        let mut turned = 0.0;
+        while turned < TAU && turns_on(angle) {
+            let mut step = TURN * sense;
+            if !turns_on(angle + step) {
+                for _ in 0..HALVINGS {
+                    step *= 0.5;
+                    if turns_on(angle + step) {
+                        angle += step;
+                    }
+                }
+                break;
+            }
+            angle += step;
+            turned += TURN;
+        }
+        self.small_slip(holding_force, angle)[0] < 0.0
     }
 
     /// Solves the secular equation for the limit direction of largest growth.

@@ -227,7 +227,7 @@ impl SlidingWheel {
             }
             control.check()?;
             stepper.advance()?;
-            vanished = slip_squared(stepper.state()) < vanishing;
+            vanished = slip_squared(stepper.state()) < vanishing && equations.slip_vanishes(stepper.state());
         };
         if let Some(crossing) = crossings.pop().filter(|_| ended) {
             solution.time = crossing.time;

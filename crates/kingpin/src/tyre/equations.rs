@@ -10,11 +10,11 @@
 //! y_t' = -(V2 + a Omega) - |V1| y_t/sigma
 //! M V1'                                  = (m_w + m_c) V2 Omega + m Omega^2 + F1
 //! (m_w + m_c) (P' + V1 Omega) - n Omega' = F2 + T2
-//! I Omega' - n (P' + V1 Omega)           = -l T2 + M_z - kappa Omega/|V1| - c_psi (Omega - omega) + k_psi psi
+//! I Omega' - n (P' + V1 Omega)           = -l T2 + M_z - kappa Omega/|V1| - c_psi (Omega - omega) + k_psi psi + M_r
 //! ```
 //!
-//! with `n = (m_w + m_c) l - m`, `I = J + n l - m l`, force `T2` and moment `M_z` of the [law](super::law); `F1` and `F2` are the components
-//! of the force on the king pin. In a direction in which the king pin is rigid its acceleration is known and the force is not:
+//! with `n = (m_w + m_c) l - m`, `I = J + n l - m l`, force `T2` and moment `M_z` of the [law](super::law), and the moment `M_r` of dry
+//! friction about the king pin; `F1` and `F2` are the components of the force on the king pin. In a direction in which the king pin is rigid its acceleration is known and the force is not:
 //! there the balance is projected on the other direction.
 
 use super::law::{self, Piece, Stiffness};
@@ -169,14 +169,15 @@ impl Kind {
         }
     }
 
-    /// The equations at all seven states. `piece` is that of the brush law whose field is asked for, the one in which the state is if
-    /// there is none.
+    /// The equations at all seven states, under a moment of dry friction about the king pin. `piece` is that of the brush law whose field
+    /// is asked for, the one in which the state is if there is none.
     #[inline(always)]
     pub(super) fn motion<T, C>(
         self,
         body: &TyreBody<C>,
         (v, omega): (T, T),
         piece: Option<Piece<T>>,
+        friction_moment: T,
         &[u, q, psi, forward, lateral, yaw_rate, deflection]: &[T; 7],
     ) -> Motion<T>
     where
@@ -199,7 +200,8 @@ impl Kind {
         let tread = yaw_rate * body.tread_width / forward.abs();
         let moment = aligning - tread - lateral_force * body.caster_length
             + psi_rate * body.rotational_damping
-            + psi * body.rotational_stiffness;
+            + psi * body.rotational_stiffness
+            + friction_moment;
 
         let force_x = -(u * body.longitudinal_stiffness + rate_x * body.longitudinal_damping);
         let force_y = -(q * body.lateral_stiffness + rate_y * body.lateral_damping);

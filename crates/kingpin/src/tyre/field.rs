@@ -44,9 +44,14 @@ impl Wheel {
     /// The force of the ground on a wheel with a tyre at a state `(u, q, psi, V1, V2, Omega, y_t)`; that along the caster turns the
     /// wheel about its axle.
     pub(crate) fn tyre_contact_force(&self, state: &[f64; 7]) -> ContactForce {
+        self.tyre_contact_force_under(0.0, state)
+    }
+
+    /// The same under a moment of dry friction about the king pin in N m.
+    pub(crate) fn tyre_contact_force_under(&self, friction_moment: f64, state: &[f64; 7]) -> ContactForce {
         let towing = (self.get(Key::V), self.towing_yaw_rate());
         let body = TyreBody::new(|key| self.get(key));
-        let motion = self.tyre_kind().motion(&body, towing, None, state);
+        let motion = self.tyre_kind().motion(&body, towing, None, friction_moment, state);
         let radius = self.get(Key::WheelRadius);
         let normal = self.normal_force();
         ContactForce {
@@ -143,24 +148,30 @@ impl TyreWheel {
         }
     }
 
-    /// The rates of all seven states and the lateral force of the ground at a state of the vector field.
-    pub(crate) fn rates_and_lateral_force<T: Scalar>(&self, free: &[T], parameters: &[T]) -> ([T; 7], T) {
-        let motion = self.motion(free, parameters);
+    /// The rates of all seven states and the lateral force of the ground at a state of the vector field, under a moment of dry friction
+    /// about the king pin.
+    pub(crate) fn rates_and_lateral_force<T: Scalar>(
+        &self,
+        free: &[T],
+        parameters: &[T],
+        friction_moment: T,
+    ) -> ([T; 7], T) {
+        let motion = self.motion(free, parameters, friction_moment);
         (motion.rates, motion.lateral_force)
     }
 
     /// The rates of all seven states and the forces at a state of the vector field, whose parameters may be followed by the cells of
     /// its switch functions.
     #[inline(always)]
-    fn motion<T: Scalar>(&self, free: &[T], parameters: &[T]) -> Motion<T> {
+    fn motion<T: Scalar>(&self, free: &[T], parameters: &[T], friction_moment: T) -> Motion<T> {
         let towing = self.active.towing(parameters);
         let piece = match parameters.get(self.active.keys().len()..) {
             Some(&[sign, held, ..]) => Some(Piece { sign, holds: held.value() > 0.0 }),
             _ => None,
         };
         match &self.fixed {
-            Some(body) => self.motion_of(body, towing, piece, free),
-            None => self.motion_of(&self.body(parameters), towing, piece, free),
+            Some(body) => self.motion_of(body, towing, piece, friction_moment, free),
+            None => self.motion_of(&self.body(parameters), towing, piece, friction_moment, free),
         }
     }
 
@@ -170,6 +181,7 @@ impl TyreWheel {
         body: &TyreBody<C>,
         towing: (T, T),
         piece: Option<Piece<T>>,
+        friction_moment: T,
         free: &[T],
     ) -> Motion<T>
     where
@@ -177,7 +189,7 @@ impl TyreWheel {
         C: Copy,
     {
         let state = self.kind.full_state(body, towing, free);
-        self.kind.motion(body, towing, piece, &state)
+        self.kind.motion(body, towing, piece, friction_moment, &state)
     }
 
     fn body<T: Scalar>(&self, parameters: &[T]) -> TyreBody<T> {
@@ -214,7 +226,7 @@ impl VectorField for TyreWheel {
 
     #[inline]
     fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
-        let motion = self.motion(state, parameters);
+        let motion = self.motion(state, parameters, T::zero());
         let (rates, switches) = derivative.split_at_mut(self.free().len());
         for (rate, &index) in rates.iter_mut().zip(self.free()) {
             *rate = motion.rates[index];

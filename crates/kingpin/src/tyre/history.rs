@@ -1,16 +1,15 @@
 //! Time histories of a wheel with a tyre.
 //!
 //! The model is valid while the wheel rolls forwards. A motion in which `V1` falls to zero ends there, and what becomes of it is
-//! undecided.
+//! undecided. With dry friction about the king pin the caster swings and sticks by turns.
 
 use super::field::TYRE_STATE_NAMES;
 use crate::simulation::{SIMULATION_TOLERANCE, SimulationError, sampling_times};
-use crate::{ContactForce, Key, Wheel};
+use crate::sliding::{KingPin, Phase, phase_at};
+use crate::swinging::Stretch;
+use crate::{ContactForce, KingpinError, Tyre, Wheel};
 use arclength::control::Control;
-use arclength::integration::{Event, Integrator, Statistics, autonomous};
-
-/// The forward speed, as a part of the towing speed, that counts as none: at zero the moment of the tread width is infinite.
-const STANDSTILL: f64 = 1e-9;
+use arclength::integration::Statistics;
 
 /// A motion of a wheel with a tyre, sampled at equal intervals. Everything is SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +24,12 @@ pub struct TyreHistory {
     pub friction_exceeded_at: Option<f64>,
     /// Time at which the wheel stopped rolling forwards, `V1 = 0`, where the history ends.
     pub stopped_at: Option<f64>,
+    /// Moment of dry friction about the king pin in N m, one for each time; empty without it.
+    pub friction_moment: Vec<f64>,
+    /// Work in J that it took: `M_f` times the angle through which the caster swung to and fro.
+    pub dry_friction_work: f64,
+    /// What the caster does, in order; empty without dry friction about the king pin.
+    pub phases: Vec<Phase>,
     /// Work done by the integration.
     pub statistics: Statistics,
 }
@@ -34,6 +39,11 @@ impl TyreHistory {
     pub fn state(&self, name: &str) -> Option<Vec<f64>> {
         let index = TYRE_STATE_NAMES.iter().position(|&candidate| candidate == name)?;
         Some(self.states.iter().map(|state| state[index]).collect())
+    }
+
+    /// What the caster does at a time: where two phases meet, the later one. Nothing without dry friction about the king pin.
+    pub fn king_pin_at(&self, time: f64) -> Option<KingPin> {
+        phase_at(&self.phases, time).map(|phase| phase.king_pin)
     }
 }
 
@@ -60,43 +70,71 @@ impl Wheel {
         samples: usize,
         control: &Control<'_>,
     ) -> Result<TyreHistory, SimulationError> {
-        let times = sampling_times(duration, samples)?;
-        let model = self.with_tyre(&[])?;
-        let start = self.perturbed_states(perturbations)?;
-        let free: Vec<f64> = model.free().iter().map(|&index| start[index]).collect();
-        let slowest = STANDSTILL * self.get(Key::V);
-        if start[3] <= slowest {
-            let allowed = "positive: with a tyre the wheel has to roll forwards";
-            return Err(SimulationError::out_of_range("V1", start[3], allowed));
+        if self.tyre() == Tyre::Rigid {
+            return Err(KingpinError::NeedsTyre.into());
         }
-        let reserve = |free: &[f64]| self.tyre_contact_force(&model.full_state(free, &[])).static_reserve();
-        let forward = |free: &[f64]| model.full_state(free, &[])[3] - slowest;
-        let mut events = [
-            Event::new(|_, state| reserve(state)).falling(),
-            Event::new(|_, state| forward(state)).falling().terminal(),
-        ];
-        let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).under(control).with_events(
-            autonomous(&model, &[]),
-            0.0,
-            &free,
-            duration,
-            &times,
-            &mut events,
-        )?;
-        let states: Vec<[f64; 7]> =
-            solution.samples().map(|(_, state)| model.full_state(state, &[])).collect();
-        let exceeded = solution.crossings.iter().find(|crossing| crossing.event == 0);
-        Ok(TyreHistory {
-            contact_forces: states.iter().map(|state| self.tyre_contact_force(state)).collect(),
-            states,
-            friction_exceeded_at: if reserve(&free) <= 0.0 {
-                Some(0.0)
-            } else {
-                exceeded.map(|crossing| crossing.time)
-            },
-            stopped_at: solution.ended_by.map(|_| solution.time),
-            times: solution.times,
-            statistics: solution.statistics,
-        })
+        let start = self.perturbed_states(perturbations)?;
+        self.simulate_with_tyre_from(&std::array::from_fn(|index| start[index]), duration, samples, control)
+    }
+
+    /// The same from a state `(u, q, psi, V1, V2, Omega, y_t)`, of which what a rigid king pin does not leave free follows.
+    ///
+    /// # Errors
+    /// As [`simulate_with_tyre`](Self::simulate_with_tyre).
+    pub fn simulate_with_tyre_from(
+        &self,
+        initial: &[f64; 7],
+        duration: f64,
+        samples: usize,
+        control: &Control<'_>,
+    ) -> Result<TyreHistory, SimulationError> {
+        let times = sampling_times(duration, samples)?;
+        if self.tyre() == Tyre::Rigid {
+            return Err(KingpinError::NeedsTyre.into());
+        }
+        let wheel = self.swinging(SIMULATION_TOLERANCE)?;
+        let start = wheel.free_state(initial);
+        let forward = wheel.full_state(&start)[3];
+        if !wheel.is_inside(&start) {
+            let allowed = "positive: with a tyre the wheel has to roll forwards";
+            return Err(SimulationError::out_of_range("V1", forward, allowed));
+        }
+        let mut history = TyreHistory {
+            times: Vec::with_capacity(samples),
+            states: Vec::with_capacity(samples),
+            contact_forces: Vec::with_capacity(samples),
+            friction_exceeded_at: None,
+            stopped_at: None,
+            friction_moment: Vec::new(),
+            dry_friction_work: 0.0,
+            phases: Vec::new(),
+            statistics: Statistics::default(),
+        };
+        let reached = wheel.reporting_slip().follow(&start, duration, &times, control, |stretch| {
+            let Stretch { phase, friction_moment, initial, solution } = &stretch;
+            history.dry_friction_work += wheel.dry_friction_work(&stretch);
+            if history.friction_exceeded_at.is_none() {
+                let moment = wheel.moment(*friction_moment, &initial[..]);
+                let at_once = wheel.contact_force(moment, &initial[..]).static_reserve() <= 0.0;
+                history.friction_exceeded_at = if at_once { Some(phase.start) } else { stretch.slips_at() };
+            }
+            for (time, free) in solution.samples() {
+                let moment = wheel.moment(*friction_moment, free);
+                history.times.push(time);
+                history.states.push(wheel.full_state(free));
+                history.contact_forces.push(wheel.contact_force(moment, free));
+                if wheel.has_dry_friction() {
+                    history.friction_moment.push(moment);
+                }
+            }
+            if phase.end > phase.start && wheel.has_dry_friction() {
+                history.phases.push(*phase);
+            }
+            history.statistics.accepted_steps += solution.statistics.accepted_steps;
+            history.statistics.rejected_steps += solution.statistics.rejected_steps;
+            history.statistics.evaluations += solution.statistics.evaluations;
+        })?;
+        history.stopped_at = reached.border;
+        Ok(history)
     }
 }

@@ -10,9 +10,11 @@ mod field;
 mod history;
 mod law;
 mod onset;
+mod resting;
 mod uniform;
 
 pub use field::{TYRE_STATE_NAMES, TyreWheel};
 pub use history::TyreHistory;
 pub(crate) use onset::Onset;
+pub(crate) use resting::Rests;
 pub(crate) use uniform::TyreLinearisation;

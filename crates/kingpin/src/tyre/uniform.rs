@@ -18,6 +18,8 @@ use num_complex::Complex64;
 
 /// Most free states.
 const STATES: usize = 7;
+/// Index of `Omega` among all states.
+const YAW: usize = 5;
 /// Newton's method stops when the step is below this, relative to the scale of each state.
 const NEWTON_TOLERANCE: f64 = 1e-14;
 /// Newton's method gives up after this many steps; from a near start it needs four or five.
@@ -28,13 +30,14 @@ const SHORTEST_STEP: f64 = 1e-6;
 const LARGEST_TURN: f64 = 0.2;
 
 /// Free states, filled up with zeros.
-type Padded<T> = [T; STATES];
+pub(super) type Padded<T> = [T; STATES];
 
-/// The vector field at free states and its Jacobian over any scalar, from the parameters as such. Rows behind the free states are those
-/// of the unit matrix.
+/// The vector field at free states and its Jacobian over any scalar, from the parameters as such; under the moment about the king pin
+/// that holds the caster, if it is held. Rows behind the free states are those of the unit matrix.
 fn linearise<T: Scalar>(
     wheel: &Wheel,
     parameter: impl Fn(Key) -> T,
+    is_held: bool,
     free: &Padded<T>,
 ) -> (Padded<T>, [Padded<T>; STATES]) {
     let kind = wheel.tyre_kind();
@@ -44,13 +47,20 @@ fn linearise<T: Scalar>(
     let towing = (v, v * constant(Key::Curvature));
     let variables: [_; STATES] = std::array::from_fn(|index| Dual::variable(free[index], index));
     let state = kind.full_state(&body, towing, &variables);
-    let motion = kind.motion(&body, towing, None, &state);
+    let under = |moment: f64| kind.motion(&body, towing, None, Dual::constant(T::from(moment)), &state).rates;
+    let mut rates = under(0.0);
+    if is_held {
+        // The moment, in which the rates are linear, takes the yaw acceleration away.
+        let with_one = under(1.0);
+        let moment = -rates[YAW] / (with_one[YAW] - rates[YAW]);
+        rates = std::array::from_fn(|index| rates[index] + (with_one[index] - rates[index]) * moment);
+    }
     let mut values = [T::zero(); STATES];
     let mut jacobian: [Padded<T>; STATES] =
         std::array::from_fn(|row| std::array::from_fn(|column| T::from(f64::from(u8::from(row == column)))));
     for (row, &index) in kind.king_pin.free().iter().enumerate() {
-        values[row] = motion.rates[index].value;
-        jacobian[row] = motion.rates[index].derivatives;
+        values[row] = rates[index].value;
+        jacobian[row] = rates[index].derivatives;
     }
     (values, jacobian)
 }
@@ -116,7 +126,7 @@ impl Wheel {
 
     /// The motion of a wheel with a tyre, linearised at a state `(u, q, psi, V1, V2, Omega, y_t)`.
     pub(crate) fn tyre_linearisation(&self, state: &[f64; STATES]) -> TyreLinearisation {
-        let (_, matrix) = linearise(self, |key| self.get(key), &self.padded(state));
+        let (_, matrix) = linearise(self, |key| self.get(key), false, &self.padded(state));
         let lateral = self.lateral_positions();
         let decouples = lateral.len() < self.tyre_kind().king_pin.free().len();
         let longitudinal = decouples.then(|| {
@@ -137,7 +147,7 @@ impl Wheel {
 
     /// Largest rate of a free state at a state `(u, q, psi, V1, V2, Omega, y_t)`.
     pub(crate) fn tyre_residual(&self, state: &[f64; STATES]) -> f64 {
-        largest(&linearise(self, |key| self.get(key), &self.padded(state)).0)
+        largest(&linearise(self, |key| self.get(key), false, &self.padded(state)).0)
     }
 
     /// The uniform motion `(u, q, psi, V1, V2, Omega, y_t)` of a wheel with a tyre.
@@ -160,7 +170,7 @@ impl Wheel {
                 let rolls_on = self.tyre_state(&found, curvature)[3] > 0.0;
                 if is_near && rolls_on { Ok(found) } else { Err(f64::INFINITY) }
             };
-            match self.newton_with_tyre(&free, curvature).and_then(near) {
+            match self.newton_with_tyre(&free, curvature, None).and_then(near) {
                 Ok(found) => (free, part, step) = (found, next, 2.0 * step),
                 Err(residual) if step < SHORTEST_STEP => {
                     return Err(NoUniformMotion::LostOnTheCircle { curvature: part * target, residual });
@@ -178,15 +188,29 @@ impl Wheel {
         self.tyre_kind().full_state(&body, (v, v * curvature), free)
     }
 
-    /// Newton's method for the uniform motion on a path of a curvature; the error is the residual where it gave up.
-    fn newton_with_tyre(&self, start: &Padded<f64>, curvature: f64) -> Result<Padded<f64>, f64> {
+    /// Newton's method for the uniform motion on a path of a curvature, of a caster that is held at an angle where there is one; the error
+    /// is the residual where it gave up.
+    pub(super) fn newton_with_tyre(
+        &self,
+        start: &Padded<f64>,
+        curvature: f64,
+        held: Option<f64>,
+    ) -> Result<Padded<f64>, f64> {
         let parameter = |key| if key == Key::Curvature { curvature } else { self.get(key) };
         let (v, l) = (self.get(Key::V), self.get(Key::L));
         let scale = self.padded(&[l, l, 1.0, v, v, v / l, l]);
+        let states = self.tyre_kind().king_pin.free();
         let mut free = *start;
         let (mut residual, mut last) = (f64::INFINITY, f64::INFINITY);
         for _ in 0..NEWTON_STEPS {
-            let (values, jacobian) = linearise(self, parameter, &free);
+            let (mut values, mut jacobian) = linearise(self, parameter, held.is_some(), &free);
+            if let Some(psi) = held {
+                // In place of the balance of the moments about the king pin.
+                let [angle, yaw] = [2, YAW].map(|state| states.iter().position(|free| *free == state));
+                let (Some(angle), Some(yaw)) = (angle, yaw) else { break };
+                values[yaw] = free[angle] - psi;
+                jacobian[yaw] = std::array::from_fn(|column| f64::from(u8::from(column == angle)));
+            }
             residual = largest(&values);
             let Some(step) = solve(jacobian, values) else { break };
             let mut size: f64 = 0.0;
@@ -212,7 +236,7 @@ impl Wheel {
     /// decoupled and not damped.
     pub(crate) fn tyre_is_surely_stable(&self, state: &[f64; STATES]) -> Option<bool> {
         let parameter = |key| Bounded::read(self.get(key));
-        let jacobian = certain_jacobian(self.padded(state), |free| linearise(self, parameter, free))?;
+        let jacobian = certain_jacobian(self.padded(state), |free| linearise(self, parameter, false, free))?;
         let lateral = self.lateral_positions();
         let coefficients = match lateral.len() {
             3 => characteristic_polynomial(&submatrix::<3>(&jacobian, &lateral)).to_vec(),

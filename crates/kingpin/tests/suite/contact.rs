@@ -2,6 +2,9 @@
 
 use approx::assert_relative_eq;
 use arclength::VectorField;
+use arclength::control::Control;
+use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, SafeKick};
+use kingpin::sliding::Contact;
 use kingpin::{Key, Wheel};
 use proptest::prelude::*;
 
@@ -67,4 +70,57 @@ fn the_load_presses_the_wheel_down() {
     assert_relative_eq!(wheel.normal_force(), 10.0 + 0.4187 * 9.81, max_relative = 1e-15);
     assert!(wheel.uniform_motion().unwrap().rolls());
     assert!(!wheel.with(Key::FAz, 10.0).unwrap().uniform_motion().unwrap().rolls());
+}
+
+/// The paper's wheel on little sliding friction, in a uniform motion that takes 1.446 N, between mu_d N = 0.821 N and mu_s N, and its seven
+/// states with some slip.
+fn between_the_limits(spin_inertia: f64, [along, across]: [f64; 2]) -> (Wheel, [f64; 7]) {
+    let values = [(Key::V, 2.0), (Key::MuD, 0.2), (Key::CU, 0.5), (Key::CQ, 0.5), (Key::JWxi, spin_inertia)];
+    let wheel =
+        values.into_iter().fold(Wheel::default(), |wheel, (key, value)| wheel.with(key, value).unwrap());
+    let motion = wheel.uniform_motion().unwrap();
+    assert!(motion.rolls() && motion.contact_force().friction() > 0.2 * wheel.normal_force());
+    let [u, q, psi, forward, yaw] = motion.state();
+    (wheel, [u, q, psi, forward, across, yaw, forward - along])
+}
+
+/// Where rolling takes more than the sliding friction it depends on its direction and on the mobilities of the contact point whether
+/// slip vanishes: against the sliding wheel in the ground frame (SciPy, DOP853, tolerance 1e-10), which knows no limit directions.
+#[test]
+fn slip_vanishes_where_that_of_the_ground_frame_does() {
+    let history = |spin_inertia: f64, slip: [f64; 2], duration: f64| {
+        let (wheel, start) = between_the_limits(spin_inertia, slip);
+        wheel.sliding().unwrap().simulate_from(&start, duration, 3, &Control::none()).unwrap()
+    };
+    // Thirteen times as mobile along the caster as across it: slip along the force turns to where it shrinks, and vanishes.
+    for (slip, time) in [([0.0, 1e-3], 1.572e-4), ([2e-4, 1e-3], 1.574e-4), ([2e-3, 1e-2], 1.5456e-3)] {
+        let phases = history(4.63e-5, slip, 0.05).phases;
+        assert_eq!([phases[0].contact, phases[1].contact], [Contact::Sliding, Contact::Rolling]);
+        assert!((phases[0].end - time).abs() < 2e-7, "{slip:?}: {}", phases[0].end);
+    }
+    // The other way it grows, however small it is.
+    for (across, reached) in [(-1e-3, -0.146_139_846_8), (-1e-2, -0.163_153_016_1)] {
+        let history = history(4.63e-5, [0.0, across], 0.05);
+        assert_eq!(history.phases.len(), 1);
+        assert!((history.states[2][4] - reached).abs() < 1e-7, "{}", history.states[2][4]);
+    }
+    // With a heavy rim the mobilities are nearly the same: slip passes by zero, here at 5.06e-5 m/s, and grows again.
+    let history = history(5e-3, [2e-4, 1e-3], 0.02);
+    assert_eq!(history.phases.len(), 1);
+    assert!((history.states[2][4] + 0.044_324_359_245).abs() < 1e-7, "{}", history.states[2][4]);
+}
+
+/// A blow outwards leaves such a uniform motion however small it is, one inwards does not, and that is told as it is.
+#[test]
+fn no_blow_outwards_is_safe_between_the_limits() {
+    let (wheel, _) = between_the_limits(4.63e-5, [0.0, 0.0]);
+    assert_eq!(wheel.uniform_motion().unwrap().is_stable(), Some(true));
+    let settings = ClassificationSettings { duration: 3.0 };
+    let edge = |largest: f64| {
+        let kind = Disturbance::Impulse;
+        SafeKick::find(&wheel, ContactModel::Sliding, settings, kind, largest, &Control::none()).unwrap()
+    };
+    let outwards = edge(-0.01).unwrap();
+    assert!(outwards.returns == 0.0 && outwards.fails < 0.0 && outwards.fails > -1e-10, "{outwards:?}");
+    assert!(edge(0.01).is_none_or(|inwards| inwards.returns > 1e-4));
 }

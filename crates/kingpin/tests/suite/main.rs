@@ -16,5 +16,8 @@ mod linear_stability;
 mod paper_form;
 mod random_wheels;
 mod tyre;
+mod tyre_equations;
+mod tyre_kicks;
+mod tyres;
 mod uniform_motion;
 mod wheel;
