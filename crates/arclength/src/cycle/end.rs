@@ -36,6 +36,18 @@ pub enum CycleEnd {
         /// The equilibrium beside which the time is spent.
         beside: SlowPassage,
     },
+    /// The cycles touch the condition of an event without passing it: beyond this grazing the event happens, or happens no more, and the
+    /// cycles are others.
+    Grazing {
+        /// Number of the event, counted from one.
+        event: usize,
+        /// Parameter value there.
+        parameter: f64,
+        /// Period there.
+        period: f64,
+        /// Whether it was located; otherwise it is where the last cycles lead.
+        located: bool,
+    },
     /// The amplitude grows without bound while the parameter tends to a value.
     AmplitudeUnbounded {
         /// Period of the last cycle.
@@ -50,6 +62,7 @@ impl WithParameters for CycleEnd {
         match &mut self {
             Self::HopfPoint { parameter, .. }
             | Self::PeriodDoubling { parameter, .. }
+            | Self::Grazing { parameter, .. }
             | Self::AmplitudeUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
             Self::PeriodUnbounded { parameter, beside, .. } => {
                 *parameter = convert(0, *parameter);
@@ -81,6 +94,19 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
+            Self::Grazing { event, parameter, period, located } => {
+                let (about, place) = if *located {
+                    ("", wording.at(0, *parameter))
+                } else {
+                    ("about ", wording.near(0, *parameter))
+                };
+                Explanation::of(format!(
+                    "grazing: at {about}{place} the cycle of period {} touches the condition of event {event} without passing it, and \
+                     beyond it goes another way",
+                    wording.time(*period)
+                ))
+                .try_this("simulate beyond, and cycles from the end of that motion")
+            }
             Self::AmplitudeUnbounded { period, parameter } => Explanation::of(format!(
                 "the amplitude grows without bound while {} tends to {}; the last period is {}",
                 wording.name(0),

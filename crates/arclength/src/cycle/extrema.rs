@@ -14,6 +14,9 @@ const MOST_ITERATIONS: usize = 60;
 /// Part of the largest value to which extreme values are found.
 const ROUNDING: f64 = 1e-14;
 
+/// Part of its range by which a function changes at a mesh point where the state jumps; less is rounding.
+const JUMP: f64 = 1e-9;
+
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {
@@ -31,17 +34,25 @@ pub(crate) fn ranges<P: BoundaryValueEquations>(
     let cycle = collocation.polynomials(unknown);
     let times = cycle.node_times();
     let mut values = vec![0.0; times.len()];
+    let before_jumps: Vec<Vec<f64>> =
+        collocation.jump_points().into_iter().map(|point| collocation.end_of(unknown, point - 1)).collect();
     (0..count)
         .map(|component| {
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
                 *value = state[component];
             }
-            range(Curve {
+            let mut range = range(Curve {
                 times: &times,
                 values: &values,
                 slope_at_node: &|index| cycle.slope_at_node(index, component),
                 at: &|time| cycle.component(time - time.floor(), component),
-            })
+            });
+            // What is reached before a jump is no node.
+            for end in &before_jumps {
+                range.largest = range.largest.max(end[component]);
+                range.smallest = range.smallest.min(end[component]);
+            }
+            range
         })
         .collect()
 }
@@ -84,7 +95,16 @@ impl Orbit {
             slope_at_node: &|node| at_node(node).1,
             at: &|time| value_and_slope(&|index| cycle.component(time - time.floor(), index)),
         });
-        [smallest, largest]
+        // What is reached before a jump is no node.
+        let intervals = self.mesh.len() - 1;
+        let end = |interval: usize| {
+            let mut end = vec![0.0; n];
+            cycle.state_within(interval..interval + 1, self.mesh[interval + 1], &mut end);
+            value_and_slope(&|index| (end[index], 0.0)).0
+        };
+        let ends = (0..intervals - 1).map(end).zip(values.iter().step_by(self.degree + 1).skip(1));
+        let jumps = ends.filter(|(end, next)| (end - *next).abs() > JUMP * (largest - smallest));
+        jumps.fold([smallest, largest], |[low, high], (end, _)| [low.min(end), high.max(end)])
     }
 }
 
