@@ -211,7 +211,7 @@ impl CyclesRequest {
             LabelledSolution::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
                 Ok((CycleStart::from(hopf), "the cycles that are born there"))
             }
-            LabelledSolution::Motion { duration } => {
+            LabelledSolution::Motion { duration, .. } => {
                 let model = &point.chosen.model;
                 let initial = &point.chosen.start;
                 let orbit = if model.thresholds().is_empty() && model.global_events().is_empty() {

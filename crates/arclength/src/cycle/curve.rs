@@ -3,7 +3,9 @@
 use super::end::CycleEnd;
 use super::extrema::{Range, ranges};
 use super::floquet::Floquet;
+use super::gate::Place;
 use super::limit_cycle::LimitCycle;
+use super::passages::Touch;
 use super::segments::Segments;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
@@ -201,11 +203,15 @@ impl<'a> CycleCurve<'a> {
         find_exact_segments(collocation, unknown)?;
         let found = &mut collocation.problem.segments;
         match found.as_ref().and_then(|found| found.touched) {
-            Some(touch) if !self.is_clear => return Err(Error::EventWithoutJump { event: touch.event + 1 }),
+            Some(Touch { place: Place::Condition { event }, .. }) if !self.is_clear => {
+                return Err(Error::EventWithoutJump { event: event + 1 });
+            }
             touched => self.is_clear |= touched.is_none(),
         }
         let is_same = found.as_ref().zip(known.as_ref()).is_some_and(|(found, known)| found.are_like(known));
-        if moved.is_some() && is_same {
+        let touches = found.as_ref().is_some_and(|found| found.touched.is_some());
+        if moved.is_some() && (is_same || touches) {
+            // Beyond a grazing the cycle is still that of before, as far as its end is located.
             *found = known;
         } else if let Some(segments) = found {
             let finer = with_points(&mesh, &segments.times);
@@ -224,7 +230,7 @@ impl<'a> CycleCurve<'a> {
         if let Some(origin) = origin {
             self.count_from(origin, unknown, vectors);
         }
-        let is_moved = !is_same || moved.is_none_or(|moved| moved > SAME_TIME);
+        let is_moved = !(is_same || touches) || moved.is_none_or(|moved| moved > SAME_TIME);
         Ok(if is_moved || origin.is_some() { Adaptation::Changed } else { Adaptation::Unchanged })
     }
 

@@ -134,6 +134,10 @@ impl BoundaryValueEquations for Defining<'_> {
         }
     }
 
+    fn takes_few_directions(&self) -> bool {
+        self.segments.as_ref().is_some_and(Segments::has_slides)
+    }
+
     fn jumps(&self) -> &[f64] {
         self.segments.as_ref().map_or(&[], |segments| &segments.times)
     }

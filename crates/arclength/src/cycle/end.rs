@@ -36,11 +36,11 @@ pub enum CycleEnd {
         /// The equilibrium beside which the time is spent.
         beside: SlowPassage,
     },
-    /// The cycles touch the condition of an event without passing it: beyond this grazing the event happens, or happens no more, and the
-    /// cycles are others.
+    /// The cycles touch the condition of an event, or a border at which the field jumps, without passing it: beyond this grazing they
+    /// go another way.
     Grazing {
-        /// Number of the event, counted from one.
-        event: usize,
+        /// What is touched.
+        of: Grazed,
         /// Parameter value there.
         parameter: f64,
         /// Period there.
@@ -55,6 +55,16 @@ pub enum CycleEnd {
         /// Parameter value of the last cycle.
         parameter: f64,
     },
+}
+
+/// What cycles touch at a grazing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grazed {
+    /// The condition of an event, by its number, counted from one.
+    Event(usize),
+    /// A border at which the field jumps.
+    Border,
 }
 
 impl WithParameters for CycleEnd {
@@ -94,15 +104,19 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
-            Self::Grazing { event, parameter, period, located } => {
+            Self::Grazing { of, parameter, period, located } => {
                 let (about, place) = if *located {
                     ("", wording.at(0, *parameter))
                 } else {
                     ("about ", wording.near(0, *parameter))
                 };
+                let touched = match of {
+                    Grazed::Event(event) => format!("the condition of event {event}"),
+                    Grazed::Border => "a border at which the field jumps".to_owned(),
+                };
                 Explanation::of(format!(
-                    "grazing: at {about}{place} the cycle of period {} touches the condition of event {event} without passing it, and \
-                     beyond it goes another way",
+                    "grazing: at {about}{place} the cycle of period {} touches {touched} without passing it, and beyond it goes \
+                     another way",
                     wording.time(*period)
                 ))
                 .try_this("simulate beyond, and cycles from the end of that motion")

@@ -1,4 +1,4 @@
-//! Where a branch of cycles meets a grazing: an event whose condition the cycles only touch.
+//! Where a branch of cycles meets a grazing: an event whose condition the cycles only touch, or a border at which the field jumps.
 //!
 //! Short of it the cycles depend smoothly on the parameter, and their equations go on to have solutions beyond, on which the condition
 //! is passed without the jump: these are none of the model. So the zero of the largest value of the condition is located between two
@@ -6,7 +6,8 @@
 //! slowly; there the equations end, and the parameter is that to which the last cycles lead.
 
 use super::curve::{CycleCurve, CycleInspection};
-use super::end::CycleEnd;
+use super::end::{CycleEnd, Grazed};
+use super::gate::Place;
 use super::passages::{Along, Touch};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Solution, locate};
@@ -15,8 +16,10 @@ use crate::continuation::{Solution, locate};
 const LOCATION: f64 = 1e-12;
 /// Cycles from which the place of a grazing is told where the equations end.
 const LAST_CYCLES: usize = 3;
-/// The rate of the condition at its event is to have become smaller than this part of what it was at most on the last cycles.
-const SLOW: f64 = 0.5;
+/// How much faster than the next one each of them passes the event.
+const FASTER: f64 = 2.0;
+/// The last cycle is this close to a grazing that is located, as part of the parameter's range.
+const CLOSE: f64 = 1e-5;
 
 impl CycleCurve<'_> {
     /// An event whose condition a cycle passes without the jump.
@@ -43,7 +46,11 @@ impl CycleCurve<'_> {
             _ => last_two(&before.unknown),
         };
         let located = matches!(found, Ok(Some(_)));
-        CycleEnd::Grazing { event: touch.event + 1, parameter, period, located }
+        let of = match touch.place {
+            Place::Condition { event } => Grazed::Event(event + 1),
+            Place::Border { .. } | Place::Pull { .. } => Grazed::Border,
+        };
+        CycleEnd::Grazing { of, parameter, period, located }
     }
 
     /// How far the condition of an event gets beyond zero, near where it is touched.
@@ -52,25 +59,26 @@ impl CycleCurve<'_> {
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = *unknown.last()?;
         let along = Along::new(problem.field, self.collocation.polynomials(unknown), &parameters)?;
-        Some(along.reach(touch, problem.jumps()))
+        let course = problem.segments.as_ref()?.course_at(touch.time);
+        Some(along.reach(touch, course, problem.jumps()))
     }
 
     /// The grazing to which the last cycles lead before the event that was lost happens no more.
     pub(super) fn grazing_ahead(&self, last: &[&Solution<CycleInspection>]) -> Option<CycleEnd> {
         let event = self.lost?;
-        let known: Vec<[f64; 3]> = last
-            .iter()
-            .rev()
-            .take(LAST_CYCLES)
-            .filter_map(|solution| {
-                let [period, parameter] = last_two(&solution.unknown);
-                Some([self.rate_at(solution, event)?, parameter, period])
-            })
-            .collect();
-        let fastest = known.iter().map(|[rate, ..]| rate.abs()).fold(0.0, f64::max);
-        let slows = known.len() == LAST_CYCLES
-            && known.windows(2).all(|pair| pair[0][0].abs() < pair[1][0].abs())
-            && known[0][0].abs() < SLOW * fastest;
+        // The last ones lie close together: of those before every one counts at which the event was passed twice as fast.
+        let mut known: Vec<[f64; 3]> = Vec::new();
+        for solution in last.iter().rev() {
+            let [period, parameter] = last_two(&solution.unknown);
+            let Some(rate) = self.rate_at(solution, event).map(f64::abs) else { break };
+            if known.last().is_none_or(|[slower, ..]| rate >= FASTER * slower) {
+                known.push([rate, parameter, period]);
+            }
+            if known.len() == LAST_CYCLES {
+                break;
+            }
+        }
+        let slows = known.len() == LAST_CYCLES;
         let [_, last_parameter, last_period] = *known.first()?;
         let at_rest = |place: usize| {
             known.iter().enumerate().fold(0.0, |sum, (index, point)| {
@@ -81,7 +89,9 @@ impl CycleCurve<'_> {
         };
         let [parameter, period] =
             if slows { [at_rest(1), at_rest(2)] } else { [last_parameter, last_period] };
-        Some(CycleEnd::Grazing { event: event + 1, parameter, period, located: false })
+        // What is left out of the extrapolation is of a higher order than what it adds.
+        let located = slows && (parameter - last_parameter).abs() < CLOSE * self.parameter_scale;
+        Some(CycleEnd::Grazing { of: Grazed::Event(event + 1), parameter, period, located })
     }
 
     /// The rate of the condition of an event where it happens on a cycle, the smallest if it does more than once.

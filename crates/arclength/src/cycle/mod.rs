@@ -30,7 +30,7 @@ mod variational;
 
 pub use crate::collocation::resolution::Resolution;
 pub use branch::{CycleBranch, CyclePoint};
-pub use end::CycleEnd;
+pub use end::{CycleEnd, Grazed};
 pub use orbit::Orbit;
 pub use slow_passage::SlowPassage;
 pub use start::{CycleProblem, CycleStart, Cycles};

@@ -1,7 +1,7 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
 use crate::collocation::gauss::Gauss;
-use crate::collocation::mesh::dividing_equally;
+use crate::collocation::mesh::{SAME_TIME, dividing_equally};
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
@@ -261,9 +261,11 @@ impl Orbit {
         let mut mesh = vec![0.0];
         let mut from = start;
         for until in breaks.iter().copied().chain([end]) {
-            let first = times.partition_point(|time| *time <= from).saturating_sub(1);
-            let last = times.partition_point(|time| *time < until);
-            let inside = &times[first..=last.min(times.len() - 1)];
+            // Samples at a break are of either side.
+            let margin = SAME_TIME * period;
+            let first = times.partition_point(|time| *time <= from + margin);
+            let last = times.partition_point(|time| *time < until - margin).max(first);
+            let inside = &times[first..last];
             let points = if inside.len() < FEWEST_BETWEEN_BREAKS {
                 (0..=FEWEST_BETWEEN_BREAKS).map(|index| index as f64 / FEWEST_BETWEEN_BREAKS as f64).collect()
             } else {

@@ -12,6 +12,7 @@ use crate::direction::Direction;
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::pieces::{Border, Pieces};
+use crate::threshold::Threshold;
 
 /// Most borders that a cycle passes.
 const MOST_BORDERS: usize = 64;
@@ -32,8 +33,13 @@ const GAP: f64 = 1e-8;
 const ABOUT_ZERO: f64 = 0.05;
 /// Part of a jump by which that of the events may differ from it on such a cycle.
 const ABOUT_JUMP: f64 = 0.3;
+/// Steps of the flow on a short way off a switch, and the longest one, as part of the period.
+const FLIGHT_STEPS: usize = 8;
+const LONGEST_FLIGHT: f64 = 0.1;
 /// Both sides push towards a switch along which a cycle slides at this part at least of what takes it over its range in a period.
 const PUSH: f64 = 1e-9;
+/// The rate of a switch function jumps at a border by this part at least of what takes it over its range in a period.
+const RATE_JUMP: f64 = 1e-6;
 
 /// A gate that a cycle passes at a time, and the course behind it.
 #[derive(Clone, Debug)]
@@ -41,13 +47,15 @@ pub(super) struct Passage {
     pub time: f64,
     pub gate: Gate,
     pub course: Course,
+    /// Whether the rate of the switch function jumps here, and the cycle goes on to the other side at once.
+    pub leads_away: bool,
 }
 
-/// An event whose condition a cycle passes, in unit time, without the jump.
+/// A condition of an event that a cycle passes, in unit time, without the jump, or a border without changing over to the field beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Touch {
-    pub event: usize,
-    /// Sign of the condition before.
+    pub place: Place,
+    /// Sign before it of the function that is zero there.
     pub side: f64,
     pub time: f64,
 }
@@ -297,7 +305,8 @@ impl<'a> Along<'a> {
                     start.clone()
                 };
                 let time = end.floor() + self.cycle.mesh[*point + 1];
-                passages.push(Passage { time, gate: gate.clone(), course: standing.course.clone() });
+                let course = standing.course.clone();
+                passages.push(Passage { time, gate: gate.clone(), course, leads_away: false });
             }
             if passages.len() > MOST_BORDERS {
                 return Err(Error::TooManyBorders { limit: MOST_BORDERS });
@@ -385,7 +394,9 @@ impl<'a> Along<'a> {
                 let mut other = region.clone();
                 other[switch] = threshold.next(cell, !is_upper);
                 let [below, above] = if is_upper { [other, region.clone()] } else { [region.clone(), other] };
-                course = self.at_border(switch, [&below, &above], true, &here).0;
+                if let (next, true) = self.at_border(switch, [&below, &above], None, &here) {
+                    course = next;
+                }
             }
         }
         let sides = (0..self.directions.len()).map(|event| {
@@ -396,12 +407,12 @@ impl<'a> Along<'a> {
     }
 
     /// The course at a border between two regions, and whether it slides there: along the border where both fields push towards it,
-    /// else on the side to which they push.
+    /// else beyond it in the direction in which it is passed or, without one, on the side to which they push.
     fn at_border(
         &self,
         switch: usize,
         [below, above]: [&[f64]; 2],
-        upwards: bool,
+        upwards: Option<bool>,
         state: &[f64],
     ) -> (Course, bool) {
         let [mut low, high] = [below, above].map(|cells| Course::within(self.parameters, cells));
@@ -412,11 +423,7 @@ impl<'a> Along<'a> {
             low.slide = Some(Slide { switch, above: high.parameters });
             return (low, true);
         }
-        let goes_up = match (from_below > 0.0, from_above < 0.0) {
-            (true, false) => true,
-            (false, true) => false,
-            _ => upwards,
-        };
+        let goes_up = upwards.unwrap_or(from_below > 0.0 || from_above > 0.0);
         (if goes_up { high } else { low }, false)
     }
 
@@ -457,16 +464,30 @@ impl<'a> Along<'a> {
                         standing.sides[event] = 0.0;
                     } else {
                         if counts && touched.is_none() {
-                            *touched = Some(Touch { event, side, time: time - time.floor() });
+                            *touched = Some(Touch { place, side, time: time - time.floor() });
                         }
                         standing.sides[event] = -side;
                     }
                     continue;
                 }
-                standing.left = None;
-                (standing.course, standing.left) = self.behind(&standing.course, place, upwards, &state);
+                let (next, left) = self.behind(&standing.course, place, upwards, &state);
+                let jumps = self.rate_jumps(&standing.course, &next, place, &state);
                 let gate = Gate { place, upwards, events: Vec::new() };
-                found.push(Passage { time, gate, course: standing.course.clone() });
+                let ends_slide = matches!(place, Place::Pull { .. });
+                let flies = next.slide.is_none()
+                    && (jumps || ends_slide)
+                    && self.stays_on(place, time, until - pair[0], stretch);
+                let leads_away = jumps && next.slide.is_none() && !flies;
+                let back = if flies { self.flight(&standing.course, &next, place, &state) } else { None };
+                found.push(Passage { time, gate, course: next.clone(), leads_away });
+                (standing.course, standing.left) = (next, left);
+                if let Some((duration, passage)) = back {
+                    // The polynomials do not leave the switch yet: the cycle does, and comes back soon.
+                    standing.course = passage.course.clone();
+                    standing.left = None;
+                    found.push(Passage { time: time + duration, ..passage });
+                    from = (time + duration).min(until);
+                }
                 if found.len() > MOST_BORDERS {
                     return Err(Error::TooManyBorders { limit: MOST_BORDERS });
                 }
@@ -496,17 +517,98 @@ impl<'a> Along<'a> {
                     None => {
                         let next = beyond(below);
                         let sides = if upwards { [below, &next] } else { [&next[..], below] };
-                        (self.at_border(switch, sides, upwards, state).0, None)
+                        (self.at_border(switch, sides, Some(upwards), state).0, None)
                     }
                     Some(slide) => {
                         let [below, above] = [below, above].map(beyond);
-                        let (next, slides) = self.at_border(slide.switch, [&below, &above], true, state);
+                        let (next, slides) = self.at_border(slide.switch, [&below, &above], None, state);
                         (next, (!slides).then_some(slide.switch))
                     }
                 }
             }
             Place::Condition { .. } => (course.clone(), None),
         }
+    }
+
+    /// Whether the polynomials stay on the switch of a place for a while, `spacing` being that of the times at which they are looked at:
+    /// they are those of a cycle that slides there.
+    fn stays_on(&self, place: Place, time: f64, spacing: f64, stretch: &Stretch) -> bool {
+        let (switch, border) = match place {
+            Place::Border { switch, value } => (switch, value),
+            Place::Pull { switch, .. } => (switch, 0.0),
+            Place::Condition { .. } => return false,
+        };
+        let last = stretch.times.last().copied().unwrap_or(time);
+        let state = self.state((time + spacing).min(last), end_of(stretch));
+        let cells = self.pieces.region_at(&state, self.parameters);
+        let value = self.functions(&Course::within(self.parameters, &cells), &state)[switch];
+        let distance = match (place, self.pieces.thresholds()[switch]) {
+            (Place::Pull { .. }, Threshold::Whole) => value - value.round(),
+            _ => value - border,
+        };
+        distance.abs() < NEAR * self.sizes[switch]
+    }
+
+    /// A short way off a switch, which begins at a state on it and follows a course: its duration in unit time and the passage back.
+    fn flight(&self, from: &Course, course: &Course, place: Place, state: &[f64]) -> Option<(f64, Passage)> {
+        let switches = self.pieces.thresholds().len();
+        let (switch, is_above) = match place {
+            Place::Border { switch, .. } => {
+                let [before, behind] = [from, course].map(|course| course.cells(switches)[0][switch]);
+                (switch, behind > before)
+            }
+            Place::Pull { switch, above } => (switch, above),
+            Place::Condition { .. } => return None,
+        };
+        let cell = course.cells(switches)[0][switch];
+        let value = self.pieces.thresholds()[switch].borders(cell)[usize::from(!is_above)];
+        let period = self.period();
+        let height = |time: f64| {
+            let there = course.flow(self.field, state, &[], time, FLIGHT_STEPS);
+            let mut results = vec![0.0; there.len() + switches];
+            self.field.evaluate(&there, &course.parameters, &mut results);
+            (results[there.len() + switch] - value, there)
+        };
+        let rate = |state: &[f64]| {
+            let mut velocity = vec![0.0; state.len()];
+            self.field.evaluate(state, &course.parameters, &mut velocity);
+            self.field.rate_along(switch, state, &velocity, &course.parameters)
+        };
+        let short = SHORTEST_VISIT * period;
+        let start = rate(state);
+        let bend = (rate(&height(short).1) - start) / short;
+        // The way off the switch is a parabola as long as it is short; the mean slope from the start is zero at its end.
+        let mut now = -2.0 * start / bend;
+        let mut before = 0.5 * now;
+        let mean = |time: f64| height(time).0 / time;
+        let mut mean_before = mean(before);
+        for _ in 0..HALVINGS {
+            if !(now > 0.0 && now < LONGEST_FLIGHT * period) {
+                return None;
+            }
+            let mean_now = mean(now);
+            let change = mean_now * (now - before) / (mean_now - mean_before);
+            (before, mean_before) = (now, mean_now);
+            if change.abs() <= ROUNDING * now || mean_now == mean_before {
+                break;
+            }
+            now -= change;
+        }
+        if now < short {
+            return None;
+        }
+        let there = height(now).1;
+        let back = Place::Border { switch, value };
+        let (next, _) = self.behind(course, back, !is_above, &there);
+        let gate = Gate { place: back, upwards: !is_above, events: Vec::new() };
+        Some((now / period, Passage { time: 0.0, gate, course: next, leads_away: false }))
+    }
+
+    /// Whether the rate of the switch function at a border jumps from one course to another.
+    fn rate_jumps(&self, one: &Course, other: &Course, place: Place, state: &[f64]) -> bool {
+        let Place::Border { switch, .. } = place else { return false };
+        let [here, there] = self.pulls(switch, state, [&one.parameters, &other.parameters]);
+        (here - there).abs() > RATE_JUMP * self.sizes[switch] / self.period()
     }
 
     /// The first function that passes its border between two times, and when: between them it is taken for a parabola, whose turn
@@ -552,6 +654,24 @@ impl<'a> Along<'a> {
             let margin = ROUNDING * start[index].abs().max(last[index].abs());
             let margin = if is_left { margin.max(NEAR * self.sizes[index]) } else { margin };
             let [a, b, c] = [&start, &half, &last].map(|values| beyond(values));
+            // What comes to a switch and stays there slides, whatever rounding makes of its side.
+            let lands = |value: f64| value.abs() < NEAR * self.sizes[index];
+            if matches!(place, Place::Border { .. })
+                && !is_left
+                && lands(b)
+                && lands(c)
+                && first.is_none_or(|(time, ..)| from < time)
+                && self.behind(course, place, upwards, &self.state(until, end)).0.slide.is_some()
+            {
+                let near = -NEAR * self.sizes[index];
+                let landing = if a > near {
+                    from
+                } else {
+                    crossing((from, middle), |time| beyond(&functions(time)) - near)
+                };
+                first = Some((landing, place, upwards));
+                continue;
+            }
             let place_of_turn = 0.5 - 0.25 * (c - a) / (a - 2.0 * b + c);
             let turn = from + place_of_turn * (until - from);
             let mut candidates = vec![middle, until];
@@ -572,17 +692,17 @@ impl<'a> Along<'a> {
 }
 
 impl Along<'_> {
-    /// How far the condition of an event gets beyond zero at its turn next to where it is touched, between two of the times at which the
-    /// state jumps.
-    pub(super) fn reach(&self, touch: Touch, jumps: &[f64]) -> f64 {
+    /// How far the function at a place gets beyond zero at its turn next to where it is touched, between two of the times at which the
+    /// course changes.
+    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> f64 {
         let from = jumps.iter().copied().filter(|time| *time <= touch.time).fold(0.0, f64::max);
         let until = jumps.iter().copied().filter(|time| *time > touch.time).fold(1.0, f64::min);
-        let value = |time: f64| {
-            let mut condition = [0.0];
-            let state = self.state(time, None);
-            self.field.evaluate_event(touch.event, &state, self.parameters, &mut condition);
-            -touch.side * condition[0]
-        };
+        let gate = Gate { place: touch.place, upwards: touch.side < 0.0, events: Vec::new() };
+        let switches = self.pieces.thresholds().len();
+        // The course may be one of other values of the parameters.
+        let now: Vec<(usize, f64)> = self.parameters.iter().copied().enumerate().collect();
+        let value =
+            |time: f64| -touch.side * gate.value(self.field, course, &self.state(time, None), &now, switches);
         let times: Vec<f64> =
             self.samples.iter().copied().filter(|time| from <= *time && *time < until).collect();
         let values: Vec<f64> = times.iter().map(|time| value(*time)).collect();

@@ -8,7 +8,7 @@
 //! eliminated: its derivative is the saltation matrix, so that multipliers, defining systems and error estimates contain it.
 
 use super::gate::{Course, Gate, Place};
-use super::passages::{Along, Touch, Way};
+use super::passages::{Along, Passage, Touch, Way};
 use crate::collocation::polynomials::Polynomials;
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar};
@@ -61,7 +61,12 @@ impl Segments {
             Some(known) => known.jumps_on(cycle.mesh),
             None => along.jumps(),
         };
-        let Way { first, passages, touched } = along.way(&jumps)?;
+        let Way { first, passages, mut touched } = along.way(&jumps)?;
+        if let Some(known) = known
+            && touched.is_none()
+        {
+            touched = known.new_border_that_leads_away(&passages);
+        }
         let courses = std::iter::once(first).chain(passages.iter().map(|passage| passage.course.clone()));
         Ok(Some(Self {
             courses: courses.collect(),
@@ -70,6 +75,17 @@ impl Segments {
             switches: field.thresholds().len(),
             touched,
         }))
+    }
+
+    /// A border among those that a cycle passes that was not passed before, where the field jumps and leads away: cycles like those of
+    /// before only touch it. (Where the field beyond pushes back they slide, and branches go on.)
+    fn new_border_that_leads_away(&self, passages: &[Passage]) -> Option<Touch> {
+        passages.iter().find(|passage| passage.leads_away && !self.gates.contains(&passage.gate)).map(
+            |passage| {
+                let side = if passage.gate.upwards { -1.0 } else { 1.0 };
+                Touch { place: passage.gate.place, side, time: passage.time }
+            },
+        )
     }
 
     /// The gates at which the state jumps, with the numbers of their mesh points.
@@ -90,6 +106,11 @@ impl Segments {
             Place::Condition { event } => Some(event),
             _ => None,
         }
+    }
+
+    /// Whether the cycle slides somewhere.
+    pub(crate) fn has_slides(&self) -> bool {
+        self.courses.iter().any(|course| course.slide.is_some())
     }
 
     /// Whether the state jumps somewhere.
