@@ -93,17 +93,6 @@ pub enum Error {
         /// Where the time occurs.
         snippet: String,
     },
-    /// Cycles of a model whose motions jump.
-    #[error(
-        "{model}: motions of this model jump at its events (global), and cycles that jump are not followed; simulate follows the \
-         motions and equilibria the equilibria; for cycles between events remove the line\n{snippet}"
-    )]
-    Jumps {
-        /// Name of the model.
-        model: String,
-        /// Where the first event is.
-        snippet: String,
-    },
     /// A result file that cannot be used.
     #[error("{}: {problem}", path.display())]
     ResultFile {

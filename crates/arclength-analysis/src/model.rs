@@ -67,6 +67,15 @@ impl ChosenModel {
         WithTotals::at(&self.model, &self.start, &self.parameters, varying)
     }
 
+    /// The same for cycles: where the state jumps at events totals do, too.
+    pub fn field_of_cycles(&self, varying: &[usize]) -> WithTotals<'_, Model> {
+        if self.model.global_events().is_empty() {
+            self.field(varying)
+        } else {
+            WithTotals::none(&self.model)
+        }
+    }
+
     /// Sets parameters.
     ///
     /// # Errors
@@ -137,17 +146,6 @@ impl ChosenModel {
             return Ok(index);
         }
         Err(Error::invalid(fields, interval.to_string(), "the interval is infinite", "two finite ends"))
-    }
-
-    /// That cycles of the model can be followed.
-    ///
-    /// # Errors
-    /// A model with events, whose cycles may jump.
-    pub fn has_continuous_cycles(&self) -> Result<(), Error> {
-        self.model.global_events().first().map_or(Ok(()), |event| {
-            let snippet = event.place().snippet();
-            Err(Error::Jumps { model: self.stored.name.clone(), snippet })
-        })
     }
 
     /// That the interval contains the value of the parameter where a computation starts.

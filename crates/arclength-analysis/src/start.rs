@@ -38,6 +38,8 @@ pub enum LabelledSolution {
     Motion {
         /// How long it lasted.
         duration: f64,
+        /// The time at which it ended.
+        end: f64,
     },
 }
 
@@ -94,8 +96,9 @@ impl LabelledPoint {
                     return Err(missing());
                 }
                 let (duration, state) = result.end();
+                let end = result.t.last().copied().unwrap_or(0.0);
                 let chosen = choose(reference, result.model, &result.parameters.0, Some(&state))?;
-                Ok(Self::new(reference, chosen, LabelledSolution::Motion { duration }))
+                Ok(Self::new(reference, chosen, LabelledSolution::Motion { duration, end }))
             }
         }
     }

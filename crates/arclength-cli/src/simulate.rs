@@ -27,7 +27,8 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
     points: Option<u64>,
 
-    /// Time at which it starts [default: the model's @ t0, or 0]
+    /// Time at which it starts [default: where the motion ended that it goes on from if the model depends on the time, or
+    /// the model's @ t0, or 0]
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     t0: Option<f64>,
 

@@ -40,6 +40,17 @@ pub trait FieldScalar: Scalar {
         parameters: &[Self],
         values: &mut [Self],
     );
+
+    /// The rate at which a switch function changes along a direction, by the entry for a scalar with one more infinitesimal; not a
+    /// number where there is no such entry.
+    #[doc(hidden)]
+    fn rate_along(
+        field: &dyn Table,
+        switch: usize,
+        state: &[Self],
+        direction: &[Self],
+        parameters: &[Self],
+    ) -> Self;
 }
 
 /// A scalar that Jacobians are computed with: `f64` for the value, dual numbers with four or eight directions for the columns.
@@ -76,23 +87,35 @@ impl<T: Scalar, const N: usize> Lift<N> for T {
     type Lifted = Dual<T, N>;
 }
 
-/// Hands the method of a [`Table`] for each scalar on the list, with the scalar, to a macro.
+/// The rate of a switch function by a scalar that has one with one more infinitesimal on the list, and by one that has none.
+macro_rules! rate_of {
+    ($field:ident, $switch:ident, $state:ident, $direction:ident, $parameters:ident, lifted) => {
+        rate_by($field, $switch, $state, $direction, $parameters)
+    };
+    ($field:ident, $switch:ident, $state:ident, $direction:ident, $parameters:ident) => {{
+        let _ = ($field, $switch, $state, $direction, $parameters);
+        f64::NAN.into()
+    }};
+}
+
+/// Hands the method of a [`Table`] for each scalar on the list, with the scalar, to a macro; `lifted` are those of which the one with
+/// one more infinitesimal is on it, too.
 macro_rules! with_field_scalars {
     ($macro:ident) => {
         $macro! {
-            evaluate_value, event_value: f64;
-            evaluate_narrow, event_narrow: Narrow;
-            evaluate_wide, event_wide: Wide;
-            evaluate_narrow_along, event_narrow_along: NarrowAlong;
+            evaluate_value, event_value: f64, lifted;
+            evaluate_narrow, event_narrow: Narrow, lifted;
+            evaluate_wide, event_wide: Wide, lifted;
+            evaluate_narrow_along, event_narrow_along: NarrowAlong, lifted;
             evaluate_wide_along, event_wide_along: WideAlong;
             evaluate_narrow_along_pair, event_narrow_along_pair: NarrowAlongPair;
             evaluate_wide_along_pair, event_wide_along_pair: WideAlongPair;
             evaluate_narrow_along_twice, event_narrow_along_twice: NarrowAlongTwice;
             evaluate_pair, event_pair: Pair;
-            evaluate_first, event_first: First;
-            evaluate_second, event_second: Second;
-            evaluate_third, event_third: Third;
-            evaluate_fourth, event_fourth: Fourth;
+            evaluate_first, event_first: First, lifted;
+            evaluate_second, event_second: Second, lifted;
+            evaluate_third, event_third: Third, lifted;
+            evaluate_fourth, event_fourth: Fourth, lifted;
             evaluate_fifth, event_fifth: Fifth;
         }
     };
@@ -100,7 +123,7 @@ macro_rules! with_field_scalars {
 pub(crate) use with_field_scalars;
 
 macro_rules! table {
-    ($($method:ident, $event:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty $(, $lifted:ident)?;)*) => {
         /// A field, for the scalars in use.
         pub trait Table: Sync {
             /// As `VectorField::state_names`.
@@ -143,11 +166,41 @@ macro_rules! table {
             ) {
                 field.$event(event, state, parameters, values);
             }
+
+            fn rate_along(
+                field: &dyn Table,
+                switch: usize,
+                state: &[Self],
+                direction: &[Self],
+                parameters: &[Self],
+            ) -> Self {
+                rate_of!(field, switch, state, direction, parameters $(, $lifted)?)
+            }
         })*
     };
 }
 
 with_field_scalars!(table);
+
+/// The rate of a switch function along a direction, by the scalar with one more infinitesimal.
+fn rate_by<T: FieldScalar>(
+    field: &dyn Table,
+    switch: usize,
+    state: &[T],
+    direction: &[T],
+    parameters: &[T],
+) -> T
+where
+    Dual<T, 1>: FieldScalar,
+{
+    let moving = state.iter().zip(direction);
+    let moving: Vec<Dual<T, 1>> =
+        moving.map(|(value, slope)| Dual { value: *value, derivatives: [*slope] }).collect();
+    let parameters: Vec<Dual<T, 1>> = parameters.iter().copied().map(Dual::constant).collect();
+    let mut results = vec![Dual::zero(); state.len() + switch + 1];
+    FieldScalar::evaluate(field, &moving, &parameters, &mut results);
+    results[state.len() + switch].derivatives[0]
+}
 
 /// A field of unknown type.
 #[derive(Clone, Copy)]
@@ -193,6 +246,17 @@ impl<'a> ErasedField<'a> {
         values: &mut [T],
     ) {
         T::evaluate_event(self.0, event, state, parameters, values);
+    }
+
+    /// The rate at which a switch function changes along a direction; not a number for scalars without one more infinitesimal.
+    pub(crate) fn rate_along<T: FieldScalar>(
+        &self,
+        switch: usize,
+        state: &[T],
+        direction: &[T],
+        parameters: &[T],
+    ) -> T {
+        T::rate_along(self.0, switch, state, direction, parameters)
     }
 
     /// As [`crate::VectorField::evaluate`], for the scalars of the list.

@@ -72,6 +72,15 @@ pub enum Error {
         /// Most borders.
         limit: usize,
     },
+    /// The start of a branch passes the condition of an event, but its state does not jump there.
+    #[error(
+        "the start passes the condition of event {event} without the jump: it is no cycle of this model; start from the end of a \
+         motion that has settled on a cycle, or from a cycle of an earlier result"
+    )]
+    EventWithoutJump {
+        /// Number of the event, counted from one.
+        event: usize,
+    },
     /// Along a curve of special cycles the borders change that the cycles pass.
     #[error(
         "from here on the cycles pass other borders at which the field switches: start once more from a special cycle beyond"

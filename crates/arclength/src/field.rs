@@ -115,7 +115,7 @@ pub trait VectorField: Sync {
 }
 
 macro_rules! vector_field_table {
-    ($($method:ident, $event:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty $(, $lifted:ident)?;)*) => {
         impl<F: VectorField> Table for F {
             fn state_names(&self) -> Vec<String> {
                 VectorField::state_names(self)

@@ -71,6 +71,11 @@ impl<'a> Pieces<'a> {
         (!thresholds.is_empty()).then_some(Self { field, thresholds })
     }
 
+    /// The pieces of a field that may be smooth everywhere: then there is one.
+    pub(crate) fn of_hybrid(field: ErasedField<'a>) -> Self {
+        Self { field, thresholds: field.thresholds() }
+    }
+
     /// Where each switch function passes from cell to cell.
     pub fn thresholds(&self) -> &[Threshold] {
         &self.thresholds

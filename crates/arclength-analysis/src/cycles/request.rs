@@ -13,8 +13,10 @@ use crate::model_request::{ModelRequest, ModelSource};
 use crate::monitor::{CycleMonitor, Monitored};
 use crate::orbit_file::read_orbit_among;
 use crate::point_reference::PointReference;
+use crate::simulate::settled_orbit;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
+use arclength::VectorField;
 use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
 use arclength::control::Control;
@@ -155,7 +157,6 @@ impl CyclesRequest {
         chosen.set(&self.set)?;
         let along = chosen.interval(&self.along)?;
         chosen.along(&["along"], &along)?;
-        chosen.has_continuous_cycles()?;
         chosen.starts_within(&["along"], &along, start)?;
         along.check_values(&self.at)?;
         Ok(chosen)
@@ -220,9 +221,14 @@ impl CyclesRequest {
             LabelledSolution::Equilibrium(Some(SpecialPoint::Hopf(hopf))) => {
                 Ok((CycleStart::from(hopf), "the cycles that are born there"))
             }
-            LabelledSolution::Motion { duration } => {
+            LabelledSolution::Motion { duration, .. } => {
                 let model = &point.chosen.model;
-                let orbit = Orbit::from_time_history(model, parameters, &point.chosen.start, *duration)?;
+                let initial = &point.chosen.start;
+                let orbit = if model.thresholds().is_empty() && model.global_events().is_empty() {
+                    Orbit::from_time_history(model, parameters, initial, *duration)?
+                } else {
+                    settled_orbit(model, parameters, initial, *duration)?
+                };
                 Ok((CycleStart::Orbit(orbit), "the cycle on which the time history has settled"))
             }
             LabelledSolution::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
@@ -273,7 +279,7 @@ impl CyclesAnalysis {
             };
             Monitor::new(&asked.expression, value).at(&asked.at).until(&asked.until)
         });
-        let field = self.chosen.field(&[self.active]);
+        let field = self.chosen.field_of_cycles(&[self.active]);
         let branch = monitors
             .fold(Cycles::of(&field, self.start.clone()), Cycles::monitor)
             .parameters(&self.chosen.parameters)

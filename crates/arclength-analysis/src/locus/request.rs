@@ -139,9 +139,6 @@ impl LocusRequest {
             ))
         })?;
         let is_of_cycles = matches!(start, Start::Cycle(..) | Start::HeldCycle(..));
-        if is_of_cycles {
-            chosen.has_continuous_cycles()?;
-        }
         let mut monitors = Monitors::default();
         for asked in &self.monitors {
             if is_of_cycles {
@@ -253,7 +250,10 @@ impl LocusAnalysis {
         control: &Control<'_>,
         watcher: &mut dyn FnMut(FoundPoint<'_>),
     ) -> Result<LocusResult, Error> {
-        let field = self.point.chosen.field(&self.active);
+        let chosen = &self.point.chosen;
+        let is_of_cycles = matches!(self.start, Start::Cycle(..) | Start::HeldCycle(..));
+        let field =
+            if is_of_cycles { chosen.field_of_cycles(&self.active) } else { chosen.field(&self.active) };
         let curve = EquilibriumLocus::of(&field);
         let (curve, how) = match &self.start {
             Start::Fold(fold) => (curve.from_fold(fold), "the folds through it"),

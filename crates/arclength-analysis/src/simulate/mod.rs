@@ -12,9 +12,11 @@ mod request;
 mod result;
 mod samples;
 mod section;
+mod settled;
 mod smooth;
 
 pub use plot::{PlotError, PlotRequest};
 pub use request::{IntegrationMethod, SimulateAnalysis, SimulateRequest};
 pub use result::{Histories, HistoryResult};
 pub use section::{SectionDirection, SectionError, SectionRequest};
+pub(crate) use settled::settled_orbit;

@@ -56,6 +56,8 @@ pub(super) struct Motion<'a> {
     pub unknown_switches: Option<f64>,
     /// The section with its crossings.
     pub section: Option<SectionWatch>,
+    /// The times at which one phase gave way to another, events among them.
+    pub breaks: Vec<f64>,
 }
 
 /// Why a motion was not followed further.
@@ -88,6 +90,7 @@ impl Course<'_> {
             steps: 0,
             unknown_switches: None,
             section: self.section.map(|section| section.watch(self.start_time, self.start)),
+            breaks: Vec::new(),
         };
         let thresholds = self.model.thresholds();
         let interval = [f64::NEG_INFINITY, f64::INFINITY];
@@ -182,7 +185,11 @@ impl Pursuit<'_, '_> {
         let mut at_once = 0;
         while self.time < end {
             let before = self.time;
-            match self.phase(stage, &phase, end)? {
+            let phase_end = self.phase(stage, &phase, end)?;
+            if matches!(phase_end, PhaseEnd::Passed(_) | PhaseEnd::Happens(_)) {
+                self.motion.breaks.push(self.time);
+            }
+            match phase_end {
                 PhaseEnd::Passed(exit) => {
                     let scales = self.accuracy.scales(&self.state);
                     stage.draw_to_slide(&phase, self.time, &mut self.state, &scales);

@@ -46,7 +46,8 @@ pub struct SimulateRequest {
     /// [`default_points`](Self::default_points).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<u64>,
-    /// Time at which it starts, or the model's `t0`, or 0.
+    /// Time at which it starts; or, of a model that depends on the time, that at which the motion ended from whose end it goes on; or
+    /// the model's `t0`, or 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub t0: Option<f64>,
     /// Time before which there are no samples, or the model's `trans`.
@@ -183,11 +184,11 @@ impl SimulateRequest {
             return Err(Error::invalid(&["points"], points.to_string(), problem, "nothing with a section"));
         }
         let OpenedModel { chosen, mut warnings, point } = self.model.open_among(files)?;
-        let goes_on = matches!(point.map(|point| point.solution), Some(LabelledSolution::Motion { .. }));
-        if goes_on && self.t0.is_none() && !chosen.model.is_autonomous() {
-            let text = "the model depends on the time, which begins anew: to go on where the motion ended, set the time at which it starts (--t0)";
-            warnings.push(text.to_owned());
-        }
+        // A model that depends on the time goes on at the time at which the motion ended.
+        let ended = match point.map(|point| point.solution) {
+            Some(LabelledSolution::Motion { end, .. }) if !chosen.model.is_autonomous() => Some(end),
+            _ => None,
+        };
         let mut expressions = Expressions::default();
         let plots = self.plots.iter().map(|plot| plot.resolve(&chosen, &mut expressions));
         let plots = plots.collect::<Result<Vec<_>, _>>()?;
@@ -213,7 +214,8 @@ impl SimulateRequest {
         if file.number("dt").is_some_and(|step| step < 0.0) {
             warnings.push("a negative @ dt, which in XPPAUT goes backwards in time, has no effect: the motion goes forwards".to_owned());
         }
-        let start = self.t0.or_else(|| file.number("t0").filter(|time| time.is_finite())).unwrap_or(0.0);
+        let of_file = || file.number("t0").filter(|time| time.is_finite());
+        let start = self.t0.or(ended).or_else(of_file).unwrap_or(0.0);
         let end = start + duration;
         if end <= start {
             return Err(Error::invalid(

@@ -4,6 +4,7 @@ mod closed_branches;
 mod files;
 mod found_by_users;
 mod held;
+mod hybrid;
 mod kinks;
 mod monitors;
 mod orbits;

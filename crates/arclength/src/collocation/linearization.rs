@@ -63,6 +63,8 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         let directions =
             (0..n + e).filter(|&column| Some(column) != self.problem.factor().map(|index| n + index));
         let directions: Vec<usize> = directions.collect();
+        let few = self.problem.takes_few_directions();
+        let most = if few { NARROW } else { WIDE };
         let mut narrow = DualWorkspace::<NARROW>::new(n, e, integrals.len());
         let mut wide = DualWorkspace::<WIDE>::new(n, e, integrals.len());
         let mut values = vec![0.0; degree * n];
@@ -72,7 +74,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 let state = &here[n * (point + 1)..n * (point + 2)];
                 let value = &mut values[point * n..(point + 1) * n];
                 let place = Place { interval, point };
-                for now in directions.chunks(WIDE) {
+                for now in directions.chunks(most) {
                     // The values are the same in all chunks, so that only the first one counts them.
                     let sums = if now[0] == directions[0] { &mut integrals[..] } else { &mut [] };
                     if now.len() <= NARROW {
@@ -93,7 +95,11 @@ impl<P: BoundaryValueEquations> Collocation<P> {
             if self.has_jumps
                 && let Some(index) = self.jump_behind(interval)
             {
-                self.differentiate_jump(index, interval, states, scalars, residual);
+                if few {
+                    self.differentiate_jump::<NARROW>(index, interval, states, scalars, residual);
+                } else {
+                    self.differentiate_jump::<WIDE>(index, interval, states, scalars, residual);
+                }
             }
         }
         if !(self.boundary_is_differentiated && self.problem.has_linear_boundary_conditions()) {
@@ -105,21 +111,23 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     }
 
     /// Derivatives of a jump with respect to the state before it and the scalars, and the residual there.
-    fn differentiate_jump(
+    fn differentiate_jump<const D: usize>(
         &mut self,
         index: usize,
         interval: usize,
         states: &[f64],
         scalars: &[f64],
         residual: &mut [f64],
-    ) {
+    ) where
+        Dual<f64, D>: JacobianScalar,
+    {
         let n = self.problem.dimension();
         let point = [&self.end_of(states, interval), scalars].concat();
-        let mut duals: Vec<Dual<f64, WIDE>> = point.iter().map(|value| Dual::constant(*value)).collect();
+        let mut duals: Vec<Dual<f64, D>> = point.iter().map(|value| Dual::constant(*value)).collect();
         let mut after = vec![Dual::zero(); n];
         let mut derivatives = Vec::with_capacity(n * point.len());
-        for first in (0..point.len()).step_by(WIDE) {
-            let width = WIDE.min(point.len() - first);
+        for first in (0..point.len()).step_by(D) {
+            let width = D.min(point.len() - first);
             for direction in 0..width {
                 duals[first + direction].derivatives[direction] = 1.0;
             }

@@ -93,6 +93,11 @@ pub trait BoundaryValueEquations {
         false
     }
 
+    /// Whether the problem serves fewer directions at a time only, as where it differentiates a field twice more.
+    fn takes_few_directions(&self) -> bool {
+        false
+    }
+
     /// Times at which the solution is handed on by [`jump`](Self::jump), in ascending order: inner points of every mesh.
     fn jumps(&self) -> &[f64] {
         &[]

@@ -280,6 +280,11 @@ impl Curve for CycleCurve<'_> {
         after: &Solution<CycleInspection>,
     ) -> Option<Ending<CycleEnd>> {
         self.follows_neutral_family = before.point.is_neutral && after.point.is_neutral;
+        if let Some(touch) = self.touch(&after.unknown) {
+            let grazes = self.grazes.take().unwrap_or_else(|| self.grazing(before, after, touch));
+            self.grazes = Some(grazes.clone());
+            return Some(Ending::Approached(Stop::Problem(grazes)));
+        }
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         if self.turn(&after.tangent).abs() < STANDING && self.sizes.growth() > UNBOUNDED_GROWTH {

@@ -1,8 +1,11 @@
 //! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
 
+use super::end::CycleEnd;
 use super::extrema::{Range, ranges};
 use super::floquet::Floquet;
+use super::gate::Place;
 use super::limit_cycle::LimitCycle;
+use super::passages::Touch;
 use super::segments::Segments;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
@@ -13,7 +16,7 @@ use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct};
-use crate::error::Error;
+use crate::error::{CorrectionFailure, Error};
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 
@@ -117,6 +120,12 @@ pub(crate) struct CycleCurve<'a> {
     relation: Option<f64>,
     /// Why the segments of the start are not known.
     segments_error: Option<Error>,
+    /// An event that a cycle did not come to any more where it had to.
+    pub(super) lost: Option<usize>,
+    /// Whether a cycle was met that passes no event without its jump.
+    is_clear: bool,
+    /// The grazing in which the curve ends.
+    pub(super) grazes: Option<CycleEnd>,
 }
 
 impl<'a> CycleCurve<'a> {
@@ -129,6 +138,7 @@ impl<'a> CycleCurve<'a> {
     ) -> Self {
         collocation.set_reference(start);
         let n = collocation.problem.dimension();
+        collocation.problem.segments = None;
         let segments_error = find_segments(&mut collocation, start).err();
         if collocation.problem.has_borders() {
             collocation.set_mesh(collocation.mesh().to_vec(), start);
@@ -150,6 +160,9 @@ impl<'a> CycleCurve<'a> {
             collocation,
             schur: None,
             relation: None,
+            lost: None,
+            is_clear: false,
+            grazes: None,
         };
         curve.rescale(start);
         curve.collocation.set_reference(start);
@@ -165,10 +178,11 @@ impl<'a> CycleCurve<'a> {
         curve
     }
 
-    /// Has mesh points be the borders that the cycle passes, and the segments those that it goes through.
+    /// Has mesh points be the gates that the cycle passes, and the segments those that it goes through.
     ///
     /// # Errors
-    /// [`Error::TooManyBorders`].
+    /// [`Error::TooManyBorders`]; [`Error::NotFound`] where an event does not happen that has to, or not with the same others;
+    /// [`Error::EventWithoutJump`] for a start that passes an event without the jump.
     pub(super) fn fit_segments(
         &mut self,
         unknown: &mut Vec<f64>,
@@ -181,13 +195,25 @@ impl<'a> CycleCurve<'a> {
             return Ok(Adaptation::Unchanged);
         }
         let moved = fit_jumps(&mut self.collocation, unknown, vectors);
+        if let Some(event) = self.lost_event(unknown, moved) {
+            self.lost = Some(event);
+            return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
+        }
         let collocation = &mut self.collocation;
         let known = collocation.problem.segments.clone();
         let mesh = collocation.mesh().to_vec();
         find_exact_segments(collocation, unknown)?;
         let found = &mut collocation.problem.segments;
+        match found.as_ref().and_then(|found| found.touched) {
+            Some(Touch { place: Place::Condition { event }, .. }) if !self.is_clear => {
+                return Err(Error::EventWithoutJump { event: event + 1 });
+            }
+            touched => self.is_clear |= touched.is_none(),
+        }
         let is_same = found.as_ref().zip(known.as_ref()).is_some_and(|(found, known)| found.are_like(known));
-        if moved.is_some() && is_same {
+        let touches = found.as_ref().is_some_and(|found| found.touched.is_some());
+        if moved.is_some() && (is_same || touches) {
+            // Beyond a grazing the cycle is still that of before, as far as its end is located.
             *found = known;
         } else if let Some(segments) = found {
             let finer = with_points(&mesh, &segments.times);
@@ -206,8 +232,32 @@ impl<'a> CycleCurve<'a> {
         if let Some(origin) = origin {
             self.count_from(origin, unknown, vectors);
         }
-        let is_moved = !is_same || moved.is_none_or(|moved| moved > SAME_TIME);
+        let is_moved = !(is_same || touches) || moved.is_none_or(|moved| moved > SAME_TIME);
         Ok(if is_moved || origin.is_some() { Adaptation::Changed } else { Adaptation::Unchanged })
+    }
+
+    /// The event that a cycle does not come to where it has to, or with other events than known; `moved` is how far mesh points were
+    /// moved to the gates.
+    fn lost_event(&self, unknown: &[f64], moved: Option<f64>) -> Option<usize> {
+        let collocation = &self.collocation;
+        let problem = &collocation.problem;
+        let segments = problem.segments.as_ref().filter(|segments| segments.has_jumps())?;
+        let (states, scalars) = unknown.split_at(unknown.len() - 2);
+        let is_lost = |(index, point): (usize, usize)| {
+            let before = collocation.end_of(states, point - 1);
+            let event = segments.event_of(index)?;
+            problem.delay(index, &before, scalars).is_none().then_some(event)
+        };
+        if moved.is_none() {
+            return collocation.jump_points().into_iter().enumerate().find_map(is_lost);
+        }
+        let is_there = moved.is_some_and(|moved| moved <= SAME_TIME);
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = scalars[1];
+        let polynomials = collocation.polynomials(unknown);
+        let holds = !is_there || segments.jumps_hold(problem.field, polynomials, &parameters);
+        let first = (0..segments.times.len()).find_map(|index| segments.event_of(index));
+        first.filter(|_| !holds)
     }
 
     /// The same cycle with mesh points at the borders, and its extremes; `None` where the mesh has them, or they are not found. The

@@ -134,6 +134,10 @@ impl BoundaryValueEquations for Defining<'_> {
         }
     }
 
+    fn takes_few_directions(&self) -> bool {
+        self.segments.as_ref().is_some_and(Segments::has_slides)
+    }
+
     fn jumps(&self) -> &[f64] {
         self.segments.as_ref().map_or(&[], |segments| &segments.times)
     }
@@ -215,27 +219,30 @@ impl Defining<'_> {
         std::iter::once(first).chain(self.second.map(|index| (index, lift(scalars[2 + own])))).collect()
     }
 
-    /// The active parameters in place of their values, in the segment of a time.
+    /// Writes the field in the segment of a time.
     #[inline]
-    fn with_active<T: Scalar, R>(
+    fn velocity<T: Scalar, R: FieldScalar>(
         &self,
         time: f64,
         scalars: &[T],
         lift: impl Fn(T) -> R,
-        action: impl FnOnce(&[R]),
-    ) where
-        R: Scalar,
-    {
+        state: &[R],
+        derivative: &mut [R],
+    ) {
         let own = self.kind.own_scalars();
         let first = (self.active, lift(scalars[1 + own]));
-        let parameters =
-            self.segments.as_ref().map_or(&self.parameters[..], |segments| segments.parameters_at(time));
-        match self.second {
-            Some(index) => {
-                let replaced = [first, (index, lift(scalars[2 + own]))];
-                with_parameters(parameters, replaced, action);
+        let second = self.second.map(|index| (index, lift(scalars[2 + own])));
+        match &self.segments {
+            None => with_parameters(&self.parameters, [first].into_iter().chain(second), |parameters| {
+                self.field.evaluate(state, parameters, derivative);
+            }),
+            Some(segments) => {
+                let course = segments.course_at(time);
+                match second {
+                    Some(second) => course.velocity(self.field, state, &[first, second], derivative),
+                    None => course.velocity(self.field, state, &[first], derivative),
+                }
             }
-            None => with_parameters(parameters, [first], action),
         }
     }
 
@@ -252,23 +259,22 @@ impl Defining<'_> {
         let n = self.scales.len();
         let duals: Vec<Dual<T, 1>> =
             (0..n).map(|index| Dual::variable(state[index], usize::from(index != direction))).collect();
-        self.with_active(time, scalars, Dual::constant, |parameters: &[Dual<T, 1>]| {
-            if direction == n {
-                let mut parameters = parameters.to_vec();
-                parameters[self.active].derivatives[0] = T::one();
-                self.field.evaluate(&duals, &parameters, values);
-            } else {
-                self.field.evaluate(&duals, parameters, values);
-            }
-        });
+        let lift = |value: T| Dual { value, derivatives: [T::zero()] };
+        if direction < n {
+            return self.velocity(time, scalars, lift, &duals, values);
+        }
+        let own = self.kind.own_scalars();
+        let mut moved = vec![lift(T::zero()); scalars.len()];
+        for (entry, scalar) in moved.iter_mut().zip(scalars) {
+            *entry = lift(*scalar);
+        }
+        moved[1 + own].derivatives[0] = T::one();
+        self.velocity(time, &moved, |value| value, &duals, values);
     }
 
     #[inline]
     fn flow<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
-        let lift = |value| value;
-        self.with_active(time, scalars, lift, |parameters: &[T]| {
-            self.field.evaluate(state, parameters, derivative)
-        });
+        self.velocity(time, scalars, |value| value, state, derivative);
         derivative.iter_mut().for_each(|entry| *entry *= scalars[0]);
     }
 
@@ -371,9 +377,7 @@ impl Defining<'_> {
         let n = self.scales.len();
         let mut values = vec![Dual::<T, K>::zero(); n];
         let duals = lifted::<T, K>(state, n);
-        self.with_active(time, scalars, Dual::constant, |parameters: &[Dual<T, K>]| {
-            self.field.evaluate(&duals, parameters, &mut values);
-        });
+        self.velocity(time, scalars, Dual::constant, &duals, &mut values);
         let period = scalars[0];
         for index in 0..n {
             derivative[index] = values[index].value * period;

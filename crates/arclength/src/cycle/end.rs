@@ -36,6 +36,18 @@ pub enum CycleEnd {
         /// The equilibrium beside which the time is spent.
         beside: SlowPassage,
     },
+    /// The cycles touch the condition of an event, or a border at which the field jumps, without passing it: beyond this grazing they
+    /// go another way.
+    Grazing {
+        /// What is touched.
+        of: Grazed,
+        /// Parameter value there.
+        parameter: f64,
+        /// Period there.
+        period: f64,
+        /// Whether it was located; otherwise it is where the last cycles lead.
+        located: bool,
+    },
     /// The amplitude grows without bound while the parameter tends to a value.
     AmplitudeUnbounded {
         /// Period of the last cycle.
@@ -45,11 +57,22 @@ pub enum CycleEnd {
     },
 }
 
+/// What cycles touch at a grazing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grazed {
+    /// The condition of an event, by its number, counted from one.
+    Event(usize),
+    /// A border at which the field jumps.
+    Border,
+}
+
 impl WithParameters for CycleEnd {
     fn with_parameters(mut self, convert: impl Fn(usize, f64) -> f64) -> Self {
         match &mut self {
             Self::HopfPoint { parameter, .. }
             | Self::PeriodDoubling { parameter, .. }
+            | Self::Grazing { parameter, .. }
             | Self::AmplitudeUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
             Self::PeriodUnbounded { parameter, beside, .. } => {
                 *parameter = convert(0, *parameter);
@@ -81,6 +104,23 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
+            Self::Grazing { of, parameter, period, located } => {
+                let (about, place) = if *located {
+                    ("", wording.at(0, *parameter))
+                } else {
+                    ("about ", wording.near(0, *parameter))
+                };
+                let touched = match of {
+                    Grazed::Event(event) => format!("the condition of event {event}"),
+                    Grazed::Border => "a border at which the field jumps".to_owned(),
+                };
+                Explanation::of(format!(
+                    "grazing: at {about}{place} the cycle of period {} touches {touched} without passing it, and beyond it goes \
+                     another way",
+                    wording.time(*period)
+                ))
+                .try_this("simulate beyond, and cycles from the end of that motion")
+            }
             Self::AmplitudeUnbounded { period, parameter } => Explanation::of(format!(
                 "the amplitude grows without bound while {} tends to {}; the last period is {}",
                 wording.name(0),

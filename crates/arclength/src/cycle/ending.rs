@@ -45,7 +45,9 @@ impl Asked<'_> {
                         (*parameter, *period) = (value, exact);
                     }
                 }
-                CycleEnd::PeriodUnbounded { .. } | CycleEnd::AmplitudeUnbounded { .. } => {}
+                CycleEnd::PeriodUnbounded { .. }
+                | CycleEnd::AmplitudeUnbounded { .. }
+                | CycleEnd::Grazing { .. } => {}
             }
         }
     }

@@ -15,6 +15,9 @@ const MOST_ITERATIONS: usize = 60;
 /// Part of the largest value to which extreme values are found.
 const ROUNDING: f64 = 1e-14;
 
+/// Part of its range by which a function changes at a mesh point where the state jumps; less is rounding.
+const JUMP: f64 = 1e-9;
+
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Range {
@@ -32,17 +35,25 @@ pub(crate) fn ranges<P: BoundaryValueEquations>(
     let cycle = collocation.polynomials(unknown);
     let times = cycle.node_times();
     let mut values = vec![0.0; times.len()];
+    let before_jumps: Vec<Vec<f64>> =
+        collocation.jump_points().into_iter().map(|point| collocation.end_of(unknown, point - 1)).collect();
     (0..count)
         .map(|component| {
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
                 *value = state[component];
             }
-            range(Curve {
+            let mut range = range(Curve {
                 times: &times,
                 values: &values,
                 slope_at_node: &|index| cycle.slope_at_node(index, component),
                 at: &|time| cycle.component(time - time.floor(), component),
-            })
+            });
+            // What is reached before a jump is no node.
+            for end in &before_jumps {
+                range.largest = range.largest.max(end[component]);
+                range.smallest = range.smallest.min(end[component]);
+            }
+            range
         })
         .collect()
 }
@@ -98,17 +109,32 @@ impl Orbit {
                 values[function * times.len() + node] = found.value;
             }
         }
+        // What is reached before a jump is no node.
+        let mut end = vec![0.0; n];
+        let ends = (0..self.mesh.len() - 2).map(|interval| {
+            cycle.state_within(interval..interval + 1, self.mesh[interval + 1], &mut end);
+            let mut state = state.borrow_mut();
+            for (entry, value) in state.iter_mut().zip(&end) {
+                *entry = Dual::constant(*value);
+            }
+            functions(&state).map(|found| found.value)
+        });
+        let ends: Vec<[f64; K]> = ends.collect();
         std::array::from_fn(|function| {
+            let values = &values[function * times.len()..(function + 1) * times.len()];
             let Range { smallest, largest } = range(Curve {
                 times: &times,
-                values: &values[function * times.len()..(function + 1) * times.len()],
+                values,
                 slope_at_node: &|node| at_node(node, true)[function].derivatives[0],
                 at: &|time| {
                     let Dual { value, derivatives: [slope] } = at_time(time)[function];
                     (value, slope)
                 },
             });
-            [smallest, largest]
+            let starts = values.iter().step_by(self.degree + 1).skip(1);
+            let ends = ends.iter().map(|end| end[function]).zip(starts);
+            let jumps = ends.filter(|(end, start)| (end - *start).abs() > JUMP * (largest - smallest));
+            jumps.fold([smallest, largest], |[low, high], (end, _)| [low.min(end), high.max(end)])
         })
     }
 }

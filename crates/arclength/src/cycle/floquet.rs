@@ -15,6 +15,7 @@ use crate::linear::lu;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// Logarithms of multipliers are not followed below this.
 const SMALLEST_LOGARITHM: f64 = -700.0;
@@ -29,6 +30,9 @@ const DEAD: f64 = -30.0;
 /// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
 const CONTRADICTION: f64 = 0.05;
 
+/// A pivot of a jump below this part of the largest one is zero but for rounding: the jump takes a direction to nothing.
+const SINGULAR: f64 = 1e-12;
+
 /// Errors of multipliers over what their product shows of them.
 const CANCELLATION: f64 = 10.0;
 
@@ -42,8 +46,10 @@ pub(crate) struct Floquet {
     /// How far the computed trivial multiplier, and with it the split, is from exact.
     pub trivial_error: f64,
     /// The integral of the divergence of the field over the period: by Liouville's formula the logarithm of the product of all
-    /// multipliers.
+    /// multipliers. Where the state jumps the logarithms of the determinants are in it.
     pub divergence: f64,
+    /// Sign of the product of all multipliers: that of a flow is positive, where the state jumps it need not be.
+    pub sign: f64,
 }
 
 impl Floquet {
@@ -142,8 +148,10 @@ impl Floquet {
     pub(crate) fn with_critical(&self, critical: Multiplier) -> Option<Self> {
         let nontrivial = match self.nontrivial.len() {
             2 => {
-                // Their product is positive.
-                let other = Multiplier { log_modulus: self.divergence, argument: critical.argument };
+                // Their product is known.
+                let turn = if self.sign < 0.0 { PI - critical.argument } else { critical.argument };
+                let other =
+                    Multiplier { log_modulus: self.divergence - critical.log_modulus, argument: turn };
                 let is_larger = other.log_modulus > critical.log_modulus;
                 if is_larger { vec![other, critical] } else { vec![critical, other] }
             }
@@ -190,7 +198,8 @@ impl Floquet {
         let floor = self.margin().ln();
         let negative =
             self.nontrivial.iter().filter(|multiplier| multiplier.is_real() && multiplier.argument != 0.0);
-        negative.count() % 2 == 1 && self.nontrivial.iter().all(|multiplier| multiplier.log_modulus > floor)
+        let is_odd = negative.count() % 2 == 1;
+        is_odd != (self.sign < 0.0) && self.nontrivial.iter().all(|multiplier| multiplier.log_modulus > floor)
     }
 }
 
@@ -273,23 +282,38 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
     }
     let trivial_error = (trivial - 1.0).abs().max(coupling);
     let jumps = collocation.linear_jumps().iter();
-    let divergence = divergence(collocation, n)
-        + jumps.map(|jump| logarithm_of_determinant(&jump.derivatives[..n * n], n)).sum::<f64>();
+    let (mut divergence, mut sign, mut zeros) = (divergence(collocation, n), 1.0, 0);
+    for jump in jumps {
+        let (logarithm, factor) = determinant(&jump.derivatives[..n * n], n);
+        divergence += logarithm;
+        sign *= factor;
+        zeros = zeros.max(nullity(&jump.derivatives[..n * n], scales));
+    }
+    if zeros > 0 {
+        (divergence, sign) = (f64::NEG_INFINITY, 1.0);
+    }
     let nontrivial = if n == 1 {
         Vec::new()
     } else if n == 2 {
         // The formula gives the only one, however far from one it is.
-        vec![Multiplier { log_modulus: divergence, argument: 0.0 }]
+        vec![Multiplier { log_modulus: divergence, argument: if sign < 0.0 { PI } else { 0.0 } }]
     } else {
         if workspace.as_ref().is_none_or(|(count, _)| *count != intervals) {
             *workspace = Some((intervals, PeriodicSchur::new(n - 1, intervals)));
         }
         match workspace.as_mut().map(|(_, schur)| schur.multipliers(&factors)) {
-            Some(Ok(multipliers)) => multipliers.to_vec(),
+            Some(Ok(multipliers)) => {
+                let mut multipliers = multipliers.to_vec();
+                // What a jump takes to nothing stays there, whatever rounding makes of it.
+                for multiplier in multipliers.iter_mut().rev().take(zeros) {
+                    *multiplier = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0 };
+                }
+                multipliers
+            }
             _ => return Err(Error::Eigenvalues { quantity: "Floquet multipliers" }),
         }
     };
-    Ok(Floquet { nontrivial, trivial, trivial_error, divergence })
+    Ok(Floquet { nontrivial, trivial, trivial_error, divergence, sign })
 }
 
 /// The integral of the trace of the Jacobian over one period, from the derivatives of the last factorisation.
@@ -306,12 +330,43 @@ fn divergence<P: BoundaryValueEquations>(collocation: &Collocation<P>, n: usize)
         .sum()
 }
 
-/// Logarithm of the modulus of a determinant.
-fn logarithm_of_determinant(matrix: &[f64], n: usize) -> f64 {
+/// Logarithm of the modulus of the determinant of a jump, and its sign; minus infinity where it is singular.
+fn determinant(matrix: &[f64], n: usize) -> (f64, f64) {
     let mut factors = matrix.to_vec();
     let mut pivots = vec![0; n];
-    lu::factorize(&mut factors, n, &mut pivots);
-    (0..n).map(|index| factors[index * (n + 1)].abs().ln()).sum()
+    let sign = lu::factorize(&mut factors, n, &mut pivots);
+    if sign == 0.0 {
+        return (f64::NEG_INFINITY, 1.0);
+    }
+    ((0..n).map(|index| factors[index * (n + 1)].abs().ln()).sum(), sign)
+}
+
+/// Number of independent directions that a jump takes to nothing, in units of the sizes of the states: by elimination with the
+/// largest pivots.
+fn nullity(matrix: &[f64], scales: &[f64]) -> usize {
+    let n = scales.len();
+    let scaled = |index: usize| matrix[index] * scales[index / n] / scales[index % n];
+    let mut rest: Vec<f64> = (0..n * n).map(scaled).collect();
+    let mut first = 0.0;
+    for step in 0..n {
+        let places = (step..n).flat_map(|column| (step..n).map(move |row| (row, column)));
+        let largest = places.max_by(|a, b| rest[a.0 + n * a.1].abs().total_cmp(&rest[b.0 + n * b.1].abs()));
+        let Some((row, column)) = largest else { break };
+        let pivot = rest[row + n * column];
+        first = if step == 0 { pivot.abs() } else { first };
+        if pivot.abs() <= SINGULAR * first {
+            return n - step;
+        }
+        (0..n).for_each(|other| rest.swap(step + n * other, row + n * other));
+        (0..n).for_each(|other| rest.swap(other + n * step, other + n * column));
+        for below in step + 1..n {
+            let factor = rest[below + n * step] / pivot;
+            for other in step..n {
+                rest[below + n * other] -= factor * rest[step + n * other];
+            }
+        }
+    }
+    0
 }
 
 fn length(vector: &[f64]) -> f64 {

@@ -25,14 +25,15 @@ pub(crate) struct LimitCycle<'a> {
 }
 
 impl LimitCycle<'_> {
-    /// The segments of the cycle that polynomials describe at a value of the active parameter, with the borders where they are.
+    /// The segments of the cycle that polynomials describe at a value of the active parameter, with the gates where they are; the
+    /// state jumps where it is known to.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
     pub(crate) fn segments_of(&self, cycle: Polynomials<'_>, value: f64) -> Result<Option<Segments>, Error> {
         let mut parameters = self.parameters.clone();
         parameters[self.active] = value;
-        Segments::of(self.field, cycle, &parameters)
+        Segments::of(self.field, cycle, &parameters, self.segments.as_ref())
     }
 
     /// Whether the field switches along the cycle.
@@ -69,11 +70,15 @@ impl BoundaryValueEquations for LimitCycle<'_> {
 
     #[inline(always)]
     fn field<T: JacobianScalar>(&self, time: f64, state: &[T], scalars: &[T], derivative: &mut [T]) {
-        let parameters =
-            self.segments.as_ref().map_or(&self.parameters[..], |segments| segments.parameters_at(time));
-        with_parameters(parameters, [(self.active, scalars[1])], |parameters| {
-            self.field.evaluate(state, parameters, derivative);
-        });
+        match &self.segments {
+            None => with_parameters(&self.parameters, [(self.active, scalars[1])], |parameters| {
+                self.field.evaluate(state, parameters, derivative);
+            }),
+            Some(segments) => {
+                let course = segments.course_at(time);
+                course.velocity(self.field, state, &[(self.active, scalars[1])], derivative);
+            }
+        }
         for entry in derivative.iter_mut() {
             *entry *= scalars[0];
         }

@@ -1,7 +1,7 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
 use crate::collocation::gauss::Gauss;
-use crate::collocation::mesh::dividing_equally;
+use crate::collocation::mesh::{SAME_TIME, dividing_equally};
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
@@ -31,12 +31,14 @@ const HISTORY_DEGREE: usize = 7;
 const FEWEST_INTERVALS: usize = 40;
 const INTERVALS_PER_UNIT: f64 = 12.0;
 const MOST_INTERVALS: usize = 400;
+/// Fewest intervals between two breaks of a motion.
+const FEWEST_BETWEEN_BREAKS: usize = 4;
 /// Agreement of the state after one period, relative to the size of the motion.
 const HISTORY_CLOSURE: f64 = 0.05;
 
 /// A mesh of the unit interval that suits samples of a motion over one period: in every interval there is as much of the way in
 /// time, of the changes of the states and of the roots of those of their rates.
-fn mesh_for(times: &[f64], value: impl Fn(usize, usize) -> f64, dimension: usize) -> Vec<f64> {
+fn mesh_for(times: &[f64], value: impl Fn(usize, usize) -> f64, dimension: usize, fewest: usize) -> Vec<f64> {
     let count = times.len();
     let period = times[count - 1] - times[0];
     let mut masses = vec![0.0; count - 1];
@@ -59,7 +61,7 @@ fn mesh_for(times: &[f64], value: impl Fn(usize, usize) -> f64, dimension: usize
         *mass += (pair[1] - pair[0]) / period;
     }
     let total: f64 = masses.iter().sum();
-    let intervals = ((INTERVALS_PER_UNIT * total) as usize).clamp(FEWEST_INTERVALS, MOST_INTERVALS);
+    let intervals = ((INTERVALS_PER_UNIT * total) as usize).clamp(fewest, MOST_INTERVALS);
     let inner =
         dividing_equally(times, &masses, intervals).into_iter().map(|time| (time - times[0]) / period);
     let mut mesh: Vec<f64> = [0.0].into_iter().chain(inner).chain([1.0]).collect();
@@ -162,7 +164,7 @@ impl Orbit {
             let ((before, one), (after, other)) = (sample(index - 1), sample(index + 1));
             (other[component] - one[component]) / (after - before)
         };
-        let mesh = mesh_for(times, |index, component| states[index][component], dimension);
+        let mesh = mesh_for(times, |index, component| states[index][component], dimension, FEWEST_INTERVALS);
         Ok(Self::on_mesh(mesh, period, |time| {
             let time = times[0] + time;
             let index =
@@ -228,7 +230,8 @@ impl Orbit {
             along.extend_from_slice(stepper.state());
         }
         let gauss = Gauss::of(HISTORY_DEGREE);
-        let mesh = mesh_for(&steps, |index, component| along[index * dimension + component], dimension);
+        let value = |index: usize, component: usize| along[index * dimension + component];
+        let mesh = mesh_for(&steps, value, dimension, FEWEST_INTERVALS);
         let times: Vec<f64> = mesh
             .windows(2)
             .flat_map(|pair| {
@@ -237,6 +240,53 @@ impl Orbit {
             .map(|time| time * period)
             .collect();
         let states = integrator.sample(autonomous(field, parameters), initial, &times)?.states;
+        Ok(Self { mesh, degree: HISTORY_DEGREE, dimension, states, period })
+    }
+
+    /// An approximate periodic orbit of a motion that has breaks, at which its state jumps or its slope does, over one period from the
+    /// first of the samples to the last: the mesh suits the samples, of which those behind a break at its time come after those before,
+    /// and has the breaks among its points. `states_at` gives the states at ascending times, behind the break at one.
+    ///
+    /// # Errors
+    /// Those of `states_at`.
+    pub fn from_pieces<E>(
+        times: &[f64],
+        states: &[Vec<f64>],
+        breaks: &[f64],
+        states_at: impl FnOnce(&[f64]) -> Result<Vec<Vec<f64>>, E>,
+    ) -> Result<Self, E> {
+        let dimension = states.first().map_or(0, Vec::len);
+        let (start, end) = times.first().zip(times.last()).map_or((0.0, 1.0), |(start, end)| (*start, *end));
+        let period = end - start;
+        let mut mesh = vec![0.0];
+        let mut from = start;
+        for until in breaks.iter().copied().chain([end]) {
+            // Samples at a break are of either side.
+            let margin = SAME_TIME * period;
+            let first = times.partition_point(|time| *time <= from + margin);
+            let last = times.partition_point(|time| *time < until - margin).max(first);
+            let inside = &times[first..last];
+            let points = if inside.len() < FEWEST_BETWEEN_BREAKS {
+                (0..=FEWEST_BETWEEN_BREAKS).map(|index| index as f64 / FEWEST_BETWEEN_BREAKS as f64).collect()
+            } else {
+                let value = |index: usize, component: usize| states[first + index][component];
+                mesh_for(inside, value, dimension, FEWEST_BETWEEN_BREAKS)
+            };
+            let scale = |point: &f64| (from + point * (until - from) - start) / period;
+            mesh.extend(points[1..points.len() - 1].iter().map(scale));
+            mesh.push((until - start) / period);
+            from = until;
+        }
+        if let Some(last) = mesh.last_mut() {
+            *last = 1.0;
+        }
+        let gauss = Gauss::new(HISTORY_DEGREE);
+        let nodes: Vec<f64> = Polynomials { mesh: &mesh, gauss: &gauss, n: 0, states: &[] }
+            .node_times()
+            .into_iter()
+            .map(|time| start + period * time)
+            .collect();
+        let states = states_at(&nodes)?.concat();
         Ok(Self { mesh, degree: HISTORY_DEGREE, dimension, states, period })
     }
 

@@ -1,18 +1,18 @@
-//! The segments of a cycle whose field is smooth only piece by piece.
+//! The segments of a cycle whose field is smooth only piece by piece, or whose state jumps.
 //!
-//! Between two borders the cycle follows the smooth field of one region. Mesh points are put at the borders, and there the solution
-//! of one segment is handed on to the next: it is followed in the old region to the border itself, for the short time by which the mesh
-//! point misses it, and from there back for the same time in the new region. This zero-time map (Nordmark 1991; di Bernardo, Budd,
+//! Between two gates (borders of regions, events, beginnings and ends of slides) the cycle follows the smooth field of one
+//! [course](super::gate::Course). Mesh points are put at the gates, and there the solution of one segment is handed on to the next: it
+//! is followed in the old course to the gate itself, for the short time by which the mesh point misses it, jumps there if an event
+//! happens, and is followed from there back for the same time in the new course. This zero-time map (Nordmark 1991; di Bernardo, Budd,
 //! Champneys and Kowalczyk, *Piecewise-smooth Dynamical Systems* (2008), section 2.5) makes the times of crossing unknowns that are
 //! eliminated: its derivative is the saltation matrix, so that multipliers, defining systems and error estimates contain it.
 
+use super::gate::{Course, Gate, Place};
+use super::passages::{Along, Passage, Touch, Way};
 use crate::collocation::polynomials::Polynomials;
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar};
 use crate::error::Error;
-use crate::integration::equal_steps;
-use crate::parameters::with_parameters;
-use crate::pieces::{Border, Pieces};
 
 /// Iterations of Newton's method for the time to a border, and the change of it, as part of the period, at which it ends.
 const MOST_ITERATIONS: usize = 30;
@@ -26,41 +26,27 @@ const ORDERS: usize = 3;
 /// Length of the steps to a border and back, as part of the period, and most of them.
 const STEP: f64 = 2e-3;
 const MOST_STEPS: f64 = 500.0;
-/// Most borders that a cycle passes.
-const MOST_BORDERS: usize = 64;
-/// A visit beyond a border that is shorter than this part of the period is not seen: where the field has a kink it changes the
-/// cycle by its third power.
-const SHORTEST_VISIT: f64 = 2e-5;
 /// A border this close to the origin of the unit time, as part of the distance that another origin would have, asks for that one.
 const CLOSE_TO_ORIGIN: f64 = 0.1;
-/// Halvings to locate a crossing of the polynomials.
-const HALVINGS: usize = 60;
-/// Part of the size of a switch function by which it may be beyond a border without crossing it.
-const ROUNDING: f64 = 1e-10;
 
-/// The segments that a cycle goes through in the unit time, and the borders between them.
+/// The segments that a cycle goes through in the unit time, and the gates between them.
 #[derive(Clone, Debug)]
 pub(crate) struct Segments {
     /// Number of switch functions.
     switches: usize,
-    /// Parameters of the field in the region of every segment: those of the model and then the cells.
-    parameters: Vec<Vec<f64>>,
-    /// Times of the borders between one segment and the next, which are points of the mesh.
+    /// The courses of the segments.
+    courses: Vec<Course>,
+    /// Times of the gates between one segment and the next, which are points of the mesh.
     pub times: Vec<f64>,
-    /// The borders.
-    pub borders: Vec<Border>,
-}
-
-/// A border that a cycle passes at a time, and the region behind it.
-#[derive(Clone, Debug)]
-struct Passage {
-    time: f64,
-    border: Border,
-    region: Vec<f64>,
+    /// The gates.
+    gates: Vec<Gate>,
+    /// An event whose condition is passed without the jump.
+    pub touched: Option<Touch>,
 }
 
 impl Segments {
-    /// The segments of the cycle that polynomials describe; `None` where the field is smooth everywhere.
+    /// The segments of the cycle that polynomials describe; `None` where the field is smooth everywhere and has no events. The state
+    /// jumps where it does in the segments that are `known`, or, if none are, where the polynomials do as an event does.
     ///
     /// # Errors
     /// [`Error::TooManyBorders`].
@@ -68,43 +54,88 @@ impl Segments {
         field: ErasedField<'_>,
         cycle: Polynomials<'_>,
         parameters: &[f64],
+        known: Option<&Self>,
     ) -> Result<Option<Self>, Error> {
-        let Some(pieces) = Pieces::of_erased(field) else { return Ok(None) };
-        let samples = samples(cycle);
-        let state = |time: f64| {
-            let mut state = vec![0.0; cycle.n];
-            cycle.state(time - time.floor(), &mut state);
-            state
+        let Some(along) = Along::new(field, cycle, parameters) else { return Ok(None) };
+        let jumps = match known {
+            Some(known) => known.jumps_on(cycle.mesh),
+            None => along.jumps(),
         };
-        let along = Along { pieces: &pieces, parameters, state: &state };
-        let origin = along.farthest_from_borders(&samples);
-        let from = samples[origin];
-        let count = samples.len();
-        // Once around, from a place where nothing switches.
-        let around: Vec<f64> = (0..=count)
-            .map(|index| samples[(origin + index) % count] + ((origin + index) / count) as f64)
-            .collect();
-        let first = pieces.region_at(&state(from), parameters);
-        let mut passages = along.passages(&around, first.clone())?;
-        remove_short_visits(&mut passages, &first);
-        let region_at_zero = passages.iter().rev().find(|passage| passage.time <= 1.0);
-        let region_at_zero = region_at_zero.map_or(first, |passage| passage.region.clone());
-        for passage in &mut passages {
-            passage.time -= passage.time.floor();
+        let Way { first, passages, mut touched } = along.way(&jumps)?;
+        if let Some(known) = known
+            && touched.is_none()
+        {
+            touched = known.new_border_that_leads_away(&passages);
         }
-        passages.sort_by(|a, b| a.time.total_cmp(&b.time));
-        let regions =
-            std::iter::once(region_at_zero).chain(passages.iter().map(|passage| passage.region.clone()));
+        let courses = std::iter::once(first).chain(passages.iter().map(|passage| passage.course.clone()));
         Ok(Some(Self {
-            parameters: regions.map(|region| [parameters, &region[..]].concat()).collect(),
+            courses: courses.collect(),
             times: passages.iter().map(|passage| passage.time).collect(),
-            borders: passages.iter().map(|passage| passage.border).collect(),
-            switches: pieces.thresholds().len(),
+            gates: passages.into_iter().map(|passage| passage.gate).collect(),
+            switches: field.thresholds().len(),
+            touched,
         }))
     }
 
-    /// Moves the borders to the nearest points of a mesh, each to another one inside it; where there are too few points, a visit
-    /// beyond a border is left out.
+    /// A border among those that a cycle passes that was not passed before, where the field jumps and leads away: cycles like those of
+    /// before only touch it. (Where the field beyond pushes back they slide, and branches go on.)
+    fn new_border_that_leads_away(&self, passages: &[Passage]) -> Option<Touch> {
+        passages.iter().find(|passage| passage.leads_away && !self.gates.contains(&passage.gate)).map(
+            |passage| {
+                let side = if passage.gate.upwards { -1.0 } else { 1.0 };
+                Touch { place: passage.gate.place, side, time: passage.time }
+            },
+        )
+    }
+
+    /// The gates at which the state jumps, with the numbers of their mesh points.
+    fn jumps_on(&self, mesh: &[f64]) -> Vec<(usize, Gate)> {
+        let all = self.times.iter().zip(&self.gates).filter(|(_, gate)| !gate.events.is_empty());
+        all.map(|(time, gate)| (mesh.partition_point(|point| point < time), gate.clone())).collect()
+    }
+
+    /// The numbers of the gates at which an event is the one that is passed.
+    pub(crate) fn jumps_of(&self, event: usize) -> impl Iterator<Item = usize> {
+        let place = Place::Condition { event };
+        self.gates.iter().enumerate().filter(move |(_, gate)| gate.place == place).map(|(index, _)| index)
+    }
+
+    /// The event at a gate at which the state jumps.
+    pub(crate) fn event_of(&self, index: usize) -> Option<usize> {
+        match self.gates[index].place {
+            Place::Condition { event } => Some(event),
+            _ => None,
+        }
+    }
+
+    /// Whether the cycle slides somewhere.
+    pub(crate) fn has_slides(&self) -> bool {
+        self.courses.iter().any(|course| course.slide.is_some())
+    }
+
+    /// Whether the state jumps somewhere.
+    pub(crate) fn has_jumps(&self) -> bool {
+        self.gates.iter().any(|gate| !gate.events.is_empty())
+    }
+
+    /// Whether at every jump of a cycle, whose mesh points are the gates, the events happen that are known to.
+    pub(crate) fn jumps_hold(
+        &self,
+        field: ErasedField<'_>,
+        cycle: Polynomials<'_>,
+        parameters: &[f64],
+    ) -> bool {
+        let Some(along) = Along::new(field, cycle, parameters) else { return true };
+        self.jumps_on(cycle.mesh).into_iter().all(|(point, gate)| {
+            let Place::Condition { event } = gate.place else { return true };
+            let mut before = vec![0.0; cycle.n];
+            cycle.state_within(point - 1..point, cycle.mesh[point], &mut before);
+            along.event_at(&before, Some(event)).is_some_and(|now| now.events == gate.events)
+        })
+    }
+
+    /// Moves the gates to the nearest points of a mesh, each to another one inside it, those where the state jumps to their own; where
+    /// there are too few points, a visit beyond a border is left out.
     pub(crate) fn snap_to(&mut self, mesh: &[f64]) {
         let nearest = |time: f64| {
             let after = mesh.partition_point(|point| *point < time).clamp(1, mesh.len() - 1);
@@ -112,10 +143,21 @@ impl Segments {
             index.clamp(1, mesh.len() - 2)
         };
         let mut points: Vec<usize> = self.times.iter().map(|time| nearest(*time)).collect();
+        let jumps = |gate: &Gate| !gate.events.is_empty();
+        for index in 1..points.len() {
+            // Beside a jump there is another point.
+            if points[index] <= points[index - 1] {
+                match [index - 1, index].map(|index| jumps(&self.gates[index])) {
+                    [true, false] => points[index] = points[index - 1] + 1,
+                    [false, true] => points[index - 1] = points[index].saturating_sub(1).max(1),
+                    _ => {}
+                }
+            }
+        }
         while let Some(index) = points.windows(2).position(|pair| pair[0] >= pair[1]) {
             points.drain(index..index + 2);
-            self.borders.drain(index..index + 2);
-            self.parameters.drain(index + 1..index + 3);
+            self.gates.drain(index..index + 2);
+            self.courses.drain(index + 1..index + 3);
         }
         self.times = points.into_iter().map(|point| mesh[point]).collect();
     }
@@ -143,30 +185,30 @@ impl Segments {
         let count = mesh.len() - 1;
         self.times = points.iter().map(|point| mesh[(point + behind) % count]).collect();
         self.times.rotate_left(before);
-        self.borders.rotate_left(before);
+        self.gates.rotate_left(before);
         // The segment around the old origin is one, the one around the new origin is divided.
-        self.parameters.pop();
-        self.parameters.rotate_left(before);
-        let first = self.parameters[0].clone();
-        self.parameters.push(first);
+        self.courses.pop();
+        self.courses.rotate_left(before);
+        let first = self.courses[0].clone();
+        self.courses.push(first);
     }
 
-    /// Whether the cycle passes the same borders in the same order from the origin of the unit time on.
+    /// Whether the cycle passes the same gates in the same order from the origin of the unit time on.
     pub(crate) fn are_like(&self, other: &Self) -> bool {
-        let cells = |segments: &Self| -> Vec<Vec<f64>> {
-            segments.parameters.iter().map(|all| all[all.len() - segments.switches..].to_vec()).collect()
+        let cells = |segments: &Self| -> Vec<[Vec<f64>; 2]> {
+            segments.courses.iter().map(|course| course.cells(self.switches).map(<[f64]>::to_vec)).collect()
         };
-        self.borders == other.borders && cells(self) == cells(other)
+        self.gates == other.gates && cells(self) == cells(other)
     }
 
-    /// Parameters of the field at a time, cells included; at a border those behind it.
+    /// The course at a time; at a gate that behind it.
     #[inline]
-    pub(crate) fn parameters_at(&self, time: f64) -> &[f64] {
-        &self.parameters[self.times.partition_point(|border| *border <= time)]
+    pub(crate) fn course_at(&self, time: f64) -> &Course {
+        &self.courses[self.times.partition_point(|gate| *gate <= time)]
     }
 
-    /// Writes the state behind a border at its mesh point, of period `period`, from the state before it; not numbers where the
-    /// cycle does not pass the border nearby. `replaced` are the parameters that vary.
+    /// Writes the state behind a gate at its mesh point, of period `period`, from the state before it; not numbers where the
+    /// cycle does not pass the gate nearby. `replaced` are the parameters that vary.
     pub(crate) fn jump<T>(
         &self,
         field: ErasedField<'_>,
@@ -185,29 +227,22 @@ impl Segments {
             after.fill(T::from(f64::NAN));
             return;
         };
-        let n = before.len();
-        let border = self.borders[index];
+        let gate = &self.gates[index];
+        let [old, new] = [&self.courses[index], &self.courses[index + 1]];
         let steps = steps_for(delay, period);
         let mut delay = T::from(delay);
-        let mut at_border = before.to_vec();
-        with_parameters(&self.parameters[index], replaced.iter().copied(), |parameters: &[T]| {
-            let mut results = vec![T::zero(); n + self.switches];
-            for order in 0..=ORDERS {
-                let flow = |state: &[T], slope: &mut [T]| field.evaluate(state, parameters, slope);
-                at_border = equal_steps(flow, before, delay, steps);
-                if order < ORDERS {
-                    field.evaluate(&at_border, parameters, &mut results);
-                    delay -= (results[n + border.switch] - border.value) / rate;
-                }
+        let mut at_gate = before.to_vec();
+        for order in 0..=ORDERS {
+            at_gate = old.flow(field, before, replaced, delay, steps);
+            if order < ORDERS {
+                delay -= gate.value(field, old, &at_gate, replaced, self.switches) / rate;
             }
-        });
-        with_parameters(&self.parameters[index + 1], replaced.iter().copied(), |parameters: &[T]| {
-            let flow = |state: &[T], slope: &mut [T]| field.evaluate(state, parameters, slope);
-            after.copy_from_slice(&equal_steps(flow, &at_border, -delay, steps));
-        });
+        }
+        gate.reset(field, old, &mut at_gate, replaced, self.switches);
+        after.copy_from_slice(&new.flow(field, &at_gate, replaced, -delay, steps));
     }
 
-    /// How much later than its mesh point the cycle passes a border, in time, and the rate of the switch function there.
+    /// How much later than its mesh point the cycle passes a gate, in time, and the rate of its function there.
     pub(crate) fn delay(
         &self,
         field: ErasedField<'_>,
@@ -216,189 +251,45 @@ impl Segments {
         period: f64,
         replaced: &[(usize, f64)],
     ) -> Option<(f64, f64)> {
-        let n = before.len();
-        let border = self.borders[index];
+        let gate = &self.gates[index];
+        let course = &self.courses[index];
         let count = self.times.len();
-        // To the border before and to that behind, around the period.
+        // To the gate before and to that behind, around the period.
         let before_it = (self.times[index] - self.times[(index + count - 1) % count]).rem_euclid(1.0);
         let behind_it = (self.times[(index + 1) % count] - self.times[index]).rem_euclid(1.0);
         let longer = if count == 1 { 1.0 } else { before_it.max(behind_it) };
         let reach = REACH * longer * period;
-        with_parameters(&self.parameters[index], replaced.iter().copied(), |parameters: &[f64]| {
-            let lifted: Vec<Dual<f64, 1>> = parameters.iter().map(|value| Dual::constant(*value)).collect();
-            let mut slope = vec![0.0; n];
-            let mut results = vec![Dual::<f64, 1>::zero(); n + self.switches];
-            let (mut delay, mut last_change) = (0.0, f64::INFINITY);
-            for _ in 0..MOST_ITERATIONS {
-                let flow = |state: &[f64], slope: &mut [f64]| field.evaluate(state, parameters, slope);
-                let steps = steps_for(delay, period);
-                let state = equal_steps(flow, before, delay, steps);
-                field.evaluate(&state, parameters, &mut slope);
-                let along = state.iter().zip(&slope);
-                let along: Vec<_> =
-                    along.map(|(value, slope)| Dual { value: *value, derivatives: [*slope] }).collect();
-                field.evaluate(&along, &lifted, &mut results);
-                let Dual { value, derivatives: [rate] } = results[n + border.switch];
-                let change = (value - border.value) / rate;
-                delay -= change;
-                let is_near = delay.abs() <= reach;
-                if !is_near || (rate > 0.0) != border.upwards {
-                    return None;
-                }
-                let is_rounding = change.abs() <= STAGNATION * period && change.abs() >= last_change;
-                if change.abs() <= CONVERGED * period || is_rounding {
-                    return Some((delay, rate));
-                }
-                last_change = change.abs();
+        let lifted: Vec<(usize, Dual<f64, 1>)> =
+            replaced.iter().map(|(place, value)| (*place, Dual::constant(*value))).collect();
+        let mut slope = vec![0.0; before.len()];
+        let (mut delay, mut last_change) = (0.0, f64::INFINITY);
+        for _ in 0..MOST_ITERATIONS {
+            let state = course.flow(field, before, replaced, delay, steps_for(delay, period));
+            course.velocity(field, &state, replaced, &mut slope);
+            let along: Vec<_> = state
+                .iter()
+                .zip(&slope)
+                .map(|(value, slope)| Dual { value: *value, derivatives: [*slope] })
+                .collect();
+            let Dual { value, derivatives: [rate] } =
+                gate.value(field, course, &along, &lifted, self.switches);
+            let change = value / rate;
+            delay -= change;
+            let is_near = delay.abs() <= reach;
+            if !is_near || (rate > 0.0) != gate.upwards {
+                return None;
             }
-            None
-        })
+            let is_rounding = change.abs() <= STAGNATION * period && change.abs() >= last_change;
+            if change.abs() <= CONVERGED * period || is_rounding {
+                return Some((delay, rate));
+            }
+            last_change = change.abs();
+        }
+        None
     }
 }
 
 /// Number of steps that are exact to rounding over a short time.
 fn steps_for(delay: f64, period: f64) -> usize {
     1 + (delay.abs() / (STEP * period)).min(MOST_STEPS) as usize
-}
-
-/// Times at which the polynomials are looked at: twice as many in every interval as it has nodes.
-fn samples(cycle: Polynomials<'_>) -> Vec<f64> {
-    let count = 2 * (cycle.gauss.degree() + 1);
-    cycle
-        .mesh
-        .windows(2)
-        .flat_map(|pair| {
-            (0..count).map(move |index| pair[0] + (pair[1] - pair[0]) * index as f64 / count as f64)
-        })
-        .collect()
-}
-
-/// Drops visits beyond a border that are too short to be followed.
-fn remove_short_visits(passages: &mut Vec<Passage>, first: &[f64]) {
-    let mut index = 0;
-    while index + 1 < passages.len() {
-        let region = if index == 0 { first } else { &passages[index - 1].region };
-        let [out, back] = [&passages[index], &passages[index + 1]];
-        if back.time - out.time < SHORTEST_VISIT && back.region == region {
-            passages.drain(index..index + 2);
-            index = index.saturating_sub(1);
-        } else {
-            index += 1;
-        }
-    }
-}
-
-/// A cycle as a function of time.
-struct Along<'a> {
-    pieces: &'a Pieces<'a>,
-    parameters: &'a [f64],
-    state: &'a dyn Fn(f64) -> Vec<f64>,
-}
-
-impl Along<'_> {
-    fn switches(&self, region: &[f64], time: f64) -> Vec<f64> {
-        self.pieces.switches(region, &(self.state)(time), self.parameters)
-    }
-
-    /// The sample at which all switch functions are farthest from their borders, in units of how far they vary.
-    fn farthest_from_borders(&self, samples: &[f64]) -> usize {
-        let values: Vec<(Vec<f64>, Vec<f64>)> = samples
-            .iter()
-            .map(|&time| {
-                let region = self.pieces.region_at(&(self.state)(time), self.parameters);
-                let switches = self.switches(&region, time);
-                (region, switches)
-            })
-            .collect();
-        let switches = self.pieces.thresholds().len();
-        let sizes: Vec<f64> = (0..switches)
-            .map(|switch| {
-                let all = values.iter().map(|(_, values)| values[switch]);
-                let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                    (low.min(value), high.max(value))
-                });
-                (high - low).max(f64::MIN_POSITIVE)
-            })
-            .collect();
-        let distance = |(region, values): &(Vec<f64>, Vec<f64>)| {
-            (0..switches)
-                .map(|switch| {
-                    let [lower, upper] = self.pieces.thresholds()[switch].borders(region[switch]);
-                    (values[switch] - lower).min(upper - values[switch]) / sizes[switch]
-                })
-                .fold(f64::INFINITY, f64::min)
-        };
-        let distances: Vec<f64> = values.iter().map(distance).collect();
-        (0..samples.len()).max_by(|a, b| distances[*a].total_cmp(&distances[*b])).unwrap_or(0)
-    }
-
-    /// The borders that are passed between times in order, from a region.
-    fn passages(&self, times: &[f64], mut region: Vec<f64>) -> Result<Vec<Passage>, Error> {
-        let mut found: Vec<Passage> = Vec::new();
-        for pair in times.windows(2) {
-            let [mut from, until] = [pair[0], pair[1]];
-            while let Some((time, border)) = self.exit(&region, from, until) {
-                region = self.pieces.beyond(&region, border, &(self.state)(time), self.parameters);
-                found.push(Passage { time, border, region: region.clone() });
-                if found.len() > MOST_BORDERS {
-                    return Err(Error::TooManyBorders { limit: MOST_BORDERS });
-                }
-                from = time;
-            }
-        }
-        Ok(found)
-    }
-
-    /// The first border of a region that is passed between two times, and when: between them a switch function is taken for a
-    /// parabola, whose turn is looked at too.
-    fn exit(&self, region: &[f64], from: f64, until: f64) -> Option<(f64, Border)> {
-        let middle = 0.5 * (from + until);
-        let [start, half, end] = [from, middle, until].map(|time| self.switches(region, time));
-        let mut first: Option<(f64, Border)> = None;
-        for (switch, threshold) in self.pieces.thresholds().iter().enumerate() {
-            let [lower, upper] = threshold.borders(region[switch]);
-            for (value, upwards) in [(lower, false), (upper, true)] {
-                if value.is_infinite() {
-                    continue;
-                }
-                let sign = if upwards { 1.0 } else { -1.0 };
-                let beyond = |values: &[f64]| sign * (values[switch] - value);
-                let margin = ROUNDING * start[switch].abs().max(end[switch].abs());
-                let [a, b, c] = [&start, &half, &end].map(|values| beyond(values));
-                let place = 0.5 - 0.25 * (c - a) / (a - 2.0 * b + c);
-                let turn = from + place * (until - from);
-                let mut candidates = vec![middle, until];
-                if from < turn && turn < until {
-                    candidates.push(turn);
-                    candidates.sort_by(f64::total_cmp);
-                }
-                let is_beyond = |time: &f64| beyond(&self.switches(region, *time)) > margin;
-                let far = candidates.into_iter().find(is_beyond);
-                let Some(far) = far else { continue };
-                let crossing = if a > 0.0 { from } else { self.crossing((from, far), beyond, region) };
-                if first.is_none_or(|(time, _)| crossing < time) {
-                    first = Some((crossing, Border { switch, value, upwards }));
-                }
-            }
-        }
-        first
-    }
-
-    /// The time of a crossing between two.
-    fn crossing(
-        &self,
-        (mut inside, mut outside): (f64, f64),
-        beyond: impl Fn(&[f64]) -> f64,
-        region: &[f64],
-    ) -> f64 {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (inside + outside);
-            if beyond(&self.switches(region, middle)) > 0.0 {
-                outside = middle;
-            } else {
-                inside = middle;
-            }
-        }
-        outside
-    }
 }

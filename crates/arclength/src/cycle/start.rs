@@ -276,7 +276,15 @@ impl<'a> Asked<'a> {
     ) -> Result<FollowedCycles, Error> {
         let mut curve = self.curve(start);
         curve.doubled = doubled;
-        follow(&mut curve, start.unknown.clone(), start.tangent.clone(), request, observer)
+        let mut followed =
+            follow(&mut curve, start.unknown.clone(), start.tangent.clone(), request, observer)?;
+        if matches!(followed.stop, Stop::StepTooSmall { .. }) {
+            let solutions: Vec<_> = followed.solutions.iter().map(|(solution, _)| solution).collect();
+            if let Some(grazing) = curve.grazing_ahead(&solutions) {
+                followed.stop = Stop::Problem(grazing);
+            }
+        }
+        Ok(followed)
     }
 
     /// Follows the branch through a cycle both ways.

@@ -228,6 +228,17 @@ impl<'a, F: VectorField> WithTotals<'a, F> {
         Self { field, drawn }
     }
 
+    /// The field as it is, without totals: what it conserves need not outlast the events at which its state jumps.
+    pub fn none(field: &'a F) -> Self {
+        let drawn = DrawnToTotals {
+            field: field.erased(),
+            totals: Vec::new(),
+            reference: Vec::new(),
+            rates: Vec::new(),
+        };
+        Self { field, drawn }
+    }
+
     /// The conserved totals.
     pub fn totals(&self) -> &[ConservedTotal] {
         &self.drawn.totals
@@ -308,7 +319,7 @@ impl DrawnToTotals<'_> {
 }
 
 macro_rules! drawn_table {
-    ($($method:ident, $event:ident: $scalar:ty;)*) => {
+    ($($method:ident, $event:ident: $scalar:ty $(, $lifted:ident)?;)*) => {
         impl Table for DrawnToTotals<'_> {
             fn state_names(&self) -> Vec<String> {
                 self.field.state_names()

@@ -222,10 +222,10 @@ impl<'a> CycleLocusCurve<'a> {
             mesh: collocation.mesh(),
             gauss: collocation.gauss(),
             n: self.states,
-            states: &cycle[..end],
+            states: &cycle,
         };
-        let now = Segments::of(collocation.problem.field, polynomials, &parameters)?;
-        let is_same = now.is_some_and(|now| now.are_like(segments));
+        let now = Segments::of(collocation.problem.field, polynomials, &parameters, Some(segments))?;
+        let is_same = now.is_some_and(|now| now.are_like(segments) && now.touched.is_none());
         if !is_same || fit_jumps(collocation, unknown, vectors).is_none() {
             return Err(Error::BordersChange);
         }

@@ -2,6 +2,7 @@
 
 mod errors;
 mod held;
+mod hybrid;
 mod kinks;
 mod neutral_families;
 mod normal_forms;

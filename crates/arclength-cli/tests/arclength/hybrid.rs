@@ -1,0 +1,77 @@
+//! Cycles of models with events and of models that slide, from a time history on: periods, extremes and multipliers by SciPy's DOP853 at
+//! 1e-12 with events (and Filippov's field along a switch), multipliers by differences of the return map.
+
+use crate::Folder;
+use crate::found_by_users::{folder, number, points};
+use serde_json::Value;
+
+fn settled(model: &str, until: f64) -> Folder {
+    let folder = folder(model);
+    folder
+        .succeed(&format!("simulate model.ode --duration {until} --transient {} -o h.json -q", 0.7 * until));
+    folder
+}
+
+/// That a cycle has a period to nine digits and a multiplier to seven.
+#[track_caller]
+fn check(cycles: &Value, value: f64, period: f64, multiplier: f64) {
+    let point = points(cycles).iter().find(|point| number(&point["value"]) == value).unwrap();
+    assert!((number(&point["period"]) / period - 1.0).abs() < 1e-9, "{}", point["period"]);
+    let multipliers = point["multipliers"].as_array().unwrap();
+    let distance = |other: &Value| (number(&other[0]) - multiplier).hypot(number(&other[1]));
+    let nearest = multipliers.iter().map(distance).fold(f64::INFINITY, f64::min);
+    // What is taken to nothing is exactly zero.
+    let allowed = if multiplier == 0.0 { 0.0 } else { 1e-7 };
+    assert!(nearest <= allowed, "{multipliers:?}");
+}
+
+#[test]
+fn an_adaptive_neuron_fires() {
+    let folder = settled(
+        "par I=2\nv'=-v+.2*exp((v-1)/.2)-u+I\nu'=(.5*v-u)/5\nglobal 1 v-3 {v=0;u=u+.3}\ndone\n",
+        150.0,
+    );
+    let cycles = folder.json("cycles --from h.json:END --along I=1.5:4 --at 2,3");
+    check(&cycles, 2.0, 2.8774725403588266, 0.3086842691450246);
+    check(&cycles, 3.0, 1.474509636205281, 0.5603538881832256);
+}
+
+#[test]
+fn a_thermostat_has_a_mode_that_events_set() {
+    let text = "par h=.2\nx'=-x+3*m\ny'=(x-y)/2\nm'=0\nglobal 1 y-1-h {m=0}\nglobal -1 y-1+h {m=1}\ninit y=.9,m=1\ndone\n";
+    let folder = settled(text, 100.0);
+    let cycles = folder.json("cycles --from h.json:END --along h=.05:.4 --at .2,.3");
+    check(&cycles, 0.2, 3.9409468377326218, 0.0);
+    check(&cycles, 0.3, 4.738652362151501, 0.0);
+}
+
+#[test]
+fn a_block_sticks_to_a_belt_and_slips() {
+    let friction = "if(y>vb)then(1/(1+(y-vb)))else(-1/(1+(vb-y)))";
+    let folder = settled(&format!("par vb=.5\nx'=y\ny'=-x-.05*y-{friction}\ninit x=1\ndone\n"), 300.0);
+    let cycles = folder.json("cycles --from h.json:END --along vb=.1:3.5 --at .5,2,3");
+    check(&cycles, 0.5, 7.45377630413153, 0.0);
+    check(&cycles, 2.0, 6.449780706979948, 0.0);
+    check(&cycles, 3.0, 6.34877640678173, 0.0);
+}
+
+#[test]
+fn a_grazing_ends_a_branch_and_is_told() {
+    let text = "par s=1\nx'=v\nv'=-x-.1*v+c\nc'=c*(1-c^2-q^2)-3*q\nq'=q*(1-c^2-q^2)+3*c\nglobal 1 x-s {v=-.8*v}\ninit c=1\ndone\n";
+    let folder = settled(text, 400.0);
+    let story = folder.succeed("cycles --from h.json:END --along s=.05:1.2");
+    // The amplitude of the forced motion without impacts, 1/sqrt(64.09).
+    assert!(story.contains("grazing: at s = 0.1249122 ") && story.contains("event 1"), "{story}");
+}
+
+#[test]
+fn a_ball_bounces_on_a_table_from_a_fold_on() {
+    // Once in every period T = 1 of the table: v = g T/2 = r v + (1 + r) a w cos(phi), so that a is smallest where cos(phi) = 1.
+    let text = "par a=.05\nx'=v\nv'=-1.962\nc'=c*(1-c^2-q^2)-2*pi*q\nq'=q*(1-c^2-q^2)+2*pi*c\n\
+                global -1 x-a*q {v=-.6*v+1.6*a*2*pi*c}\ninit x=.0313,v=.98,c=.78,q=.625\ndone\n";
+    let folder = settled(text, 450.0);
+    let cycles = folder.json("cycles --from h.json:END --along a=.03:.08");
+    let fold = points(&cycles).iter().find(|point| point["label"] == "LPC1").unwrap();
+    let exact = 1.962 * 0.4 / (2.0 * 1.6) / (2.0 * std::f64::consts::PI);
+    assert!((number(&fold["value"]) - exact).abs() < 1e-10, "{} instead of {exact}", fold["value"]);
+}
