@@ -40,7 +40,7 @@ const SHORT_RUNS: usize = 3;
 /// A state with an amplitude below this part of its value rests; its value is then what the error is measured by.
 const RESTING: f64 = 1e-3;
 /// States of which AUTO's branch file has the largest values.
-const REPORTED_STATES: usize = 6;
+const REPORTED_STATES: usize = 5;
 /// Tolerance of what errors are measured against.
 const TIGHT: f64 = 1e-10;
 /// Tolerances and numbers of mesh intervals that are tried.
