@@ -25,6 +25,8 @@ pub(crate) struct Bracket<'a, P> {
     trials: usize,
     /// A trial whose value is at most this ends the search.
     negligible: f64,
+    /// Whether the test function is smooth; others may jump, or be rounding on one side.
+    is_smooth: bool,
 }
 
 /// A solution on one side of the change.
@@ -34,13 +36,16 @@ struct Side<P> {
     fraction: f64,
     solution: Solution<P>,
     value: f64,
-    /// The value as the secant counts it, halved where the same side stays twice.
+    /// The value as the secant counts it, halved where the side stays: of a smooth test function from the second time on, which keeps
+    /// the secant's speed, of others at once, which brings the ends together by halves.
     weight: f64,
+    /// Trials that it has stayed for.
+    stays: usize,
 }
 
 impl<P: Clone> Side<P> {
     fn new(fraction: f64, solution: Solution<P>, value: f64) -> Self {
-        Self { fraction, solution, value, weight: value }
+        Self { fraction, solution, value, weight: value, stays: 0 }
     }
 }
 
@@ -61,6 +66,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
             right: Side::new(1.0, after.clone(), right),
             trials: 0,
             negligible: 0.0,
+            is_smooth: false,
         })
     }
 
@@ -96,12 +102,16 @@ impl<'a, P: Clone> Bracket<'a, P> {
             let Some(value) = test(curve, &trial) else { return Ok(None) };
             let side = Side::new(fraction, trial, value);
             let is_negligible = value.abs() <= self.negligible;
-            if value * left.value <= 0.0 {
+            let staying = if value * left.value <= 0.0 {
                 *right = side;
-                left.weight *= 0.5;
+                left
             } else {
                 *left = side;
-                right.weight *= 0.5;
+                right
+            };
+            staying.stays += 1;
+            if staying.stays > 1 || !self.is_smooth {
+                staying.weight *= 0.5;
             }
             if is_negligible {
                 break;
@@ -129,7 +139,7 @@ pub fn locate<C: Curve>(
     Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
 }
 
-/// As [`locate`], for a test function that is continuous: a solution where its modulus is at most `negligible` is as good as its zero.
+/// As [`locate`], for a test function that is smooth: a solution where its modulus is at most `negligible` is as good as its zero.
 ///
 /// # Errors
 /// As [`locate`].
@@ -141,7 +151,7 @@ pub(super) fn locate_value<C: Curve>(
     mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
 ) -> Result<Option<Solution<C::Point>>, Error> {
     let Some(bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
-    let mut bracket = Bracket { negligible, ..bracket };
+    let mut bracket = Bracket { negligible, is_smooth: true, ..bracket };
     Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
 }
 

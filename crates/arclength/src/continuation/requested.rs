@@ -100,12 +100,13 @@ pub(super) fn insert_targets<C: Curve>(
     targets: &[Target<'_, C::Point>],
     settings: &Settings,
 ) -> Result<(), Error> {
+    let settings = settings.for_locating();
     for (index, target) in targets.iter().enumerate() {
         let test =
             |_: &mut C, solution: &Solution<C::Point>| Some((target.function)(solution)? - target.value);
         let tolerances = (TARGET_BRACKET, TARGET_VALUE * target.value.abs());
         insert_passages(curve, current, between, advanced, test, |curve, left, right| {
-            let found = match locate_value(curve, [left, right], settings, tolerances, test) {
+            let found = match locate_value(curve, [left, right], &settings, tolerances, test) {
                 Err(Error::NotFound { .. }) if target.purpose == Purpose::Mark => None,
                 found => found?,
             };
