@@ -109,7 +109,7 @@ fn a_motion_is_stopped_where_it_is() {
     let analysis = SimulateRequest::new(model(), 1e6).validate().unwrap();
     let result = analysis.run_under(&Control::unobserved(&stop)).unwrap();
     assert!(result.t.first() == Some(&0.0) && result.t.len() < 1001, "{} samples", result.t.len());
-    assert!(result.warnings.iter().any(|warning| warning.starts_with("the motion was stopped at t = ")));
+    assert!(result.warnings.iter().any(|warning| warning.starts_with("interrupted at t = ")));
     assert_eq!(analysis.run_under(&Control::none()).unwrap().t, analysis.run().unwrap().t);
 }
 
