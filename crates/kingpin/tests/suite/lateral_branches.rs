@@ -239,15 +239,15 @@ fn states_that_follow_from_others_cannot_be_chosen() {
 
 #[test]
 fn what_needs_a_longitudinal_elasticity_says_so() {
-    use kingpin::basin::{ClassificationSettings, ContactModel, Destinations, Disturbance};
+    use kingpin::basin::{ClassificationSettings, ContactModel, Destinations};
     let wheel = wheel(&[]);
     let refused = |result: Result<(), SimulationError>| {
         assert!(matches!(result, Err(SimulationError::Wheel(KingpinError::LateralElasticityOnly))));
     };
-    for model in [ContactModel::Rolling, ContactModel::Sliding] {
-        refused(Destinations::new(&wheel, model, ClassificationSettings::default()).map(|_| ()));
-        refused(Disturbance::Impulse.apply(&wheel, model, 0.1).map(|_| ()));
-    }
+    let destinations =
+        |model| Destinations::new(&wheel, model, ClassificationSettings::default()).map(|_| ());
+    refused(destinations(ContactModel::Sliding));
+    assert!(destinations(ContactModel::Rolling).is_ok());
     refused(wheel.sliding().map(|_| ()));
     assert!(matches!(Along::new(Key::KU, 50.0, f64::INFINITY), Err(KingpinError::InfiniteEnd { .. })));
     let damping = wheel.hopf_points(along(Key::CU, 0.0, 1.0), &Control::none());
