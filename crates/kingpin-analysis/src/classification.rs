@@ -50,9 +50,8 @@ impl Classification {
     /// The contact where it is said, else what a designer means: a wheel whose load is known may slide, unless it has a tyre, or
     /// lateral elasticity only, with which that is not computed.
     pub fn contact_by_load(&self, wheel: &Wheel) -> Contact {
-        let never_slides = wheel.tyre() != Tyre::Rigid || wheel.has_lateral_elasticity_only();
-        let loaded =
-            if wheel.get(Key::FAz) == 0.0 || never_slides { Contact::Rolling } else { Contact::Sliding };
+        let is_loaded = wheel.get(Key::FAz) != 0.0;
+        let loaded = if is_loaded && may_slide(wheel) { Contact::Sliding } else { Contact::Rolling };
         self.contact.unwrap_or(loaded)
     }
 
@@ -116,6 +115,11 @@ pub(crate) fn end_of_the_model(wheel: &Wheel) -> &'static str {
         Tyre::Rigid => "with k_u = inf the caster comes to lie across the towing direction",
         _ => "the wheel stops rolling forwards (V1 = 0), where the law of the tyre ends",
     }
+}
+
+/// Whether sliding of the wheel is computed: with a tyre, or with lateral elasticity only, it is not.
+pub(crate) fn may_slide(wheel: &Wheel) -> bool {
+    wheel.tyre() == Tyre::Rigid && !wheel.has_lateral_elasticity_only()
 }
 
 /// What the contact of the wheel with the ground is, in words.

@@ -77,9 +77,12 @@ impl Edge {
     }
 }
 
-/// Period in s of wheel and caster on the lateral spring.
+/// Period in s of wheel and caster on the lateral spring: that of the king pin or, where it is rigid, of the tyre.
 pub(crate) fn natural_period(wheel: &Wheel) -> f64 {
-    TAU * (wheel.mass() / wheel.get(Key::KQ)).sqrt()
+    let king_pin = wheel.get(Key::KQ);
+    let of_tyre = || wheel.get(Key::CAlpha) / wheel.get(Key::Sigma);
+    let stiffness = if king_pin.is_finite() { king_pin } else { of_tyre() };
+    TAU * (wheel.mass() / stiffness).sqrt()
 }
 
 /// How far magnitudes were tried in the directions of these edges: to the edge, or to the largest magnitude where there is none or where

@@ -1,7 +1,7 @@
 //! What the smallest disturbance that does not return is asked for by, and how it is found.
 
 use super::result::{SafeKickResult, Search};
-use crate::classification::{Classification, Contact};
+use crate::classification::{Classification, Contact, may_slide};
 use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge, natural_period};
 use crate::error::Error;
 use crate::margin::Found;
@@ -84,6 +84,7 @@ impl SafeKickAnalysis {
     /// [`Error::Simulation`], and [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<SafeKickResult, Error> {
         let neither_is_said = self.classification.contact.is_none() && self.contact == Contact::Rolling;
+        let neither_is_said = neither_is_said && self.wheel.get(Key::FAz) == 0.0 && may_slide(&self.wheel);
         let (search, control) = (control.part(0.0..PART_OF_SEARCH), &control.quiet());
         let model = self.contact.model();
         let edges = self.disturbance.edges(&self.wheel, model, self.settings, &search)?;

@@ -196,10 +196,8 @@ fn a_tyre_with_dry_friction_rests_askew() {
     let [l, t_p, cornering] = ["l", "t_p", "C_alpha"].map(|key| number(&steady["parameters"][key]));
     let angle = (0.01 / ((l + t_p) * cornering)).atan();
     close(&steady["resting_angles"][1], angle, 1e-9);
-    for command in ["stability", "hopf --along v=1:9"] {
-        let run = folder.succeed(&format!("{command} {soft}"));
-        assert!(run.output.contains("without dry friction about the king pin"), "{command}: {}", run.output);
-    }
+    let run = folder.succeed(&format!("stability {soft}"));
+    assert!(run.output.contains("without dry friction about the king pin"), "{}", run.output);
     let start = format!("--perturb psi={}", 0.5 * angle);
     let history = folder.json(&format!("simulate {soft} --duration 2 {start}"));
     assert_eq!(history["king_pin"].as_array().unwrap().last().unwrap(), "sticking");
