@@ -212,14 +212,14 @@ fn a_tyre_with_dry_friction_rests_askew() {
 #[test]
 fn a_kick_that_stops_the_wheel_is_told() {
     let folder = Folder::new();
-    let command = format!("safe-kick {SOFT} -s r=inf -s c_u=0.5 -s v=0.6 -q");
+    let command = format!("safe-kick {SOFT} --largest 2 -s r=inf -s c_u=0.5 -s v=0.6 -q");
     let result = folder.json(&command);
     let edge = &result["positive"];
     assert_eq!(edge["fate"], "end of the model", "{result}");
     assert!(number(&result["safe"]) > 0.0);
     let stops = folder.json(&format!(
-        "simulate {} {SOFT} -s r=inf -s c_u=0.5 -s v=0.6",
-        result["replay"].as_str().unwrap()
+        "simulate --blow {:e} --duration 2 {SOFT} -s r=inf -s c_u=0.5 -s v=0.6",
+        number(&edge["fails"])
     ));
     assert!(number(&stops["stopped_at"]) > 0.0);
     let table = folder.succeed(&command).output;
