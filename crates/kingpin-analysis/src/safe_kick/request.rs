@@ -83,8 +83,9 @@ impl SafeKickAnalysis {
     /// # Errors
     /// [`Error::Simulation`], and [`Error::Stopped`] where the control stops it.
     pub fn run(&self, control: &Control<'_>) -> Result<SafeKickResult, Error> {
-        let neither_is_said = self.classification.contact.is_none() && self.contact == Contact::Rolling;
-        let neither_is_said = neither_is_said && self.wheel.get(Key::FAz) == 0.0 && may_slide(&self.wheel);
+        // A wheel that may slide rolls by default only where no load is said.
+        let rolls_by_default = self.classification.contact.is_none() && self.contact == Contact::Rolling;
+        let neither_is_said = rolls_by_default && may_slide(&self.wheel);
         let (search, control) = (control.part(0.0..PART_OF_SEARCH), &control.quiet());
         let model = self.contact.model();
         let edges = self.disturbance.edges(&self.wheel, model, self.settings, &search)?;
