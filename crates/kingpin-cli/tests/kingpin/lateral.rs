@@ -156,8 +156,8 @@ fn what_cannot_be_done_says_what_can() {
         }
     };
     let possible = ["k_u = inf", "finite k_u", "cycles and simulations"];
-    fails("basin --x psi=-1:1:3 --y Omega=-1:1:3 --contact sliding -s F_Az=-100", &possible);
-    fails("safe-kick --contact sliding -s F_Az=-100", &possible);
+    fails("basin --x psi=-1:1:3 --y Omega=-1:1:3 --contact sliding", &possible);
+    fails("safe-kick --contact sliding", &possible);
     fails("basin --x u=-1:1:3 --y Omega=-1:1:3", &["`u`", "q, psi, Omega"]);
     for state in ["u", "V"] {
         fails(

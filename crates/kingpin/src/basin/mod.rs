@@ -99,12 +99,6 @@ impl Destinations {
     ) -> Result<Self, SimulationError> {
         settings.check()?;
         let motion = wheel.uniform_motion()?;
-        if model == ContactModel::Sliding && !motion.rolls() {
-            return Err(SimulationError::UniformMotionSlides {
-                needed: motion.contact_force().friction(),
-                available: wheel.get(Key::MuS) * wheel.normal_force(),
-            });
-        }
         let isotropic = wheel.get(Key::KU) == wheel.get(Key::KQ) && wheel.get(Key::CU) == wheel.get(Key::CQ);
         let follower = match model {
             ContactModel::Sliding => Follower::Hybrid(Box::new(
@@ -124,6 +118,13 @@ impl Destinations {
             }
             ContactModel::Rolling => Follower::Rolling,
         };
+        // What a wheel whose sliding is not computed would need does not matter.
+        if model == ContactModel::Sliding && !motion.rolls() {
+            return Err(SimulationError::UniformMotionSlides {
+                needed: motion.contact_force().friction(),
+                available: wheel.get(Key::MuS) * wheel.normal_force(),
+            });
+        }
         let target = Target::new(wheel, model)?;
         Ok(Self { wheel: *wheel, model, target, settings, follower, attractors: Vec::new() })
     }
