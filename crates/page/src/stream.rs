@@ -156,6 +156,9 @@ impl Work {
             if let Err(failure) = compute(&Control::new(&turn.stop, &observer), &events) {
                 events.tell("failure", &failure.json());
             }
+            // The turn ends before the stream does: who has read to the end finds nothing that runs.
+            drop(turn);
+            drop(events);
         });
         is_prepared.await.unwrap_or_else(|_| Err(failed()))?;
         let body = Body::from_stream(Received { receiver, _stopper: stopper });
