@@ -100,7 +100,10 @@ fn the_mesh_resolves_the_variational_equation_too() {
     // Nineteen hundred turns in one period: the finest mesh allowed leaves an error, which is told.
     let (error, told) = ((modulus / 137.0).ln().abs(), number(&cycle["multiplier_errors"][0]));
     assert!(error < 0.02 && error < told, "{modulus} {told}");
+    let mut regular = points(&found).iter().filter(|cycle| !cycle["label"].to_string().contains("LPC"));
+    assert!(regular.all(|cycle| cycle["stable"] == false));
     // There are no torus bifurcations.
+    assert!(!found["unlocated"].to_string().contains("torus"), "{}", found["unlocated"]);
     assert!(labels(&found).iter().all(|label| !label.starts_with("NS")), "{:?}", labels(&found));
 }
 

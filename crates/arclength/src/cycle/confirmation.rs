@@ -112,6 +112,7 @@ impl<'a> Asked<'a> {
             };
             let change = level.change_from(&before);
             let mut errors = multiplier_changes(&level.told.multipliers, &before.multipliers);
+            errors.iter_mut().for_each(|error| *error = error.max(level.floquet.measured_error));
             // Where the change is what was estimated the estimate on the finer mesh holds too, else what the change leaves.
             let error = if change <= AS_ESTIMATED * estimated {
                 level.estimate
@@ -130,6 +131,9 @@ impl<'a> Asked<'a> {
                 if let Some((floquet, changes)) = resolved {
                     level.told.multipliers = floquet.nontrivial.clone();
                     (level.floquet, errors, ends) = (floquet, changes, true);
+                } else if level.floquet.measured_error > 0.0 {
+                    // Exponentials have settled already.
+                    ends = true;
                 }
             }
             level.tell(point, error, &errors, &before.multipliers);
@@ -271,5 +275,8 @@ impl Level<'_> {
 fn are_resolved(floquet: &Floquet, changes: &[f64]) -> bool {
     let counted = changes.iter().zip(&floquet.nontrivial);
     let mut counted = counted.filter(|(_, multiplier)| multiplier.log_modulus > LOGARITHM);
-    floquet.defect() < MULTIPLIER_CHANGE && counted.all(|(change, _)| *change < MULTIPLIER_CHANGE)
+    // Exponentials on parts of the same width, as they may take on both meshes, do not witness each other.
+    floquet.measured_error == 0.0
+        && floquet.defect() < MULTIPLIER_CHANGE
+        && counted.all(|(change, _)| *change < MULTIPLIER_CHANGE)
 }

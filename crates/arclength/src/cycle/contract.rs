@@ -3,7 +3,7 @@
 use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
 use super::extrema::ranges;
-use super::floquet::floquet;
+use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::special;
 use crate::branch::SpecialKind;
@@ -19,8 +19,6 @@ use std::borrow::Cow;
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
 const MULTIPLIER_PART: f64 = 0.1;
-/// The two sides of Liouville's formula differ by this at most.
-const DEFECT: f64 = 1e-3;
 /// Factors of the tolerance for that reason: the smallest of all, the strongest and the weakest at a time. Rounding sets an end
 /// to it, too.
 const FINEST: f64 = 1e-4;
@@ -124,7 +122,7 @@ impl Curve for CycleCurve<'_> {
         tangent: &[f64],
         orientation: f64,
     ) -> Result<CycleInspection, Error> {
-        let floquet = floquet(&self.collocation, unknown, &self.collocation.problem.scales, &mut self.schur)?;
+        let (floquet, multiplier_errors) = self.multipliers(unknown)?;
         let n = self.collocation.problem.dimension();
         let turn_is_reversed = self.turn_is_reversed(tangent, orientation, &floquet);
         Ok(CycleInspection {
@@ -134,7 +132,7 @@ impl Curve for CycleCurve<'_> {
             is_neutral: self.is_neutral(tangent, &floquet),
             parameter_error: None,
             floquet,
-            multiplier_errors: Vec::new(),
+            multiplier_errors,
             ranges: ranges(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
             segments: self.collocation.problem.segments.clone(),

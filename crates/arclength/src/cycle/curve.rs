@@ -2,7 +2,7 @@
 
 use super::end::CycleEnd;
 use super::extrema::{Range, ranges};
-use super::floquet::Floquet;
+use super::floquet::{DEFECT, Floquet, floquet, multiplier_changes};
 use super::gate::Place;
 use super::limit_cycle::LimitCycle;
 use super::passages::Touch;
@@ -10,6 +10,7 @@ use super::segments::Segments;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
+use super::variational::{KnownOrbit, are_resolved, may_be_unresolved, multipliers_by_exponentials};
 use crate::collocation::equations::Collocation;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
@@ -343,6 +344,34 @@ impl<'a> CycleCurve<'a> {
             scales: &problem.scales,
         };
         passing.slow_passage()
+    }
+
+    /// Multipliers of the cycle that was linearised last and, where they had to be computed by other means than its mesh, their errors.
+    pub(super) fn multipliers(&mut self, unknown: &[f64]) -> Result<(Floquet, Vec<f64>), Error> {
+        let problem = &self.collocation.problem;
+        let found = floquet(&self.collocation, unknown, &problem.scales, &mut self.schur)?;
+        // In the plane the only one is known from the divergence.
+        let is_doubtful = found.nontrivial.len() > 1
+            && (found.is_contradictory() || found.defect() > DEFECT || may_be_unresolved(&self.collocation));
+        if !is_doubtful {
+            return Ok((found, Vec::new()));
+        }
+        let mesh = self.collocation.mesh();
+        let orbit = KnownOrbit { mesh, degree: self.collocation.gauss().degree(), unknown };
+        let Some((resolved, changes)) = multipliers_by_exponentials(problem, orbit, found.divergence) else {
+            return Ok((found, Vec::new()));
+        };
+        // Where both agree those are told that special cycles are defined by.
+        let differences = multiplier_changes(&found.nontrivial, &resolved.nontrivial);
+        if are_resolved(&found, &differences) {
+            let errors = found.errors(&differences);
+            return Ok((found, errors));
+        }
+        // The cycle's own mesh resolves its direction, and the divergence along it.
+        let Floquet { trivial, trivial_error, divergence, sign, .. } = found;
+        let resolved = Floquet { trivial, trivial_error, divergence, sign, ..resolved };
+        let errors = resolved.errors(&changes);
+        Ok((resolved, errors))
     }
 
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.

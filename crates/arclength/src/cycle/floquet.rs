@@ -25,8 +25,10 @@ const SATURATION: f64 = 0.1;
 /// Logarithms of multipliers near one, and of those that discretisation may have kept from it.
 const NEAR_ONE: f64 = 1.0;
 const NOT_FAR_FROM_ONE: f64 = 10.0;
-/// Integral of the divergence below which directions die out within a period, which no affordable mesh resolves.
+/// Integral of the divergence below which directions die out within a period, which no mesh of a cycle resolves.
 const DEAD: f64 = -30.0;
+/// The two sides of Liouville's formula differ by this at most where the multipliers are resolved.
+pub(super) const DEFECT: f64 = 1e-3;
 /// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
 const CONTRADICTION: f64 = 0.05;
 
@@ -50,6 +52,8 @@ pub(crate) struct Floquet {
     pub divergence: f64,
     /// Sign of the product of all multipliers: that of a flow is positive, where the state jumps it need not be.
     pub sign: f64,
+    /// Relative error of the multipliers where it was measured, else zero.
+    pub measured_error: f64,
 }
 
 impl Floquet {
@@ -118,12 +122,16 @@ impl Floquet {
 
     /// Product over all pairs of multipliers that are complex conjugate or real of one sign of the logarithm of their product's
     /// modulus, each saturating at +-1: changes sign where a pair is on the unit circle. Pairs that are so within the error do
-    /// not count; their number is the second result.
+    /// not count; their number is the second result. Two real ones of different signs never have the product one: they count as
+    /// a product inside the circle, so that the sign of one that is rounding does not matter.
     pub(crate) fn torus_test(&self) -> (f64, usize) {
         let (mut product, mut undecided) = (1.0, 0);
         for (index, one) in self.nontrivial.iter().enumerate() {
             for other in &self.nontrivial[index + 1..] {
-                let together = if one.is_real() {
+                let together = if one.is_real() && other.is_real() {
+                    if one.argument != other.argument {
+                        product = -product;
+                    }
                     one.argument == other.argument
                 } else {
                     one.argument == -other.argument && one.log_modulus == other.log_modulus
@@ -161,7 +169,7 @@ impl Floquet {
     }
 
     fn margin(&self) -> f64 {
-        self.trivial_error.max(f64::EPSILON)
+        self.trivial_error.max(self.measured_error).max(f64::EPSILON)
     }
 
     /// Whether a positive multiplier, or a pair with a positive real part, may be one next to this cycle. In the plane the only one
@@ -183,10 +191,15 @@ impl Floquet {
     }
 
     /// Difference between the sum of the logarithms of the multipliers and the integral of the divergence, which are equal
-    /// (Liouville); zero where directions that die out within a period make both meaningless on any mesh.
+    /// (Liouville); zero where directions that die out within a period make both meaningless on the mesh of a cycle.
     pub(crate) fn defect(&self) -> f64 {
         let sum: f64 = self.nontrivial.iter().map(|multiplier| multiplier.log_modulus).sum();
-        if self.divergence < DEAD { 0.0 } else { (sum - self.divergence).abs() }
+        if self.defect_is_silent() { 0.0 } else { (sum - self.divergence).abs() }
+    }
+
+    /// Whether the defect says nothing, because directions die out within a period.
+    pub(super) fn defect_is_silent(&self) -> bool {
+        self.divergence < DEAD
     }
 
     /// Whether all multipliers are larger than the error and an odd number of them is negative, or their product is not what
@@ -222,6 +235,17 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
     scales: &[f64],
     workspace: &mut Option<(usize, PeriodicSchur)>,
 ) -> Result<Floquet, Error> {
+    floquet_of(collocation, collocation.transfer(), unknown, scales, workspace)
+}
+
+/// As [`floquet`], with blocks that something else than the collocation gives.
+pub(super) fn floquet_of<P: BoundaryValueEquations>(
+    collocation: &Collocation<P>,
+    transfer: &[f64],
+    unknown: &[f64],
+    scales: &[f64],
+    workspace: &mut Option<(usize, PeriodicSchur)>,
+) -> Result<Floquet, Error> {
     let n = scales.len();
     let intervals = collocation.intervals();
     let scalars = &unknown[intervals * collocation.interval_size()..];
@@ -249,7 +273,7 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
     let mut coupling = 0.0;
     let mut block = vec![0.0; n * n];
     for interval in 0..intervals {
-        let transfer = &collocation.transfer()[interval * n * n..(interval + 1) * n * n];
+        let transfer = &transfer[interval * n * n..(interval + 1) * n * n];
         for column in 0..n {
             for row in 0..n {
                 block[row + n * column] = transfer[row + n * column] * scales[column] / scales[row];
@@ -313,7 +337,7 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
             _ => return Err(Error::Eigenvalues { quantity: "Floquet multipliers" }),
         }
     };
-    Ok(Floquet { nontrivial, trivial, trivial_error, divergence, sign })
+    Ok(Floquet { nontrivial, trivial, trivial_error, divergence, sign, measured_error: 0.0 })
 }
 
 /// The integral of the trace of the Jacobian over one period, from the derivatives of the last factorisation.

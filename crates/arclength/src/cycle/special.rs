@@ -406,7 +406,9 @@ fn describe(
     (point.normal_form, point.branching) = (normal_form, branching);
     if let Some(there) = multipliers {
         let floquet = &point.floquet;
-        point.multiplier_errors = floquet.errors(&multiplier_changes(&floquet.nontrivial, &there.nontrivial));
+        let mut changes = multiplier_changes(&floquet.nontrivial, &there.nontrivial);
+        changes.iter_mut().for_each(|change| *change = change.max(floquet.measured_error));
+        point.multiplier_errors = floquet.errors(&changes);
     }
     // The parameter stands still there because it turns, and not along a family.
     solution.point.is_neutral &= kind != Kind::Fold;

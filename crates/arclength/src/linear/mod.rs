@@ -4,6 +4,7 @@ mod balancing;
 pub(crate) mod complex_lu;
 pub mod eigenvalues;
 pub mod eigenvectors;
+pub mod exponential;
 pub mod lu;
 pub(crate) mod lu_in_lanes;
 pub mod multiplier;

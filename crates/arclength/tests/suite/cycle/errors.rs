@@ -2,6 +2,7 @@
 
 use arclength::cycle::{CycleBranch, CycleStart, Cycles, Orbit};
 use arclength::{Scalar, VectorField};
+use proptest::prelude::*;
 use std::f64::consts::TAU;
 
 /// A circle of radius `size` in the logarithm of `x`, and `v`: `x = exp(size cos t)`, with the period `2 pi`. The flow depends on
@@ -105,5 +106,67 @@ fn multipliers_of_a_direction_that_turns_fast_are_right() {
             assert!(off <= error.max(1e-9) && *error < 1e-2, "{off:e}, told {error:e}");
         }
         assert_eq!(point.stable, Some(true));
+    }
+}
+
+/// A circle of radius `sqrt(m)`, beside it a direction that turns and grows as slowly as it likes, and one that dies out as fast as it
+/// likes while the cycle pushes it.
+struct Beside {
+    turns: f64,
+    growth: f64,
+    decay: f64,
+}
+
+impl VectorField for Beside {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "p", "q", "z"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["m".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let growth = p[0] - s[0] * s[0] - s[1] * s[1];
+        d[0] = growth * s[0] - s[1];
+        d[1] = growth * s[1] + s[0];
+        let (rate, turns) = (s[0] * 0.3 + self.growth, (s[1] * 0.5 + 1.0) * self.turns);
+        d[2] = rate * s[2] - turns * s[3];
+        d[3] = turns * s[2] + rate * s[3];
+        d[4] = (s[0] * s[0] - s[4]) * self.decay;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    #[test]
+    fn multipliers_of_all_cycles_are_right_whatever_happens_beside_them(
+        turns in 0.0..4.0,
+        growth in prop_oneof![-0.3..-0.01, 0.01..0.3],
+        decay in 0.0..6.0,
+    ) {
+        let field = Beside { turns: 10f64.powf(turns), growth, decay: 10f64.powf(decay) };
+        let settled = |time: f64| {
+            // z' = decay (x x - z) with x = cos t.
+            let lag = field.decay / (field.decay * field.decay + 4.0);
+            0.5 + 0.5 * lag * (field.decay * (2.0 * time).cos() + 2.0 * (2.0 * time).sin())
+        };
+        let start = Orbit::from_function(TAU, |time| vec![time.cos(), time.sin(), 0.0, 0.0, settled(time)]);
+        let cycles = Cycles::of(&field, CycleStart::Orbit(start)).parameters(&[1.0]);
+        let branch = cycles.along("m", 0.8..=1.3).run().unwrap();
+        prop_assert!(branch.points.len() > 3 && branch.unlocated.is_empty());
+        for point in &branch.points {
+            let known = [-2.0 * point.value, field.growth, field.growth, -field.decay].map(|rate| rate * TAU);
+            let mut told: Vec<f64> = point.multipliers.iter().map(|value| value.norm().ln()).collect();
+            let trivial = (0..5).min_by(|&a, &b| told[a].abs().total_cmp(&told[b].abs())).unwrap();
+            told.remove(trivial);
+            for exact in known.into_iter().filter(|exact| *exact > -15.0) {
+                let nearest = told.iter().map(|one| (one - exact).abs()).fold(f64::INFINITY, f64::min);
+                let largest = point.multiplier_errors.iter().copied().fold(0.0, f64::max);
+                prop_assert!(nearest < largest.max(1e-3), "{}: {exact} among {told:?}, {largest}", point.value);
+            }
+            let alive = told.iter().filter(|one| **one > -14.0).count();
+            prop_assert!(alive <= known.iter().filter(|exact| **exact > -15.0).count(), "{:?}", &told);
+            prop_assert_eq!(point.stable, Some(field.growth < 0.0), "{}: {:?}", point.value, &told);
+        }
     }
 }
