@@ -44,7 +44,18 @@ impl<T: Scalar, const N: usize> Dual<T, N> {
     /// Chain rule: `value` and `slope` of a function of one variable at `self.value`.
     #[inline]
     fn chain(self, value: T, slope: T) -> Self {
-        Self { value, derivatives: self.derivatives.map(|derivative| slope * derivative) }
+        let mut result = self.each(|derivative| slope * derivative);
+        result.value = value;
+        result
+    }
+
+    /// Changes every derivative. (`array::map` would be several times as much to compile, for every scalar.)
+    #[inline]
+    fn each(mut self, change: impl Fn(T) -> T) -> Self {
+        for direction in 0..N {
+            self.derivatives[direction] = change(self.derivatives[direction]);
+        }
+        self
     }
 }
 
@@ -104,7 +115,9 @@ impl<T: Scalar, const N: usize> Neg for Dual<T, N> {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self { value: -self.value, derivatives: self.derivatives.map(|derivative| -derivative) }
+        let mut result = self.each(|derivative| -derivative);
+        result.value = -self.value;
+        result
     }
 }
 
@@ -130,10 +143,9 @@ impl<T: Scalar, const N: usize> Mul<f64> for Dual<T, N> {
     type Output = Self;
     #[inline]
     fn mul(self, constant: f64) -> Self {
-        Self {
-            value: self.value * constant,
-            derivatives: self.derivatives.map(|derivative| derivative * constant),
-        }
+        let mut result = self.each(|derivative| derivative * constant);
+        result.value = self.value * constant;
+        result
     }
 }
 
@@ -141,10 +153,9 @@ impl<T: Scalar, const N: usize> Div<f64> for Dual<T, N> {
     type Output = Self;
     #[inline]
     fn div(self, constant: f64) -> Self {
-        Self {
-            value: self.value / constant,
-            derivatives: self.derivatives.map(|derivative| derivative / constant),
-        }
+        let mut result = self.each(|derivative| derivative / constant);
+        result.value = self.value / constant;
+        result
     }
 }
 
