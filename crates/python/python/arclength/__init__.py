@@ -24,6 +24,7 @@ from .errors import (
 from .models import Cycles, Equilibria, History, Locus, Model, Parameters
 from .records import Record
 from .results import Branch, Columns, Point, Result, load
+from .sweeps import Swept, grid, merge, random_sample, sweep
 
 __all__ = [
     "AnalysisWarning",
@@ -44,7 +45,12 @@ __all__ = [
     "Point",
     "Record",
     "Result",
+    "Swept",
     "UnknownLabel",
     "__version__",
+    "grid",
     "load",
+    "merge",
+    "random_sample",
+    "sweep",
 ]

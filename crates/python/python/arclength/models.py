@@ -207,6 +207,15 @@ class Model:
             np.array(list(values.values()), dtype=float),
         )
 
+    def _at(self, point: Mapping[str, Any]) -> tuple[Model, dict[str, Any]]:
+        """The model with keywords for a point of a sweep: values of parameters, and what of the point is none."""
+        own = {key: value for key, value in point.items() if key in self.parameters}
+        return self, {"set": own, **{key: value for key, value in point.items() if key not in own}}
+
+    def _identity(self) -> dict[str, Any]:
+        """What tells it from other models, for sweeps."""
+        return {"model": self.source}
+
     def __repr__(self) -> str:
         parameters = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
         return f"<Model {self.name}: states {', '.join(self.states)}; parameters {parameters}>"
@@ -262,7 +271,7 @@ class Model:
         monitors: expressions that are recorded, or a mapping to values at which a point is wanted.
         until: expressions with values at which the branch ends.
         steps, finer: most steps in one direction; how many times shorter they are.
-        threads, progress: number of threads; a function that is told the progress.
+        threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
 
         Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
         """
@@ -485,7 +494,7 @@ class ModelPoint(Point):
         until: expressions with values at which the branch ends.
         steps, finer: most steps in one direction; how many times shorter they are.
         tolerance, intervals: error estimate, relative to the amplitude, that no cycle exceeds; most mesh intervals.
-        threads, progress: number of threads; a function that is told the progress.
+        threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
 
         Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
         """
