@@ -307,6 +307,8 @@ class Model:
     ) -> Equilibria:
         """Follows the equilibria along a parameter from the one near the initial state, with folds, branch points, Hopf points.
 
+        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+
         Parameters
         ----------
         along: parameter and its interval, ``("mu", -1, 1)``.
@@ -318,8 +320,6 @@ class Model:
         until: expressions with values at which the branch ends.
         steps, finer: most steps in one direction; how many times shorter they are.
         threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
-
-        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
         """
         model = self._request(set, start, named_set, freeze)
         return _equilibria(model, along, at, monitors, until, steps, finer, threads, progress)
@@ -541,6 +541,8 @@ class ModelPoint(Point):
         From a Hopf point (HB) the cycles that are born there, from a period doubling (PD) the doubled ones, from a branch point of
         cycles (BPC) the other branch, from any other cycle, or with ``stay``, the branch through it.
 
+        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+
         Parameters
         ----------
         along: parameter and its interval, ``("mu", -1, 1)``.
@@ -552,8 +554,6 @@ class ModelPoint(Point):
         steps, finer: most steps in one direction; how many times shorter they are.
         tolerance, intervals: error estimate, relative to the amplitude, that no cycle exceeds; most mesh intervals.
         threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
-
-        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
         """
         with self.branch._file() as path:
             return _cycles(

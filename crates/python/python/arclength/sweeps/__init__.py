@@ -69,6 +69,9 @@ def sweep(
 ) -> Swept:
     """Computes a function, or an analysis, at every point of a sample, and keeps the answers in a folder (needs pyarrow).
 
+    Where a computation fails, the column ``problem`` says why, and ``warnings`` what is worth knowing. Raises
+    :class:`~arclength.InvalidInput`, whatever else the function raises, and :class:`~arclength.Interrupted` at Ctrl-C.
+
     Parameters
     ----------
     function: called with a point's values by name, ``function(v=1.0, l=0.1)``, it gives a mapping from names of columns to numbers, yes
@@ -86,9 +89,6 @@ def sweep(
     shard: ``(i, n)`` or ``"i/n"``: only every n-th chunk, from the i-th, i from 1 to n. :func:`merge` puts them together.
     threads: number of threads, here of the chunks, in other processes of each analysis.
     progress: is told the part that is done; ``True`` shows a bar (needs tqdm).
-
-    Where a computation fails, the column ``problem`` says why, and ``warnings`` what is worth knowing. Raises
-    :class:`~arclength.InvalidInput`, whatever else the function raises, and :class:`~arclength.Interrupted` at Ctrl-C.
     """
     task = Task(function, constants, fields, batched, version)
     plan = Plan(task, sample_of(sample), Path(folder).absolute(), chunk, threads)
