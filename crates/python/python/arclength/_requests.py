@@ -27,6 +27,8 @@ Sampled = tuple[str, float, float, int]
 Progress = Callable[[float | None, str | None], object] | Literal[True]
 
 
+_ENCODER = json.JSONEncoder(allow_nan=False)
+
 #: Whether warnings of results are only kept in them.
 _KEPT: ContextVar[bool] = ContextVar("kept", default=False)
 
@@ -172,10 +174,13 @@ def run(
     analysis: str, request: Mapping[str, Any], *, threads: int | None = None, progress: Progress | None = None
 ) -> NativeResult:
     """Runs an analysis and warns of what is worth knowing."""
-    text = json.dumps(request, allow_nan=False)
+    text = _ENCODER.encode(request)
     count = 0 if threads is None else whole("threads", threads)
-    with reported(progress, analysis) as told:
-        result = _native.run_analysis(analysis, text, count, told)
+    if progress is True:
+        with reported(progress, analysis) as told:
+            result = _native.run_analysis(analysis, text, count, told)
+    else:
+        result = _native.run_analysis(analysis, text, count, progress)
     if _KEPT.get():
         return result
     for warning in result.warnings:
