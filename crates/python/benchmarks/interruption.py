@@ -37,8 +37,8 @@ def interrupt():
     sent.append(time.perf_counter())
     signal.raise_signal(signal.SIGINT)
 sent = []
-threading.Thread(target=interrupt, daemon=True).start()
 try:
+    threading.Thread(target=interrupt, daemon=True).start()
     while True:
         result = run()
         if getattr(result, "interrupted", False):

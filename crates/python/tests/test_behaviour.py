@@ -194,6 +194,14 @@ def test_everything_public_is_documented():
         assert name.startswith("__") or getattr(arclength, name).__doc__, name
 
 
+def test_types_as_editors_see_them():
+    pytest.importorskip("pyright")
+    project = os.path.join(os.path.dirname(os.path.dirname(__file__)), "pyproject.toml")
+    command = [sys.executable, "-m", "pyright", "--project", project, "--pythonpath", sys.executable]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_types():
     api = pytest.importorskip("mypy.api")
     folder = os.path.dirname(arclength.__file__)
