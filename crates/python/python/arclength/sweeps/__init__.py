@@ -80,7 +80,7 @@ def sweep(
     sample: :func:`grid`, :func:`random_sample`, or columns (a mapping, a DataFrame).
     folder: where the chunks are. A sweep that is in there already, begun or done, goes on; another one is refused.
     constants: further keywords, the same at every point.
-    fields: which fields of the answer are columns, by default all that are no lists; ``"fractions.0.fraction"`` looks into lists and
+    fields: which fields of the answer are columns, by default all that are no lists; ``"fractions.0.share"`` looks into lists and
         records; a mapping says the types, too (``float``, ``int``, ``bool``, ``str``).
     batched: the function takes arrays of shape ``(n,)`` and gives such arrays. ``wheel.stability_at`` is such a function.
     version: whatever tells the function from what it was before. Its own text is looked at; what it calls is not.

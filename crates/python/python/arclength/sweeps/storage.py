@@ -59,6 +59,14 @@ def publish(folder: Path, name: str, content: bytes, *, once: bool = False) -> b
                 os.link(temporary, folder / name)
             except FileExistsError:
                 return False
+            except OSError as error:
+                raise InvalidInput(
+                    f"{folder}: no hard link can be made there ({error.strerror}), by which the first of several processes is told; allowed: a "
+                    "folder on another file system",
+                    key="folder",
+                    value=str(folder),
+                    allowed="a folder on a file system with hard links",
+                ) from error
         else:
             os.replace(temporary, folder / name)
         _sync_folder(folder)

@@ -163,7 +163,7 @@ def _fields(document: Mapping[str, Any], fields: list[str] | None) -> Row:
 
 
 def _followed(value: Any, path: str) -> Any:
-    """What stands at a path like ``fractions.0.fraction`` or ``psi.-1``; ``None`` where a list is shorter or something is ``None``."""
+    """What stands at a path like ``fractions.0.share`` or ``psi.-1``; ``None`` where a list is shorter or something is ``None``."""
     for step in path.split("."):
         if isinstance(value, Mapping) and step in value:
             value = value[step]
