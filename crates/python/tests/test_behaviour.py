@@ -183,7 +183,7 @@ def test_the_programs():
 
 
 def test_import_is_light():
-    code = "import sys, arclength, arclength.kingpin; print([name for name in ('numpy', 'pandas', 'matplotlib') if name in sys.modules])"
+    code = "import sys, arclength, arclength.kingpin; print([name for name in ('numpy', 'pandas', 'matplotlib', 'concurrent.futures') if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == "[]", done.stderr
     assert arclength.__version__
@@ -192,6 +192,14 @@ def test_import_is_light():
 def test_everything_public_is_documented():
     for name in arclength.__all__:
         assert name.startswith("__") or getattr(arclength, name).__doc__, name
+
+
+def test_types_as_editors_see_them():
+    pytest.importorskip("pyright")
+    project = os.path.join(os.path.dirname(os.path.dirname(__file__)), "pyproject.toml")
+    command = [sys.executable, "-m", "pyright", "--project", project, "--pythonpath", sys.executable]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_types():

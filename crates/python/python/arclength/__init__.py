@@ -10,6 +10,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from ._native import __version__
 from .errors import (
     AnalysisWarning,
@@ -24,6 +26,9 @@ from .errors import (
 from .models import Cycles, Equilibria, History, Locus, Model, Parameters
 from .records import Record
 from .results import Branch, Columns, Point, Result, load
+
+if TYPE_CHECKING:
+    from .sweeps import Swept, grid, merge, random_sample, sweep
 
 __all__ = [
     "AnalysisWarning",
@@ -44,7 +49,28 @@ __all__ = [
     "Point",
     "Record",
     "Result",
+    "Swept",
     "UnknownLabel",
     "__version__",
+    "grid",
     "load",
+    "merge",
+    "random_sample",
+    "sweep",
 ]
+
+_SWEEPS = ("Swept", "grid", "merge", "random_sample", "sweep")
+
+
+def __getattr__(name: str) -> Any:
+    # Executors and the rest take longer to import than all else; they are when they are first used.
+    if name in _SWEEPS:
+        from . import sweeps
+
+        globals().update({each: getattr(sweeps, each) for each in _SWEEPS})
+        return globals()[name]
+    raise AttributeError(f"module `arclength` has no `{name}`")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_SWEEPS})

@@ -10,7 +10,8 @@ import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from contextvars import ContextVar
+from typing import TYPE_CHECKING, Any, Literal
 
 from . import _native
 from .errors import AnalysisWarning, InvalidInput
@@ -22,8 +23,24 @@ if TYPE_CHECKING:
 Along = str | tuple[str, float, float]
 #: A parameter and equidistant values of it: ``("v", 1, 8, 15)``, both ends included.
 Sampled = tuple[str, float, float, int]
-#: Called with the part that is done (0 to 1) or ``None``, and with where the computation is, or ``None``.
-Progress = Callable[[float | None, str | None], object]
+#: Called with the part that is done (0 to 1) or ``None``, and with where the computation is, or ``None``; ``True`` is a bar of tqdm.
+Progress = Callable[[float | None, str | None], object] | Literal[True]
+
+
+_ENCODER = json.JSONEncoder(allow_nan=False)
+
+#: Whether warnings of results are only kept in them.
+_KEPT: ContextVar[bool] = ContextVar("kept", default=False)
+
+
+@contextmanager
+def as_column_of_warnings() -> Iterator[None]:
+    """Results keep their warnings to themselves meanwhile: who asks for thousands of results shows them in another way."""
+    token = _KEPT.set(True)
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
 
 
 def number(key: str, value: Any) -> float | str:
@@ -134,16 +151,38 @@ def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] 
     return recorded + ending
 
 
+@contextmanager
+def reported(progress: Progress | None, title: str) -> Iterator[Callable[[float | None, str | None], object] | None]:
+    """What is told the progress; for ``True`` a bar on standard error, for as long as it takes (needs tqdm)."""
+    if progress is not True:
+        yield progress
+        return
+    from tqdm.auto import tqdm
+
+    with tqdm(total=1.0, desc=title, bar_format="{desc}: {percentage:3.0f} %|{bar}| {elapsed}{postfix}") as bar:
+
+        def tell(part: float | None, place: str | None) -> None:
+            if part is not None:
+                bar.update(part - bar.n)
+            if place is not None:
+                bar.set_postfix_str(place)
+
+        yield tell
+
+
 def run(
     analysis: str, request: Mapping[str, Any], *, threads: int | None = None, progress: Progress | None = None
 ) -> NativeResult:
     """Runs an analysis and warns of what is worth knowing."""
-    result = _native.run_analysis(
-        analysis,
-        json.dumps(request, allow_nan=False),
-        0 if threads is None else whole("threads", threads),
-        progress,
-    )
+    text = _ENCODER.encode(request)
+    count = 0 if threads is None else whole("threads", threads)
+    if progress is True:
+        with reported(progress, analysis) as told:
+            result = _native.run_analysis(analysis, text, count, told)
+    else:
+        result = _native.run_analysis(analysis, text, count, progress)
+    if _KEPT.get():
+        return result
     for warning in result.warnings:
         warnings.warn(warning, AnalysisWarning, stacklevel=4)
     if result.interrupted:

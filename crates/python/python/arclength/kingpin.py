@@ -109,7 +109,7 @@ class Wheel:
     say what is wrong.
 
     The keywords ``threads`` (number of threads, by default that of the processors) and ``progress`` (a function that is called with the
-    part that is done, or ``None``, and where the computation is, or ``None``) are those of every analysis that may take long.
+    part that is done, or ``None``, and where the computation is, or ``None``; ``True`` shows a bar of tqdm) are those of every analysis that may take long.
     """
 
     __slots__ = ("_given", "_values")
@@ -186,6 +186,15 @@ class Wheel:
 
     def __reduce__(self) -> tuple[object, ...]:
         return (_wheel, (self._given,))
+
+    def _at(self, point: Mapping[str, Any]) -> tuple[Wheel, dict[str, Any]]:
+        """The wheel at a point of a sweep, and what of the point is no parameter of it."""
+        own = {key: value for key, value in point.items() if key in self.parameters or key in self._values}
+        return self.replace(**own), {key: value for key, value in point.items() if key not in own}
+
+    def _identity(self) -> dict[str, Any]:
+        """What tells it from other wheels, for sweeps."""
+        return {"wheel": self.as_dict()}
 
     def _run(
         self,

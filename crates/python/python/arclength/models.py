@@ -144,6 +144,52 @@ class Model:
         return cls(derivatives, states, values, name=name)
 
     @classmethod
+    def from_casadi(
+        cls,
+        system: Mapping[str, Any],
+        parameters: Mapping[str, float] | None = None,
+        *,
+        start: Mapping[str, float] | None = None,
+        name: str = "model",
+    ) -> Model:
+        """A model of CasADi's expressions: ``{"x": x, "p": p, "ode": f}`` of SX, as CasADi's integrators take it (needs casadi).
+
+        Names are those of the symbols. ``parameters`` are their values, ``start`` initial values of states other than 0. Raises
+        :class:`~arclength.NotTraceable` for an operation without a rule.
+        """
+        from ._formats import of_casadi
+
+        function, states, names = of_casadi(system)
+        given, initial = dict(parameters or {}), dict.fromkeys(states, 0.0) | dict(start or {})
+        for field, known, values in (("parameters", names, given), ("start", states, initial)):
+            wrong = sorted(set(known) ^ set(values))
+            if wrong:
+                raise InvalidInput(
+                    f"{field} {wrong[0]}: every symbol has a value, and nothing else; allowed: {', '.join(known)}",
+                    key=field,
+                    value=wrong[0],
+                    allowed=", ".join(known),
+                )
+        return cls(function, initial, {key: given[key] for key in names}, name=name)
+
+    @classmethod
+    def from_sbml(cls, model: Path, *, name: str | None = None) -> Model:
+        """A model in SBML: its text, or the path of its file (needs ``pip install arclength[sbml]``).
+
+        COPASI writes it in the format of XPPAUT, in which it is read: amounts of species are states, names are as COPASI shortens them.
+        """
+        from ._formats import ode_of_sbml
+
+        return cls._of_text(name or "sbml", ode_of_sbml(_text_of(model, "<")))
+
+    @classmethod
+    def from_antimony(cls, model: Path, *, name: str | None = None) -> Model:
+        """A model in Antimony: its text, or the path of its file (needs ``pip install arclength[sbml]``). See :meth:`from_sbml`."""
+        from ._formats import ode_of_sbml, sbml_of_antimony
+
+        return cls._of_text(name or "antimony", ode_of_sbml(sbml_of_antimony(_text_of(model, "\n;"))))
+
+    @classmethod
     def _of_text(cls, name: str, source: str) -> Model:
         self = cls.__new__(cls)
         self._stored = {"name": name, "source": source}
@@ -207,6 +253,15 @@ class Model:
             np.array(list(values.values()), dtype=float),
         )
 
+    def _at(self, point: Mapping[str, Any]) -> tuple[Model, dict[str, Any]]:
+        """The model with keywords for a point of a sweep: values of parameters, and what of the point is none."""
+        own = {key: value for key, value in point.items() if key in self.parameters}
+        return self, {"set": own, **{key: value for key, value in point.items() if key not in own}}
+
+    def _identity(self) -> dict[str, Any]:
+        """What tells it from other models, for sweeps."""
+        return {"model": self.source}
+
     def __repr__(self) -> str:
         parameters = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
         return f"<Model {self.name}: states {', '.join(self.states)}; parameters {parameters}>"
@@ -252,6 +307,8 @@ class Model:
     ) -> Equilibria:
         """Follows the equilibria along a parameter from the one near the initial state, with folds, branch points, Hopf points.
 
+        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+
         Parameters
         ----------
         along: parameter and its interval, ``("mu", -1, 1)``.
@@ -262,9 +319,7 @@ class Model:
         monitors: expressions that are recorded, or a mapping to values at which a point is wanted.
         until: expressions with values at which the branch ends.
         steps, finer: most steps in one direction; how many times shorter they are.
-        threads, progress: number of threads; a function that is told the progress.
-
-        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+        threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
         """
         model = self._request(set, start, named_set, freeze)
         return _equilibria(model, along, at, monitors, until, steps, finer, threads, progress)
@@ -303,6 +358,17 @@ class Model:
         ``"rising"`` or ``"falling"``, or ``"both"``), ``threads`` and ``progress``. Ctrl-C ends the motion where it is.
         """
         return _simulate(self._request(set, start, named_set, freeze), duration, **keywords)
+
+
+def _text_of(model: Path, signs: str) -> str:
+    """A text, known by one of these signs, or what stands in a file."""
+    if isinstance(model, str) and any(sign in model for sign in signs):
+        return model
+    try:
+        with open(model, encoding="utf-8") as file:
+            return file.read()
+    except OSError as error:
+        raise InvalidInput(f"{os.fspath(model)}: {error.strerror}", key="model", value=os.fspath(model)) from None
 
 
 def _of_text(name: str, source: str) -> Model:
@@ -475,6 +541,8 @@ class ModelPoint(Point):
         From a Hopf point (HB) the cycles that are born there, from a period doubling (PD) the doubled ones, from a branch point of
         cycles (BPC) the other branch, from any other cycle, or with ``stay``, the branch through it.
 
+        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+
         Parameters
         ----------
         along: parameter and its interval, ``("mu", -1, 1)``.
@@ -485,9 +553,7 @@ class ModelPoint(Point):
         until: expressions with values at which the branch ends.
         steps, finer: most steps in one direction; how many times shorter they are.
         tolerance, intervals: error estimate, relative to the amplitude, that no cycle exceeds; most mesh intervals.
-        threads, progress: number of threads; a function that is told the progress.
-
-        Raises :class:`~arclength.InvalidInput` and :class:`~arclength.ComputationFailed`. Ctrl-C ends the branch where it is.
+        threads, progress: number of threads; a function that is told the progress, or ``True`` for a bar of tqdm.
         """
         with self.branch._file() as path:
             return _cycles(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import json
 import os
@@ -309,7 +310,11 @@ def load(path: Path) -> Any:
 
 def of(native: NativeResult) -> Any:
     """The result as the class of its kind."""
+    return _kinds().get(native.schema, Result)(native)
+
+
+@functools.cache
+def _kinds() -> dict[str, type[Result]]:
     from . import kingpin, models
 
-    kinds: dict[str, type[Result]] = {**models.KINDS, **kingpin.KINDS}
-    return kinds.get(native.schema, Result)(native)
+    return {**models.KINDS, **kingpin.KINDS}
