@@ -49,6 +49,7 @@ test("Lur'e is followed to its period doublings by clicks alone", async () => {
   assert.match(python, /^cycles = equilibria\["HB1"\]\.cycles\(along=\("alpha", -1, 2\.5\)\)$/m);
   assert.match(python, /^locus = cycles\["PD1"\]\.locus\(\("alpha", -1, 2\.5\), \("beta", 0, 2\)\)$/m);
   await opened.picture("lure-plane");
+  await opened.documented("page");
 
   // The address is the page: another one that opens it has the same curves.
   const copy = await open(browser, page.url());

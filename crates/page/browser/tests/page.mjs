@@ -9,6 +9,8 @@ import { chromium } from "playwright-core";
 const PROGRAMS = process.env.PROGRAMS ?? new URL("../../../../target/debug", import.meta.url).pathname;
 /** Where pictures of the page are kept; nowhere unless asked for. */
 const PICTURES = process.env.PICTURES;
+/** Whether the pictures of the documentation are made again. */
+const DOCUMENTATION = process.env.DOCUMENTATION;
 
 const AXE = readFileSync(new URL("../node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 
@@ -74,6 +76,13 @@ export async function open(browser, url, { expected, ...options } = {}) {
       if (!PICTURES) return;
       mkdirSync(PICTURES, { recursive: true });
       await page.screenshot({ path: `${PICTURES}/${name}.png`, fullPage: true });
+    },
+    /** The picture of this name in the documentation. */
+    async documented(name) {
+      if (!DOCUMENTATION) return;
+      // Nothing is pointed at.
+      await page.evaluate(() => document.activeElement?.blur());
+      await page.screenshot({ path: new URL(`../../../../docs/${name}.png`, import.meta.url).pathname, fullPage: true });
     },
     async close() {
       await context.close();
