@@ -1,8 +1,10 @@
 //! What a server can be asked: its routes, each known by how and where it is asked, so that its description can be held against them.
 
+use crate::guard::only_json;
 use crate::work::Work;
 use axum::Router;
 use axum::handler::Handler;
+use axum::middleware::from_fn;
 use axum::routing::{get, post};
 
 /// How and where something is asked.
@@ -37,7 +39,7 @@ impl Routes {
     /// What is asked with a body.
     pub fn post<H: Handler<T, Work>, T: 'static>(mut self, path: &'static str, handler: H) -> Self {
         self.addresses.push(Address { method: "post", path });
-        self.router = self.router.route(path, post(handler));
+        self.router = self.router.route(path, post(handler).route_layer(from_fn(only_json)));
         self
     }
 

@@ -76,8 +76,7 @@ pub(crate) fn samples() -> Vec<Sample> {
     locus.at = vec![1.0];
     locus.hold = Some(monitored());
     locus.monitors = vec![monitored()];
-    let mut motion = SimulateRequest::new(model(text()));
-    motion.duration = Some(2.0);
+    let mut motion = SimulateRequest::new(model(text()), 2.0);
     motion.points = Some(11);
     motion.t0 = Some(0.0);
     motion.transient = Some(0.5);
