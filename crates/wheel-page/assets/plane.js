@@ -51,7 +51,11 @@ export class Plane {
 
   draw() {
     const { motion, rest, map, limits } = this;
-    const [[left, right], [low, high]] = limits;
+    // A map stands where it was computed; without one the plane reaches as far as the motion.
+    /** @param {[number, number]} ends @param {number[]} values @returns {[number, number]} */
+    const reach = ([low, high], values) => (map ? [low, high] : [values.reduce((least, value) => Math.min(least, value), low), values.reduce((most, value) => Math.max(most, value), high)]);
+    const [left, right] = reach(limits[0], motion?.psi ?? []);
+    const [low, high] = reach(limits[1], motion?.Omega ?? []);
     /** @type {import("./plot.js").Point[]} */
     const points = (motion?.psi ?? []).map((psi, index) => [psi, motion?.Omega[index] ?? NaN]);
     const plot = draw({
