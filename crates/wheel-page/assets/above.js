@@ -129,11 +129,11 @@ export class Above {
     const length = newtons * this.perNewton;
     const [left, top] = [-0.96 * seen, 0.55 * seen];
     const text = (/** @type {number} */ x, /** @type {string} */ name, /** @type {string} */ words) =>
-      svg("text", { class: name, x, y: top + 4 * unit, "font-size": 11.5 * unit }, words);
+      svg("text", { class: name, x, y: top + 4 * unit, "font-size": 10.5 * unit }, words);
     legend.append(
       svg("path", { class: "force scale", "stroke-width": 1.6 * unit, d: this.arrow(left, top, length, 0) }),
       text(left + length + 4 * unit, "value", `${readable(newtons, 3)} N`),
-      text(left + length + 48 * unit, "king-pin-name", "springs, dampers"), text(left + length + 145 * unit, "ground-name", "ground"));
+      text(left + length + 46 * unit, "king-pin-name", "springs, dampers"), text(left + length + 140 * unit, "ground-name", "ground"));
   }
 
   /** An arrow as a path. @param {number} x @param {number} y @param {number} dx @param {number} dy */
