@@ -17,18 +17,21 @@ pub struct Curve {
     name: &'static str,
     color: Color,
     points: Vec<((f64, f64), Stability)>,
+    /// At which of them it is upright.
+    upright: Vec<bool>,
     labels: Vec<((f64, f64), String)>,
 }
 
 impl Curve {
     /// A curve through points with their stability and labels. Ends and neutral saddles are not labelled in
-    /// pictures.
+    /// pictures. At the special points of the kinds `upright` the horizontal value stands still.
     pub fn of<'a>(
         name: &'static str,
         color: Color,
+        upright: &[&str],
         points: impl IntoIterator<Item = ((f64, f64), Option<bool>, Option<&'a str>)>,
     ) -> Self {
-        let mut curve = Self { name, color, points: Vec::new(), labels: Vec::new() };
+        let mut curve = Self { name, color, points: Vec::new(), upright: Vec::new(), labels: Vec::new() };
         for (at, stable, label) in points {
             // Nothing is claimed to be stable that is not known to be.
             let stability = match is_bifurcation(label) {
@@ -36,6 +39,7 @@ impl Curve {
                 false => Stability::from(stable == Some(true)),
             };
             curve.points.push((at, stability));
+            curve.upright.push(label.is_some_and(|label| upright.contains(&kind(label))));
             if let Some(label) = label.filter(|label| !matches!(kind(label), "EP" | "NSE")) {
                 curve.labels.push((at, label.to_owned()));
             }
@@ -74,7 +78,9 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
     let mut panel = Panel::new(Axis::new(horizontal), Axis::new(vertical)).legend(Legend::Below);
     let mut named: Vec<&str> = Vec::new();
     for curve in curves {
-        let line = Branch::new(curve.points.iter().copied()).color(curve.color);
+        let line = Branch::new(curve.points.iter().copied())
+            .smooth(curve.upright.iter().copied())
+            .color(curve.color);
         let first = legend.is_some() && !named.contains(&curve.name);
         named.push(curve.name);
         panel = panel.curve(if first { line.legend(curve.name) } else { line });

@@ -8,9 +8,10 @@ use crate::markers::{draw_hatching, draw_marker};
 use crate::panel::{Map, Panel};
 use crate::path::Path;
 use crate::placement::Obstacles;
-use crate::scene::{Halo, Item, Scene, Stroke};
-use crate::series::{CurvePiece, Marker, PointLabel};
-use crate::style::{HALO_WIDTH, SMALL_SIZE, THINNING};
+use crate::scene::{Dash, Halo, Item, Scene, Stroke};
+use crate::series::{Curve, CurvePiece, Marker, PointLabel};
+use crate::smooth::smoothed;
+use crate::style::{HALO_WIDTH, LEADER_WIDTH, SMALL_SIZE, THINNING};
 use crate::text::TextLayout;
 
 /// Draws the panel into the rectangle of its axes.
@@ -48,7 +49,7 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
     let mut obstacles = Obstacles::default();
     let mut curves = Vec::with_capacity(panel.curves.len());
     for curve in &panel.curves {
-        let pieces: Vec<_> = curve.pieces.iter().map(|piece| (place.pieces(piece), piece)).collect();
+        let pieces: Vec<_> = place.pieces(curve).into_iter().zip(&curve.pieces).collect();
         let all: Vec<Vec<Point>> = pieces.iter().flat_map(|(points, _)| points).cloned().collect();
         let number = obstacles.add_curve(&all);
         curves.push((curve, pieces, all, number));
@@ -121,9 +122,13 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
     for (at, label) in points {
         let radius = label.marker.map_or(0.0, |marker| 0.5 * marker.size);
         let layout = TextLayout::new(&label.text, SMALL_SIZE);
-        let origin = obstacles.beside_point(at, radius, &layout, plot);
-        let covers = obstacles.covers_curve(&layout.bounds(origin));
-        texts.add(layout, origin, 0.0, palette::BLACK, covers);
+        let label = obstacles.beside_point(at, radius, &layout, plot);
+        if let Some((from, to)) = label.leader {
+            let line = Stroke { color: palette::BLACK, width: LEADER_WIDTH, dash: Dash::Solid };
+            scene.stroke(Path::polyline(&[from, to]), line);
+        }
+        let covers = obstacles.covers_curve(&layout.bounds(label.origin));
+        texts.add(layout, label.origin, 0.0, palette::BLACK, covers);
     }
     scene.items.extend(texts.texts);
 }
@@ -161,9 +166,22 @@ impl Place {
         )
     }
 
-    /// The visible parts of a curve, without points that make no difference.
-    fn pieces(&self, piece: &CurvePiece) -> Vec<Vec<Point>> {
-        let points: Vec<Point> = piece.points.iter().map(|p| self.point(*p)).collect();
-        clip_polyline(&points, &self.plot).iter().map(|piece| thin(piece, THINNING)).collect()
+    /// The visible parts of every piece of a curve, without points that make no difference.
+    fn pieces(&self, curve: &Curve) -> Vec<Vec<Vec<Point>>> {
+        let on_page = |piece: &CurvePiece| piece.points.iter().map(|p| self.point(*p)).collect();
+        let mut pieces: Vec<Vec<Point>> = curve.pieces.iter().map(on_page).collect();
+        if let Some(upright) = &curve.smooth {
+            // The direction where two pieces meet is that of the whole curve.
+            let mut whole: Vec<Point> = pieces.first().map(|piece| piece[..1].to_vec()).unwrap_or_default();
+            whole.extend(pieces.iter().flat_map(|piece| &piece[1..]));
+            let mut smooth = smoothed(&whole, upright).into_iter();
+            for piece in &mut pieces {
+                *piece = smooth.by_ref().take(piece.len() - 1).flatten().collect();
+            }
+        }
+        let visible = |points: &Vec<Point>| {
+            clip_polyline(points, &self.plot).iter().map(|piece| thin(piece, THINNING)).collect()
+        };
+        pieces.iter().map(visible).collect()
     }
 }

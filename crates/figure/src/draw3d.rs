@@ -13,7 +13,9 @@ use crate::placement::Obstacles;
 use crate::projection::View;
 use crate::scene::{Dash, Halo, Item, Scene, Stroke};
 use crate::series::Curve;
-use crate::style::{FRAME_WIDTH, HALO_WIDTH, LABEL_GAP, MAJOR_TICK, SMALL_SIZE, TEXT_SIZE, THINNING};
+use crate::style::{
+    FRAME_WIDTH, HALO_WIDTH, LABEL_GAP, LEADER_WIDTH, MAJOR_TICK, SMALL_SIZE, TEXT_SIZE, THINNING,
+};
 use crate::text::TextLayout;
 
 /// How much of what is behind shows through a wall.
@@ -77,9 +79,13 @@ pub(crate) fn draw_panel3d(scene: &mut Scene, panel: &Panel3d, target: &Rect) {
     scene.items.extend(labels.texts);
     for (at, text) in point_labels {
         let layout = TextLayout::new(&text, SMALL_SIZE);
-        let origin = obstacles.beside_point(at, 2.0, &layout, target);
+        let label = obstacles.beside_point(at, 2.0, &layout, target);
+        if let Some((from, to)) = label.leader {
+            let line = Stroke { color: palette::BLACK, width: LEADER_WIDTH, dash: Dash::Solid };
+            scene.stroke(Path::polyline(&[from, to]), line);
+        }
         let halo = Halo { color: palette::WHITE, width: HALO_WIDTH };
-        scene.text(layout, origin, 0.0, palette::BLACK, Some(halo));
+        scene.text(layout, label.origin, 0.0, palette::BLACK, Some(halo));
     }
     let tag = TextLayout::with_font(&panel.tag, TEXT_SIZE, Font::Bold);
     scene.text(tag, Point::new(target.left, target.top + TEXT_SIZE), 0.0, palette::BLACK, None);

@@ -57,6 +57,7 @@ mod projection;
 mod save;
 mod scene;
 mod series;
+mod smooth;
 mod style;
 mod svg;
 mod text;

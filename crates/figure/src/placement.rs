@@ -1,4 +1,5 @@
-//! Puts labels where they cover least: beside points, along curves, and legends in the emptiest place.
+//! Puts labels where they cover least: beside points, or farther away on a leader line where points crowd, along curves, and legends in
+//! the emptiest place.
 //!
 //! Every candidate position has a cost, counted in points of curve covered; the cheapest wins and the first of equals,
 //! so the result is the same every time.
@@ -20,13 +21,36 @@ const COVERING_COST: f64 = 10.0;
 const INLAND_COST: f64 = 0.3;
 /// Gap between a label and what it belongs to, in points.
 const GAP: f64 = 2.0;
+/// Distances of a label from its point that are tried: so many, so far apart in points, and what each costs.
+const RINGS: u32 = 9;
+const RING: f64 = 4.0;
+const RING_COST: f64 = 3.0;
+/// Distance of a label from the marker of its point from which on a line leads to it, in points, and what the line costs: as such, for every
+/// other one that it crosses, and per point of label or marker and of curve that it covers.
+const LEADER_FROM: f64 = 4.5;
+const LEADER_COST: f64 = 4.0;
+const LEADERS_COST: f64 = 60.0;
+const LEADER_ON_LABEL: f64 = 8.0;
+const LEADER_ON_CURVE: f64 = 0.3;
+/// Gap between a leader line and its label, and how far from a marker it starts.
+const LEADER_GAP: f64 = 1.0;
 
 /// What labels should not cover.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Obstacles {
     segments: Vec<(Point, Point, usize)>,
     boxes: Vec<Rect>,
+    leaders: Vec<(Point, Point)>,
     curves: usize,
+}
+
+/// The place of a label of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlacedLabel {
+    /// Where its baseline starts.
+    pub origin: Point,
+    /// From the marker to the label, where it stands away from it.
+    pub leader: Option<(Point, Point)>,
 }
 
 /// The place of a name along its curve.
@@ -71,18 +95,18 @@ impl Obstacles {
         curves + labels
     }
 
-    /// Where the baseline of a label for `point` starts; the label is kept inside `frame` where it fits.
+    /// Where the label for `point` stands; it is kept inside `frame` where it fits.
     pub(crate) fn beside_point(
         &mut self,
         point: Point,
         radius: f64,
         layout: &TextLayout,
         frame: &Rect,
-    ) -> Point {
+    ) -> PlacedLabel {
         let (width, height) = (layout.width, layout.height());
-        let mut best = (f64::INFINITY, point);
-        for ring in 0..4 {
-            let distance = radius + GAP + 4.0 * f64::from(ring);
+        let mut best = (f64::INFINITY, PlacedLabel { origin: point, leader: None });
+        for ring in 0..RINGS {
+            let distance = radius + GAP + RING * f64::from(ring);
             for direction in 0..16 {
                 let angle = std::f64::consts::FRAC_PI_8 * f64::from(direction) - std::f64::consts::FRAC_PI_4;
                 let (sine, cosine) = angle.sin_cos();
@@ -102,14 +126,36 @@ impl Obstacles {
                 } else {
                     OUTSIDE_COST + beyond(&rect, frame)
                 };
-                let cost = outside + self.cost(&rect.expanded(1.5), None) + 3.0 * f64::from(ring);
+                let leader = leader(point, radius, &rect);
+                let led = leader.map_or(0.0, |(from, to)| self.cost_of_leader(from, to));
+                let covered: f64 =
+                    self.leaders.iter().map(|(from, to)| LABEL_COST * length_inside(*from, *to, &rect)).sum();
+                let cost = outside
+                    + self.cost(&rect.expanded(1.5), None)
+                    + covered
+                    + led
+                    + RING_COST * f64::from(ring);
                 if cost < best.0 - 1e-9 {
-                    best = (cost, Point::new(rect.left, rect.bottom - layout.descent));
+                    let origin = Point::new(rect.left, rect.bottom - layout.descent);
+                    best = (cost, PlacedLabel { origin, leader });
                 }
             }
         }
-        self.add_box(layout.bounds(best.1));
-        best.1
+        let (_, placed) = best;
+        self.add_box(layout.bounds(placed.origin));
+        self.leaders.extend(placed.leader);
+        placed
+    }
+
+    /// The cost of a leader line from a marker to its label.
+    fn cost_of_leader(&self, from: Point, to: Point) -> f64 {
+        let crossed = self.leaders.iter().filter(|(other, end)| cross(from, to, *other, *end)).count();
+        let labels: f64 = self.boxes.iter().map(|label| length_inside(from, to, label)).sum();
+        let curves = self.segments.iter().filter(|(a, b, _)| cross(from, to, *a, *b)).count();
+        LEADER_COST
+            + LEADERS_COST * crossed as f64
+            + LEADER_ON_LABEL * labels
+            + LEADER_ON_CURVE * curves as f64
     }
 
     /// Where the name of a curve stands: on the curve, which it interrupts, or close beside it where the curve has too
@@ -210,6 +256,23 @@ impl Obstacles {
     }
 }
 
+/// The line from a marker to a label that stands away from it.
+fn leader(point: Point, radius: f64, label: &Rect) -> Option<(Point, Point)> {
+    let nearest = Point::new(point.x.clamp(label.left, label.right), point.y.clamp(label.top, label.bottom));
+    let distance = point.distance(nearest);
+    let [start, end] = [radius + LEADER_GAP, distance - LEADER_GAP];
+    (distance - radius > LEADER_FROM)
+        .then(|| (point.lerp(nearest, start / distance), point.lerp(nearest, end / distance)))
+}
+
+/// Whether two segments cross.
+fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
+    let side = |from: Point, to: Point, p: Point| {
+        (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x)
+    };
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
 /// -1, 0 or 1 with a linear passage, so that labels straight above a point are centred.
 fn saturated(value: f64) -> f64 {
     (1.45 * value).clamp(-1.0, 1.0)
@@ -251,8 +314,37 @@ mod tests {
         let line = vec![Point::new(0.0, 120.0), Point::new(200.0, 0.0)];
         obstacles.add_curve(std::slice::from_ref(&line));
         let layout = TextLayout::new("HB1", 8.0);
-        let origin = obstacles.beside_point(Point::new(100.0, 60.0), 2.0, &layout, &FRAME);
-        assert_eq!(length_inside(line[0], line[1], &layout.bounds(origin)), 0.0);
+        let placed = obstacles.beside_point(Point::new(100.0, 60.0), 2.0, &layout, &FRAME);
+        assert_eq!(length_inside(line[0], line[1], &layout.bounds(placed.origin)), 0.0);
+        assert_eq!(placed.leader, None);
+    }
+
+    #[test]
+    fn labels_of_one_place_are_led_to_it_without_crossings() {
+        let mut obstacles = Obstacles::default();
+        let layout = TextLayout::new("LPC1", 8.0);
+        let points: Vec<Point> =
+            (0..6).map(|index| Point::new(100.0, 58.0 + 0.8 * f64::from(index))).collect();
+        points
+            .iter()
+            .for_each(|point| obstacles.add_box(Rect::new(point.x, point.y, point.x, point.y).expanded(2.0)));
+        let placed: Vec<PlacedLabel> =
+            points.iter().map(|point| obstacles.beside_point(*point, 2.0, &layout, &FRAME)).collect();
+        let leaders: Vec<(Point, Point)> = placed.iter().filter_map(|placed| placed.leader).collect();
+        assert!(!leaders.is_empty());
+        for (index, placed) in placed.iter().enumerate() {
+            let bounds = layout.bounds(placed.origin);
+            // A label without a line touches its marker.
+            let nearest = Point::new(
+                points[index].x.clamp(bounds.left, bounds.right),
+                points[index].y.clamp(bounds.top, bounds.bottom),
+            );
+            assert!(placed.leader.is_some() || points[index].distance(nearest) <= 2.0 + LEADER_FROM + 1e-9);
+            assert!(leaders.iter().all(|(from, to)| length_inside(*from, *to, &bounds) < 0.5));
+        }
+        for (index, (from, to)) in leaders.iter().enumerate() {
+            assert!(leaders[..index].iter().all(|(other, end)| !cross(*from, *to, *other, *end)));
+        }
     }
 
     #[test]
@@ -298,7 +390,8 @@ mod tests {
             let layout = TextLayout::new("LPC1", 8.0);
             let mut placed: Vec<Rect> = Vec::new();
             for point in points {
-                let bounds = layout.bounds(obstacles.beside_point(point.into(), 2.0, &layout, &FRAME));
+                let placed_label = obstacles.beside_point(point.into(), 2.0, &layout, &FRAME);
+                let bounds = layout.bounds(placed_label.origin);
                 prop_assert!(FRAME.encloses(&bounds));
                 prop_assert!(placed.iter().all(|other| other.overlap_area(&bounds) < 20.0));
                 placed.push(bounds);

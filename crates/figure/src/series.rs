@@ -141,6 +141,8 @@ pub struct Branch {
     /// Which points are dotted; those beyond its end are not.
     dotted: Vec<bool>,
     unstable_color: Option<Color>,
+    /// Which points the curve is known to be upright at, where it is smooth.
+    smooth: Option<Vec<bool>>,
     pub(crate) style: CurveStyle,
 }
 
@@ -151,8 +153,21 @@ impl Branch {
             points: points.into_iter().map(|(point, stability)| (point.into(), stability.into())).collect(),
             dotted: Vec::new(),
             unstable_color: None,
+            smooth: None,
             style: CurveStyle::default(),
         }
+    }
+
+    /// Draws it smoothly through its points, with their corners where it has kinks; `upright` says in the order of the points where it is
+    /// known to be upright: where a branch turns, and where cycles are born.
+    ///
+    /// ```
+    /// use kingpin_figure::Branch;
+    /// let amplitudes = [0.0, 0.1, 0.2, 0.4].map(|amplitude: f64| ((1.0 - amplitude.powi(2), amplitude), true));
+    /// let branch = Branch::new(amplitudes).smooth([true]);
+    /// ```
+    pub fn smooth(self, upright: impl IntoIterator<Item = bool>) -> Self {
+        Self { smooth: Some(upright.into_iter().collect()), ..self }
     }
 
     /// Draws dotted, whatever its stability, what touches one of the points that are so marked, in their order: solutions outside
@@ -199,6 +214,8 @@ struct Run {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     pub(crate) pieces: Vec<CurvePiece>,
+    /// Which of the points of all pieces, where two meet once, it is upright at, where it is smooth.
+    pub(crate) smooth: Option<Vec<bool>>,
     pub(crate) style: CurveStyle,
 }
 
@@ -213,7 +230,7 @@ pub(crate) struct CurvePiece {
 impl From<Line> for Curve {
     fn from(line: Line) -> Self {
         let piece = CurvePiece { points: line.points, dash: line.dash, color: None };
-        Curve { pieces: vec![piece], style: line.style }
+        Curve { pieces: vec![piece], smooth: None, style: line.style }
     }
 }
 
@@ -228,7 +245,11 @@ impl From<Branch> for Curve {
             },
             color: if run.stable { None } else { branch.unstable_color },
         };
-        Curve { pieces: branch.runs().into_iter().map(piece).collect(), style: branch.style }
+        Curve {
+            pieces: branch.runs().into_iter().map(piece).collect(),
+            smooth: branch.smooth,
+            style: branch.style,
+        }
     }
 }
 

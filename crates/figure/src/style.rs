@@ -15,3 +15,5 @@ pub(crate) const LABEL_GAP: f64 = 3.0;
 pub(crate) const THINNING: f64 = 0.02;
 /// Reach of the white rim around text on curves.
 pub(crate) const HALO_WIDTH: f64 = 1.2;
+/// Width of the line from a point to a label that stands away from it.
+pub(crate) const LEADER_WIDTH: f64 = 0.4;

@@ -152,7 +152,8 @@ proptest! {
             .region(Region::new(region.clone()))
             .region(Region::new(region).hatched(palette::BLACK, 45.0))
             .curve(Line::new(line).name("name").legend("legend"))
-            .curve(Branch::new(branch.into_iter().map(|p| (p, p.0 > 0.0))));
+            .curve(Branch::new(branch.clone().into_iter().map(|p| (p, p.0 > 0.0))))
+            .curve(Branch::new(branch.into_iter().map(|p| (p, p.0 > 0.0))).smooth([true, false, true]));
         for at in &marks {
             panel = panel.point(PointLabel::new(at, "HB1")).note(Note::new(at, "note"));
         }

@@ -136,6 +136,13 @@ pub(crate) fn contact_in_words(wheel: &Wheel, contact: &str) -> &'static str {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NamedFate(pub Fate);
 
+impl NamedFate {
+    /// The colour in which maps show it.
+    pub fn color(self) -> Color {
+        color(self.0)
+    }
+}
+
 impl Serialize for NamedFate {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.0.name())

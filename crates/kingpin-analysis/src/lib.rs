@@ -30,6 +30,7 @@ mod parameters;
 pub mod report;
 mod result_file;
 pub mod safe_kick;
+mod seen_from_above;
 pub mod shimmy;
 pub mod simulate;
 pub mod stability;
@@ -49,6 +50,7 @@ pub use forces::ForcesResult;
 pub use journal::Journal;
 pub use neglected_dry_friction::NeglectedDryFriction;
 pub use result_file::ResultFile;
+pub use seen_from_above::SeenFromAbove;
 pub use wheel_request::WheelRequest;
 
 /// The code of the README, which is tested.

@@ -24,6 +24,9 @@ use crate::wheel::Wheel;
 use arclength::cycle::Orbit;
 use arclength::{Dual, Scalar, VectorField};
 
+/// Index of the caster angle among all states.
+const CASTER_ANGLE: usize = 2;
+
 /// The forces at a state, in the body frame of the caster, in N.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Forces<T> {
@@ -286,34 +289,60 @@ impl Wheel {
     }
 }
 
+/// A force along and across a caster in the towing frame: forwards, and towards the centre of the circle.
+pub fn in_towing_frame(psi: f64, [along, across]: [f64; 2]) -> [f64; 2] {
+    let (sine, cosine) = psi.sin_cos();
+    [along * cosine + across * sine, across * cosine - along * sine]
+}
+
 /// What the king pin bears and what the dampers take at a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KingPinLoad {
-    /// Force on the king pin in N.
-    pub force: f64,
+    /// Force on the king pin in N, forwards and towards the centre of the circle.
+    pub components: [f64; 2],
     /// What all dampers take, in W.
     pub damper_power: f64,
 }
 
+impl KingPinLoad {
+    /// Force on the king pin in N.
+    pub fn force(&self) -> f64 {
+        self.components[0].hypot(self.components[1])
+    }
+}
+
+/// What ground and king pin bear at a state of a motion that rolls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RollingLoad {
+    /// Force of the ground on the wheel in N, forwards and towards the centre of the circle.
+    pub ground: [f64; 2],
+    /// That of the king pin.
+    pub king_pin: KingPinLoad,
+}
+
 impl Wheel {
-    /// The load of the king pin at [all states](Self::states) of a motion that rolls, each with the moment of dry friction about the king pin
-    /// in N m, which is no damper.
+    /// The loads at [all states](Self::states) of a motion that rolls, each with the moment of dry friction about the king pin in N m, which
+    /// is no damper.
     ///
     /// # Errors
     /// Those of [`rolling_model`](Self::rolling_model).
     ///
     /// # Panics
     /// Where there are fewer states than the wheel has.
-    pub fn king_pin_loads<'a>(
+    pub fn rolling_loads<'a>(
         &self,
         states: impl IntoIterator<Item = (&'a [f64], f64)>,
-    ) -> Result<Vec<KingPinLoad>, KingpinError> {
+    ) -> Result<Vec<RollingLoad>, KingpinError> {
         let model = self.rolling_model(&[])?;
         let known = model.force_parameters(&[]);
         let load = |(states, friction_moment): (&[f64], f64)| {
             let forces = model.forces_along(&known, friction_moment, &model.free_state(states), &[]);
-            let [along, across] = forces.king_pin;
-            KingPinLoad { force: along.hypot(across), damper_power: forces.damper_power }
+            let psi = states[CASTER_ANGLE];
+            let components = in_towing_frame(psi, forces.king_pin);
+            RollingLoad {
+                ground: in_towing_frame(psi, forces.ground),
+                king_pin: KingPinLoad { components, damper_power: forces.damper_power },
+            }
         };
         Ok(states.into_iter().map(load).collect())
     }

@@ -60,7 +60,7 @@ pub use contact::ContactForce;
 pub use critical_speed::CriticalSpeed;
 pub use damper::SmallestDamper;
 pub use error::{KingpinError, NoUniformMotion, Position};
-pub use forces::{CycleForces, KingPinLoad};
+pub use forces::{CycleForces, KingPinLoad, RollingLoad, in_towing_frame};
 pub use lateral::LateralWheel;
 pub use parameters::{Key, Tyre};
 pub use plane::{Axis, Plane};

@@ -1,4 +1,4 @@
-// The command lines that compute what the page shows.
+// The lines that compute what the page shows: of the command line and of Python.
 
 /**
  * @typedef {import("./state.js").State} State
@@ -51,4 +51,44 @@ export function commands(state) {
   }
   for (const [axes, names] of diagrams) lines.push(`arclength show ${names.map(quoted).join(" ")} -o ${quoted(`${axes}.svg`)}`);
   return lines.join("\n");
+}
+
+/** A name of a variable for a result. @param {string} file */
+function variable(file) {
+  return file.replace(/\.json$/, "").replaceAll("-", "_");
+}
+
+/** @param {Interval} interval */
+function tuple({ key, start, end }) {
+  return `("${key}", ${start}, ${end})`;
+}
+
+/** @param {Record<string, number>} values */
+function dictionary(values) {
+  return `{${Object.entries(values).map(([key, value]) => `"${key}": ${value}`).join(", ")}}`;
+}
+
+/**
+ * @param {State} state
+ * @param {Step} step
+ */
+function call(state, step) {
+  const { from, along, plane } = step;
+  const words = [];
+  if (along) words.push(`along=${tuple(along)}`);
+  if (plane) words.push(...plane.map(tuple));
+  if (step.duration) words.push(String(step.duration));
+  if (step.stay) words.push("stay=True");
+  if (!from && Object.keys(state.set).length) words.push(`set=${dictionary(state.set)}`);
+  if (!from && Object.keys(state.start).length) words.push(`start=${dictionary(state.start)}`);
+  const source = !from ? "model" : from.label === "END" ? `${variable(from.path)}.end` : `${variable(from.path)}["${from.label}"]`;
+  return `${variable(step.name)} = ${source}.${step.kind}(${words.join(", ")})`;
+}
+
+/**
+ * The lines of Python, in their order.
+ * @param {State} state
+ */
+export function pythonLines(state) {
+  return ["import arclength", "", `model = arclength.Model.from_ode(${JSON.stringify(state.name)})`, ...state.steps.map((step) => call(state, step))].join("\n");
 }

@@ -22,6 +22,8 @@ import { labelKind } from "./starts.js";
 
 /** Time between two pictures of what grows, in milliseconds. */
 const PATIENCE = 60;
+/** How long the picture stands still of curves that are computed anew, in milliseconds: what is there by then shows no growth. */
+const STILL = 1000;
 /** Distance from a point within which it is picked, in points of the picture. */
 const REACH = 12;
 /** Labels that are not shown in pictures. */
@@ -72,8 +74,14 @@ class Diagram {
     this.picture = html("div", { class: "picture" });
     this.element = html("section", { class: "diagram" }, html("header", {}, this.title, this.tools), this.picture);
     this.drawn = "";
+    /** The curves of the finished picture that is seen. @type {Set<string>} */
+    this.finished = new Set();
     this.last = 0;
     this.timer = 0;
+    /** Since when something is computed. */
+    this.since = 0;
+    /** Until the picture that was asked for last is there. @type {Promise<void>} */
+    this.isShown = Promise.resolve();
     /** @type {Group} */
     this.group = { key: "", title: "", steps: [] };
     /** @type {Map<string, Result>} */
@@ -119,8 +127,17 @@ class Diagram {
     this.title.textContent = group.title;
     const running = group.steps.some((step) => results.get(step.name)?.running);
     clearTimeout(this.timer);
-    if (!running) void this.finish();
-    else this.timer = setTimeout(() => this.grow(), Math.max(0, this.last + PATIENCE - performance.now()));
+    if (running) this.picture.setAttribute("aria-busy", "true");
+    if (!running) {
+      this.since = 0;
+      this.isShown = this.finish();
+      return;
+    }
+    this.since ||= performance.now();
+    // A curve that was not there yet grows; one that is computed anew, as while a slider moves, stays until the new one is there.
+    const isNew = group.steps.some((step) => !step.hidden && !this.finished.has(step.name));
+    const earliest = isNew ? this.last + PATIENCE : Math.max(this.last + PATIENCE, this.since + STILL);
+    this.timer = setTimeout(() => this.grow(), Math.max(0, earliest - performance.now()));
   }
 
   /** Draws what there is so far. */
@@ -157,6 +174,7 @@ class Diagram {
       x: { label: x ?? "", low: interval?.start, high: interval?.end }, y: { label: y ?? "" },
     });
     this.drawn = "";
+    this.finished.clear();
     this.picture.classList.add("growing");
     this.picture.replaceChildren(plot.element);
   }
@@ -165,10 +183,16 @@ class Diagram {
   async finish() {
     const names = this.seen.map((step) => step.name);
     const signature = JSON.stringify([this.shown, names.map((name) => this.results.get(name)?.key)]);
-    if (signature === this.drawn) return this.mark();
+    if (signature === this.drawn) {
+      this.mark();
+      return this.isShown;
+    }
     this.drawn = signature;
+    this.picture.setAttribute("aria-busy", "true");
     if (!names.length) {
       this.picture.replaceChildren();
+      this.picture.classList.remove("growing");
+      this.picture.removeAttribute("aria-busy");
       return;
     }
     /** @type {Picture} */
@@ -176,11 +200,16 @@ class Diagram {
     try {
       picture = await ask("/api/diagram", { request: { results: names, states: this.states, format: "page" }, files: this.files });
     } catch (error) {
+      if (this.drawn !== signature) return;
       this.picture.replaceChildren(html("p", { class: "problem" }, error instanceof Error ? error.message : String(error)));
+      this.picture.classList.remove("growing");
+      this.picture.removeAttribute("aria-busy");
       return;
     }
     if (this.drawn !== signature) return;
     this.picture.classList.remove("growing");
+    this.picture.removeAttribute("aria-busy");
+    this.finished = new Set(names);
     this.place = picture.panels[0] ?? null;
     this.overlay = svg("svg", { viewBox: `0 0 ${picture.width} ${picture.height}`, class: "overlay" });
     this.picture.replaceChildren(pictureElement(picture, this.group.title), this.overlay);
@@ -283,6 +312,11 @@ export class Diagrams {
     this.listener = listener;
     /** @type {Map<string, Diagram>} */
     this.diagrams = new Map();
+  }
+
+  /** Waits until the pictures that were asked for are there. */
+  async shown() {
+    await Promise.all([...this.diagrams.values()].map((diagram) => diagram.isShown));
   }
 
   /**

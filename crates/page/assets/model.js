@@ -2,7 +2,7 @@
 
 import { Refusal, ask } from "./ask.js";
 import { Chain } from "./chain.js";
-import { commands } from "./commands.js";
+import { commands, pythonLines } from "./commands.js";
 import { Diagrams } from "./diagram.js";
 import { Editor } from "./editor.js";
 import { byId, html } from "./element.js";
@@ -25,6 +25,9 @@ import { freeName, pack, unpack, without } from "./state.js";
  * }} Model what the server says of the text
  */
 
+/** How long a slider waits for what it asked for before it asks for something else, in milliseconds. */
+const LONG = 500;
+
 /** @type {State} */
 let state = { name: "model.ode", source: "", set: {}, start: {}, steps: [], shown: "" };
 /** @type {Model | null} */
@@ -32,6 +35,10 @@ let model = null;
 /** @type {Picked | null} */
 let picked = null;
 let frame = 0;
+/** Whether what a slider asks for is being computed, and whether it has moved on since. */
+let isFollowing = false;
+let hasMoved = false;
+let onMove = () => {};
 
 const chain = new Chain(() => {
   frame ||= requestAnimationFrame(() => {
@@ -92,6 +99,7 @@ function question(step) {
  * @param {boolean} [isEntry]
  */
 async function change(next, isEntry = true) {
+  hasMoved = false;
   const isOther = next.source !== state.source || next.name !== state.name || !model;
   state = next;
   if (isOther) {
@@ -120,10 +128,38 @@ async function change(next, isEntry = true) {
     return;
   }
   const text = `#${await pack(state)}`;
+  // Who has gone on since has an address of its own.
+  if (state !== next) return;
   if (text !== location.hash) history[isEntry ? "pushState" : "replaceState"](null, "", text);
   showModel();
   void chain.run(state.steps, question);
   showResults();
+}
+
+/**
+ * Follows a slider: what it asks for is computed to its end and shown, then what it asks for by then.
+ * @param {State} next
+ */
+async function follow(next) {
+  state = next;
+  hasMoved = true;
+  onMove();
+  byId("lines").textContent = commands(state);
+  byId("python-lines").textContent = pythonLines(state);
+  if (isFollowing) return;
+  isFollowing = true;
+  while (hasMoved) {
+    hasMoved = false;
+    const hasMovedOn = new Promise((resolve) => (onMove = () => resolve(null)));
+    const isLong = new Promise((resolve) => setTimeout(resolve, LONG));
+    const computed = chain.run(state.steps, question);
+    const { abort } = chain;
+    await Promise.race([computed, Promise.all([hasMovedOn, isLong])]);
+    if (abort.signal.aborted) break;
+    showResults();
+    await diagrams.shown();
+  }
+  isFollowing = false;
 }
 
 /** Fills in what a state that only has a text begins with. */
@@ -141,6 +177,11 @@ function complete() {
   state.steps = [{ kind: "equilibria", name: "equilibria.json", along: model.along ?? { key, start, end } }];
 }
 
+/** @param {State} next @param {boolean} rests whether the slider has come to rest */
+function moved(next, rests) {
+  void (rests ? change(next) : follow(next));
+}
+
 function showModel() {
   if (!model) return;
   const { parameters, states } = model;
@@ -149,11 +190,11 @@ function showModel() {
   // What is being moved must not be replaced under the hand.
   if (!byId("parameters").contains(active)) {
     const quantities = Object.entries(parameters).map(([key, value]) => ({ key, value: set[key] ?? value, range: sliderRange(value) }));
-    showQuantities(byId("parameters"), quantities, (key, value, rests) => void change({ ...state, set: { ...state.set, [key]: value } }, rests));
+    showQuantities(byId("parameters"), quantities, (key, value, rests) => moved({ ...state, set: { ...state.set, [key]: value } }, rests));
   }
   if (!byId("states").contains(active)) {
     const quantities = Object.entries(states).map(([key, value]) => ({ key, value: start[key] ?? value }));
-    showQuantities(byId("states"), quantities, (key, value, rests) => void change({ ...state, start: { ...state.start, [key]: value } }, rests));
+    showQuantities(byId("states"), quantities, (key, value, rests) => moved({ ...state, start: { ...state.start, [key]: value } }, rests));
   }
   /** @type {HTMLSelectElement} */
   const shown = byId("shown");
@@ -176,12 +217,13 @@ function showResults() {
   const step = state.steps.find((other) => other.name === picked?.name);
   const result = picked && chain.results.get(picked.name);
   if (step && result?.data?.points && picked) pointView.show({ name: state.name, source: state.source }, step, result, picked.index);
-  else pointView.clear();
+  else if (!result?.running) pointView.clear();
   byId("steps").replaceChildren(...state.steps.map(stepRow));
   byId("stop").hidden = !chain.isRunning;
   const running = [...chain.results.values()].find((other) => other.running);
   byId("status").textContent = running ? `${running.name.replace(/\.json$/, "")}: ${running.points.length} points` : "";
   byId("lines").textContent = commands(state);
+  byId("python-lines").textContent = pythonLines(state);
 }
 
 /** @param {Step} step */
@@ -195,19 +237,22 @@ function stepRow(step) {
   });
   line.append(html("button", { type: "button", class: "quiet", "aria-label": `remove ${step.name}`, click: () => void change({ ...state, steps: without(state.steps, step.name) }) }, "Remove"));
   line.append(html("label", {}, visible, html("strong", {}, step.name.replace(/\.json$/, "")), from));
-  if (result?.data) {
-    const count = result.data.points?.length ?? result.data.t?.length ?? 0;
+  // What is computed anew keeps its place until it is there.
+  const data = result?.data ?? (result?.running ? result.before : null);
+  if (result && data) {
+    const count = data.points?.length ?? data.t?.length ?? 0;
     line.append(` ${count} points `, saveMenu(step.name, ["json", "csv", "text", "svg", "png", "pdf"], async (format) => {
+      if (!result.text) return;
       if (format === "json") give(new Blob([result.text], { type: "application/json" }), step.name);
       else await saveResults({ [step.name]: result.text }, [step.name], [], format, step.name.replace(/\.json$/, ""));
     }));
-    const labels = (result.data.points ?? []).filter((/** @type {any} */ point) => point.label);
+    const labels = (data.points ?? []).filter((/** @type {any} */ point) => point.label);
     for (const point of labels) {
-      const index = result.data.points.indexOf(point);
+      const index = data.points.indexOf(point);
       line.append(html("button", { type: "button", class: "label", click: () => { picked = { name: step.name, index }; showResults(); } }, point.label));
     }
     if (step.kind === "simulate") line.append(html("button", { type: "button", class: "label", click: () => void startAt({ name: step.name, index: 0 }) }, "END"));
-    const ends = result.data.ends?.map((/** @type {any} */ end) => end.cause).filter(Boolean);
+    const ends = data.ends?.map((/** @type {any} */ end) => end.cause).filter(Boolean);
     if (ends?.length) line.append(html("p", { class: "note" }, `ends: ${ends.join("; ")}`));
   }
   if (result?.problem) line.append(html("p", { class: "problem" }, result.problem.message));
@@ -267,7 +312,9 @@ byId("simulate").addEventListener("click", () => {
   void change({ ...state, steps: [...state.steps, { kind: "simulate", name: freeName(state.steps, "simulate"), duration: model?.duration ?? 20 }] });
 });
 byId("save-model").addEventListener("click", () => give(new Blob([state.source], { type: "text/plain" }), state.name));
-byId("copy").addEventListener("click", () => void navigator.clipboard.writeText(byId("lines").textContent ?? ""));
+for (const [id, lines] of /** @type {[string, string][]} */ ([["copy", "lines"], ["copy-python", "python-lines"]])) {
+  byId(id).addEventListener("click", () => void navigator.clipboard.writeText(byId(lines).textContent ?? ""));
+}
 addEventListener("popstate", async () => {
   const known = addressed(await unpack(location.hash.slice(1)));
   if (known) void change(known, false);

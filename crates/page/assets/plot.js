@@ -16,6 +16,16 @@ import { extent, readable, ticks } from "./numbers.js";
  */
 
 const MARGIN = { left: 46, right: 8, top: 8, bottom: 34 };
+const WIDTH = 300;
+const HEIGHT = 220;
+
+/** Where the axes of a plot of the usual size stand, in parts of its width and height. */
+export const INNER = {
+  left: MARGIN.left / WIDTH, top: MARGIN.top / HEIGHT, width: (WIDTH - MARGIN.left - MARGIN.right) / WIDTH, height: (HEIGHT - MARGIN.top - MARGIN.bottom) / HEIGHT,
+};
+
+/** Names of clipping paths are those of the whole page. */
+let clips = 0;
 
 /**
  * Draws a plot.
@@ -23,7 +33,7 @@ const MARGIN = { left: 46, right: 8, top: 8, bottom: 34 };
  * @returns {Drawn}
  */
 export function draw(plot) {
-  const { width = 300, height = 220 } = plot;
+  const { width = WIDTH, height = HEIGHT } = plot;
   const marks = plot.marks ?? [];
   const all = [...plot.curves.flatMap((curve) => curve.points), ...marks.map((mark) => mark.at)];
   if (plot.circle) all.push([-1.1, -1.1], [1.1, 1.1]);
@@ -42,7 +52,8 @@ export function draw(plot) {
     MARGIN.top + ((high - y) / (high - low)) * inner.height,
   ];
   const element = svg("svg", { viewBox: `0 0 ${width} ${height}`, class: "plot", role: "img", "aria-label": plot.description });
-  element.append(svg("title", {}, plot.description));
+  const clip = `clip-${++clips}`;
+  element.append(svg("title", {}, plot.description), svg("clipPath", { id: clip }, svg("rect", { x: MARGIN.left, y: MARGIN.top, width: inner.width, height: inner.height })));
   const bottom = MARGIN.top + inner.height;
   for (const value of ticks(left, right, inner.width / 70)) {
     const [x] = place([value, 0]);
@@ -57,7 +68,10 @@ export function draw(plot) {
   if (plot.circle) element.append(polyline(circle().map(place), "reference"));
   if (plot.equal && !plot.circle && left < 0 && right > 0) element.append(polyline([place([0, low]), place([0, high])], "reference"));
   for (const curve of plot.curves) {
-    element.append(polyline(curve.points.map(place), `curve ${curve.kind ?? ""}${curve.dashed ? " dashed" : ""}`));
+    const line = polyline(curve.points.map(place), `curve ${curve.kind ?? ""}${curve.dashed ? " dashed" : ""}`);
+    // What leaves the axes that were asked for is cut off.
+    line.setAttribute("clip-path", `url(#${clip})`);
+    element.append(line);
   }
   for (const mark of marks) {
     const [x, y] = place(mark.at);

@@ -4,8 +4,8 @@ import { html } from "./element.js";
 import { readable, sliderRange } from "./numbers.js";
 
 /**
- * @typedef {{key: string, value: number, note?: string, title?: string, range?: [number, number], check?: (value: number) => string}} Quantity
- * `note` stands behind the number, its unit for example
+ * @typedef {{key: string, symbol?: string, value: number, note?: string, title?: string, range?: [number, number], check?: (value: number) => string}} Quantity
+ * `symbol` is that of print, with its index after a low line; `note` stands behind the number, its unit for example
  */
 
 /**
@@ -18,11 +18,19 @@ export function showQuantities(box, quantities, moved) {
   box.replaceChildren(...quantities.map((quantity) => row(quantity, moved)));
 }
 
+/** A key with its symbol before it, where that is another. @param {string} key @param {string} [symbol] */
+function named(key, symbol) {
+  if (symbol === undefined) return [key];
+  const [letter, index] = symbol.split("_");
+  const printed = html("var", {}, letter ?? "", index === undefined ? null : html("sub", {}, index));
+  return symbol === key && index === undefined ? [printed] : [printed, html("span", { class: "key" }, key)];
+}
+
 /**
  * @param {Quantity} quantity
  * @param {(key: string, value: number, rests: boolean) => void} moved
  */
-function row({ key, value, note, title, range, check }, moved) {
+function row({ key, symbol, value, note, title, range, check }, moved) {
   const [low, high] = range ?? sliderRange(value);
   const id = `quantity-${key}`;
   const slider = html("input", { type: "range", min: low, max: high, step: "any", value, "aria-label": `${key}, slider` });
@@ -47,5 +55,5 @@ function row({ key, value, note, title, range, check }, moved) {
     slider.value = String(number);
     moved(key, number, true);
   });
-  return html("div", { class: "quantity" }, html("label", { for: id, title }, key), slider, entry, note ? html("span", { class: "note" }, note) : null);
+  return html("div", { class: "quantity" }, html("label", { for: id, title }, ...named(key, symbol)), slider, entry, note ? html("span", { class: "note" }, note) : null);
 }

@@ -71,12 +71,8 @@ impl Failure {
         Self::new(StatusCode::BAD_REQUEST, message)
     }
 
-    /// The failure of an analysis: what was asked for is at fault, or the computation.
+    /// The failure of an analysis. The server is not at fault, whether the request makes no sense or what it asks for cannot be computed.
     pub fn of_analysis<E: AnalysisError>(error: &E) -> Self {
-        let status = match error.is_bad_request() {
-            true => StatusCode::UNPROCESSABLE_ENTITY,
-            false => StatusCode::INTERNAL_SERVER_ERROR,
-        };
         let mut message = error.message(&str::to_owned);
         let mut cause = error.source();
         while let Some(source) = cause {
@@ -86,7 +82,7 @@ impl Failure {
             }
             cause = source.source();
         }
-        Self::new(status, message)
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, message)
     }
 
     /// As the text of an event or of a body.

@@ -9,7 +9,7 @@ use axum::http::header::{
     CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HOST, HeaderName, ORIGIN, REFERRER_POLICY,
     X_CONTENT_TYPE_OPTIONS,
 };
-use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 
@@ -32,7 +32,7 @@ fn loopback_port(authority: &str) -> Option<u16> {
 }
 
 /// That a request comes from this machine's user, not from a page of another site.
-fn check(method: &Method, headers: &HeaderMap) -> Result<(), Failure> {
+fn check(headers: &HeaderMap) -> Result<(), Failure> {
     let refused = |status, message: &str| Err(Failure::new(status, message));
     let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
     let Some(port) = text(HOST).and_then(loopback_port) else {
@@ -57,17 +57,27 @@ fn check(method: &Method, headers: &HeaderMap) -> Result<(), Failure> {
             "the body of the request is too large; allowed: 64 MiB",
         );
     }
-    // What a form of another site could send is not JSON.
-    let is_json = || text(CONTENT_TYPE).is_some_and(|kind| kind.starts_with("application/json"));
-    if method == Method::POST && !is_json() {
-        return refused(StatusCode::UNSUPPORTED_MEDIA_TYPE, "Content-Type; allowed: application/json");
-    }
     Ok(())
+}
+
+/// Whether the body says that it is JSON, as what a form of another site could send does not.
+fn is_json(headers: &HeaderMap) -> bool {
+    let kind = headers.get(CONTENT_TYPE).and_then(|kind| kind.to_str().ok());
+    kind.is_some_and(|kind| kind.starts_with("application/json"))
+}
+
+/// Refuses bodies that are no JSON, on routes that take one.
+pub(crate) async fn only_json(request: Request, next: Next) -> Response {
+    if is_json(request.headers()) {
+        return next.run(request).await;
+    }
+    let message = "Content-Type; allowed: application/json";
+    Failure::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, message).into_response()
 }
 
 /// Refuses requests from elsewhere and says in every answer what its page may load.
 pub(crate) async fn guard(request: Request, next: Next) -> Response {
-    let mut answer = match check(request.method(), request.headers()) {
+    let mut answer = match check(request.headers()) {
         Ok(()) => next.run(request).await,
         Err(failure) => failure.into_response(),
     };
@@ -104,24 +114,21 @@ mod tests {
 
     #[test]
     fn pages_of_other_sites_are_refused() {
-        let asked = |entries: &[(HeaderName, &str)], method: Method| {
-            let headers =
-                entries.iter().map(|(name, value)| (name.clone(), value.parse().unwrap())).collect();
-            check(&method, &headers).is_ok()
+        let headers = |entries: &[(HeaderName, &str)]| -> HeaderMap {
+            entries.iter().map(|(name, value)| (name.clone(), value.parse().unwrap())).collect()
         };
+        let asked = |entries: &[(HeaderName, &str)]| check(&headers(entries)).is_ok();
         let host = (HOST, "127.0.0.1:8000");
-        let json = (CONTENT_TYPE, "application/json");
-        assert!(asked(std::slice::from_ref(&host), Method::GET));
-        assert!(asked(&[host.clone(), (ORIGIN, "http://localhost:8000"), json.clone()], Method::POST));
-        // A name of another site that resolves to this machine; another server on this machine; a sandboxed frame; a form.
-        assert!(!asked(&[(HOST, "rebound.example.org:8000")], Method::GET));
-        assert!(!asked(
-            &[host.clone(), (ORIGIN, "http://rebound.example.org:8000"), json.clone()],
-            Method::POST
-        ));
-        assert!(!asked(&[host.clone(), (ORIGIN, "http://localhost:3000"), json.clone()], Method::POST));
-        assert!(!asked(&[host.clone(), (ORIGIN, "null"), json], Method::POST));
-        assert!(!asked(&[host, (CONTENT_TYPE, "text/plain")], Method::POST));
-        assert!(!asked(&[], Method::GET));
+        assert!(asked(std::slice::from_ref(&host)));
+        assert!(asked(&[host.clone(), (ORIGIN, "http://localhost:8000")]));
+        // A name of another site that resolves to this machine; another server on this machine; a sandboxed frame.
+        assert!(!asked(&[(HOST, "rebound.example.org:8000")]));
+        assert!(!asked(&[host.clone(), (ORIGIN, "http://rebound.example.org:8000")]));
+        assert!(!asked(&[host.clone(), (ORIGIN, "http://localhost:3000")]));
+        assert!(!asked(&[host, (ORIGIN, "null")]));
+        assert!(!asked(&[]));
+        // A form.
+        assert!(is_json(&headers(&[(CONTENT_TYPE, "application/json; charset=utf-8")])));
+        assert!(!is_json(&headers(&[(CONTENT_TYPE, "text/plain")])) && !is_json(&headers(&[])));
     }
 }

@@ -3,7 +3,9 @@
 use crate::answer::Answer;
 use crate::asset::Asset;
 use crate::failure::{Failure, TextPlace};
+use crate::openapi::described;
 use crate::picture::picture_routes;
+use crate::routes::Routes;
 use crate::sent_files::{Asked, parse};
 use crate::server::Site;
 use crate::stream::Events;
@@ -15,11 +17,9 @@ use arclength_analysis::simulate::SimulateRequest;
 use arclength_analysis::{
     Along, Control, Error, Interval, ModelRequest, ModelSource, OpenedModel, StoredModel,
 };
-use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::response::Response;
-use axum::routing::{get, post};
 use kingpin_report::{NamedNumbers, Number};
 use serde::Serialize;
 
@@ -87,18 +87,19 @@ pub fn model_site(start: Option<StartModel>) -> Site {
         assets: ASSETS.to_vec(),
         routes: routes(),
         start: serde_json::json!({ "model": start, "version": env!("CARGO_PKG_VERSION") }),
+        description: described(include_str!("../openapi.json")),
     }
 }
 
 /// Routes of what can be asked of any model.
-fn routes() -> Router<Work> {
-    Router::new()
-        .route("/api/gallery", get(gallery))
-        .route("/api/model", post(model))
-        .route("/api/equilibria", post(equilibria))
-        .route("/api/cycles", post(cycles))
-        .route("/api/locus", post(locus))
-        .route("/api/simulate", post(simulate))
+fn routes() -> Routes {
+    Routes::new()
+        .get("/api/gallery", gallery)
+        .post("/api/model", model)
+        .post("/api/equilibria", equilibria)
+        .post("/api/cycles", cycles)
+        .post("/api/locus", locus)
+        .post("/api/simulate", simulate)
         .merge(picture_routes())
 }
 

@@ -2,16 +2,15 @@
 
 use crate::answer::Answer;
 use crate::failure::Failure;
+use crate::routes::Routes;
 use crate::sent_files::{Asked, parse};
 use crate::work::Work;
 use arclength_analysis::diagram::{diagram, diagram_of};
 use arclength_analysis::{Error, FilesInMemory, ResultFile};
-use axum::Router;
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use axum::routing::post;
 use kingpin_figure::{Figure, Span};
 use kingpin_report::Report;
 use serde::{Deserialize, Serialize};
@@ -111,8 +110,8 @@ fn drawing(error: kingpin_figure::FigureError) -> Failure {
 }
 
 /// Routes of pictures and files of results of any model.
-pub(crate) fn picture_routes() -> Router<Work> {
-    Router::new().route("/api/diagram", post(draw))
+pub(crate) fn picture_routes() -> Routes {
+    Routes::new().post("/api/diagram", draw)
 }
 
 async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {

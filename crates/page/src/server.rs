@@ -4,6 +4,7 @@ use crate::answer::Answer;
 use crate::asset::{self, Asset};
 use crate::failure::Failure;
 use crate::guard::{LARGEST_BODY, guard};
+use crate::routes::Routes;
 use crate::sent_files::parse;
 use crate::work::Work;
 use axum::Router;
@@ -11,8 +12,8 @@ use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, State};
 use axum::http::StatusCode;
 use axum::middleware::from_fn;
-use axum::routing::{get, post};
 use serde::Deserialize;
+use serde_json::Value;
 use std::future::IntoFuture;
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,9 +33,24 @@ pub struct Site {
     /// The files of its pages.
     pub assets: Vec<Asset>,
     /// What it computes.
-    pub routes: Router<Work>,
+    pub routes: Routes,
     /// What its first page begins with, for its script to read.
-    pub start: serde_json::Value,
+    pub start: Value,
+    /// What its routes are asked with and answer, as an OpenAPI document.
+    pub description: Value,
+}
+
+impl Site {
+    /// All that a server of this site can be asked.
+    pub fn all_routes(&self) -> Routes {
+        let start = self.start.clone();
+        let description = self.description.clone();
+        Routes::new()
+            .get("/api/start", move || async move { Answer(start) })
+            .get("/api/openapi.json", move || async move { Answer(description) })
+            .post("/api/stop", stop)
+            .merge(self.routes.clone())
+    }
 }
 
 /// Why a server does not run.
@@ -99,12 +115,9 @@ impl Server {
             .max_blocking_threads(MOST_THREADS)
             .build()?;
         let work = Work::new();
-        let start = site.start;
         let nothing = || async { Failure::new(StatusCode::NOT_FOUND, "there is nothing at this address") };
         let router = Router::new()
-            .route("/api/start", get(move || async move { Answer(start) }))
-            .route("/api/stop", post(stop))
-            .merge(site.routes)
+            .merge(site.all_routes().into_router())
             .merge(asset::routes(&site.assets))
             .fallback(nothing)
             .method_not_allowed_fallback(|| async {

@@ -1,11 +1,11 @@
 // The page for a wheel: its verdict, its stability chart, its cycles, its motions.
 
-import { Above } from "./above.js";
 import { Refusal, ask, askFile, listen } from "./ask.js";
 import { byId, html } from "./element.js";
-import { extent, readable, sliderRange } from "./numbers.js";
+import { commandLines, pythonLines } from "./lines.js";
+import { Motions } from "./motions.js";
+import { readable, sliderRange } from "./numbers.js";
 import { showPicture, showProblem } from "./picture.js";
-import { draw } from "./plot.js";
 import { showQuantities } from "./quantities.js";
 import { give, saveMenu } from "./save.js";
 import { pack, unpack } from "./state.js";
@@ -14,11 +14,14 @@ import { pack, unpack } from "./state.js";
  * @typedef {number | "inf"} Value infinity has no number in JSON
  * @typedef {{key: string, start: number, end: number}} Interval
  * @typedef {{parameters: Record<string, Value>, tyre: string}} Wheel
- * @typedef {{wheel: Wheel, x: Interval, y: Interval, along: Interval}} State
+ * @typedef {{wheel: Wheel, x: Interval, y: Interval, along: Interval, shimmy?: boolean, basin?: boolean, report?: boolean}} State
+ * what takes long is only computed where it is wanted
  * @typedef {{name: string, symbol: string, unit: string, meaning: string, lowest: number, highest: number, infinite: boolean,
  *   allowed: string, default: Value, of_the_tyre: boolean}} Key
  * @typedef {import("./diagram.js").Picture} Picture
- * @typedef {{request: any, text: string, data: any, picture: Picture | null}} Answer
+ * @typedef {import("./above.js").Motion} Motion
+ * @typedef {{request: any, text: string, data: any, picture: Picture | null, motions: Motion[], map: import("./plane.js").Map | null,
+ *   warnings: string[]}} Answer
  */
 
 /** Parameters that stand first. */
@@ -26,8 +29,6 @@ const FIRST = ["v", "l", "r", "k_u", "k_q", "c_q", "c_psi", "M_f"];
 /** Numbers of points of a chart: at once, and when the sliders rest. */
 const COARSE = [48, 30];
 const FINE = [240, 141];
-/** The fastest swing that an eye follows, in rad/s: what is faster is played slower. */
-const SHOWN_SWING = 9;
 /** Time that the sliders must rest before something long begins, in milliseconds. */
 const REST = 250;
 
@@ -37,14 +38,23 @@ let state = { wheel: { parameters: {}, tyre: "rigid" }, x: interval("v", 0.1, 12
 let keys = [];
 /** What the numbers on the page belong to; all of it ends when the wheel is another. */
 let abort = new AbortController();
-/** @type {Map<string, string>} computations that run, with the number that stops each */
+/** @type {Map<string, {run: string}>} computations that run, with the number that stops each */
 const running = new Map();
 /** @type {Record<string, Answer | null>} */
-const answers = { chart: null, cycles: null, motion: null };
-const above = new Above(byId("above"), (psi) => void release(psi - rest.psi));
-/** Whether the user has said whether the wheel may slide. */
-let hasChosen = false;
-let rest = { u: 0, q: 0, psi: 0 };
+const answers = { chart: null, cycles: null, shimmy: null, motion: null, basin: null };
+/** Whether a slider moves and what it asks for is being computed, and whether it has moved on since. */
+const glide = { isComputing: false, hasMoved: false };
+
+const motions = new Motions({
+  asked, valueOf, compute,
+  changed: showCommands,
+  keep(name, answer) {
+    answers[name] = answer;
+    byId(`${name}-tools`).hidden = !answer;
+  },
+  wantsBasin: () => state.basin ?? false,
+  signal: () => abort.signal,
+});
 
 /** @param {string} key @param {number} start @param {number} end @returns {Interval} */
 function interval(key, start, end) {
@@ -64,23 +74,29 @@ function asked() {
   return { set };
 }
 
-/** The options that make the wheel from the paper's. */
-function options() {
-  const changed = keys.filter((key) => key.name in state.wheel.parameters && (key.of_the_tyre || state.wheel.parameters[key.name] !== key.default));
-  const words = changed.map((key) => `-s ${key.name}=${state.wheel.parameters[key.name]}`);
-  if (state.wheel.tyre !== "rigid") words.unshift(`-s tyre=${state.wheel.tyre}`);
-  return words.map((word) => ` ${word}`).join("");
+/** The keys in which the wheel is not the paper's. @returns {[string, Value][]} */
+function changes() {
+  const { parameters, tyre } = state.wheel;
+  const changed = keys.filter((key) => key.name in parameters && (key.of_the_tyre || parameters[key.name] !== key.default));
+  /** @type {[string, any][]} */
+  const pairs = changed.map((key) => [key.name, parameters[key.name] ?? "inf"]);
+  return tyre === "rigid" ? pairs : [["tyre", tyre], ...pairs];
+}
+
+/** The value at which a cycle is wanted: the wheel's own, where the branch passes it. */
+function wanted() {
+  const { key, start, end } = state.along;
+  const own = valueOf(key);
+  return own > start && own < end ? own : null;
 }
 
 function showCommands() {
-  const axis = (/** @type {Interval} */ { key, start, end }, /** @type {number | undefined} */ count) => `${key}=${start}:${end}${count ? `:${count}` : ""}`;
-  byId("lines").textContent = [
-    `kingpin steady${options()}`,
-    `kingpin stability${options()}`,
-    `kingpin chart${options()} --x ${axis(state.x, FINE[0])} --y ${axis(state.y, FINE[1])} -o chart.svg`,
-    `kingpin cycles${options()} --along ${axis(state.along, undefined)} -o cycles.json -o cycles.svg`,
-    `kingpin simulate${options()} --duration ${field("duration").value} --perturb psi=${field("kick").value}${field("slides").checked ? " --contact sliding" : ""} -o motion.json`,
-  ].join("\n");
+  const shown = {
+    changes: changes(), x: state.x, y: state.y, counts: FINE, along: state.along, at: wanted(), shimmy: state.shimmy ?? false, motion: motions.asked(),
+    basin: state.basin ? motions.basinAsked() : null, report: state.report ?? false,
+  };
+  byId("lines").textContent = commandLines(shown);
+  byId("python-lines").textContent = pythonLines(shown);
 }
 
 /** @param {string} id */
@@ -93,25 +109,29 @@ function field(id) {
  * @param {string} name
  * @param {string} path
  * @param {any} request
+ * @param {AbortSignal} [signal]
  * @returns {Promise<Answer>}
  */
-async function compute(name, path, request) {
-  const { signal } = abort;
+async function compute(name, path, request, signal = abort.signal) {
   /** @type {Answer} */
-  const answer = { request, text: "", data: null, picture: null };
-  running.set(name, "");
+  const answer = { request, text: "", data: null, picture: null, motions: [], map: null, warnings: [] };
+  const entry = { run: "" };
+  running.set(name, entry);
   showStatus();
   try {
     await listen(path, { request }, signal, (kind, text) => {
-      if (kind === "run") running.set(name, text);
+      if (kind === "run") entry.run = text;
       else if (kind === "picture") answer.picture = JSON.parse(text);
+      else if (kind === "motion") answer.motions.push(JSON.parse(text));
+      else if (kind === "map") answer.map = JSON.parse(text);
+      else if (kind === "warning") answer.warnings.push(text);
       else if (kind === "failure") throw new Refusal(JSON.parse(text).error);
       else if (kind === "result") Object.assign(answer, { text, data: JSON.parse(text) });
     });
     if (!answer.data) throw new Refusal({ message: "it was stopped" });
     return answer;
   } finally {
-    if (!signal.aborted) {
+    if (running.get(name) === entry) {
       running.delete(name);
       showStatus();
     }
@@ -132,9 +152,10 @@ function messageOf(error) {
 /**
  * Goes to another state and computes what belongs to it.
  * @param {State} next
- * @param {boolean} [rests] whether it is an entry in the history of the browser
+ * @param {boolean} [isEntry] whether it is an entry in the history of the browser
  */
-async function change(next, rests = true) {
+async function change(next, isEntry = true) {
+  glide.hasMoved = false;
   abort.abort();
   abort = new AbortController();
   const { signal } = abort;
@@ -143,7 +164,7 @@ async function change(next, rests = true) {
   showStatus();
   showFields();
   showCommands();
-  if (rests) {
+  if (isEntry) {
     const text = `#${await pack(state)}`;
     if (signal.aborted) return;
     if (text !== location.hash) history.pushState(null, "", text);
@@ -154,8 +175,38 @@ async function change(next, rests = true) {
     if (signal.aborted) return;
     await showChart(signal, FINE);
     if (!signal.aborted) await showCycles(signal);
+    if (!signal.aborted && state.shimmy) await showShimmy(signal);
+    if (!signal.aborted && state.basin) await motions.showBasin(signal);
+    if (!signal.aborted && state.report) await showReport(signal);
   } catch (error) {
     if (!signal.aborted) showProblem(byId("verdict"), messageOf(error));
+  }
+}
+
+/**
+ * Follows a slider: computes what is fast, of the place where it is by then.
+ * @param {State} next
+ */
+async function follow(next) {
+  state = next;
+  showFields();
+  showCommands();
+  glide.hasMoved = true;
+  if (glide.isComputing) return;
+  glide.isComputing = true;
+  abort.abort();
+  abort = new AbortController();
+  const { signal } = abort;
+  running.clear();
+  try {
+    while (glide.hasMoved && !signal.aborted) {
+      glide.hasMoved = false;
+      await Promise.all([showVerdict(signal), showChart(signal, COARSE)]);
+    }
+  } catch (error) {
+    if (!signal.aborted) showProblem(byId("verdict"), messageOf(error));
+  } finally {
+    glide.isComputing = false;
   }
 }
 
@@ -184,15 +235,8 @@ async function showVerdict(signal) {
   if (Infinity === valueOf("r") && critical === null && stable === false) lines[0] = "At every speed, without dry friction.";
   byId("verdict").replaceChildren(html("strong", {}, first), ` ${lines.join(" ")}`);
   byId("numbers").textContent = verdict.text;
-  rest = { u: verdict.state.u ?? 0, q: verdict.state.q ?? 0, psi: verdict.state.psi ?? 0 };
-  // A wheel that rolls in its uniform motion may slide when it is kicked; one with a tyre has a law of its own.
-  if (!hasChosen) field("slides").checked = rolls && state.wheel.tyre === "rigid";
+  motions.rest(verdict, state.wheel.tyre === "rigid");
   showCommands();
-  const swing = Math.max(...verdict.eigenvalues.map((/** @type {[number, number]} */ [, im]) => Math.abs(im)));
-  above.speed = swing > SHOWN_SWING ? SHOWN_SWING / swing : 1;
-  byId("slowness").textContent = above.speed < 1 ? `It plays ${readable(1 / above.speed, 2)} times slower than it moves.` : "";
-  above.play(null);
-  above.show({ l: valueOf("l"), R: valueOf("R"), r: valueOf("r") }, rest);
 }
 
 /** @param {AbortSignal} signal @param {number[]} count */
@@ -218,16 +262,16 @@ async function showCycles(signal) {
   const box = byId("diagram-picture");
   const notes = byId("diagram-notes");
   try {
-    const answer = await compute("cycles", "/api/wheel/cycles", { ...asked(), along: state.along });
+    const answer = await compute("cycles", "/api/wheel/cycles", { ...asked(), along: state.along, at: wanted() === null ? [] : [wanted()] });
     answers.cycles = answer;
     if (answer.picture) showPicture(box, answer.picture, `Limit cycles along ${state.along.key}`, null, null);
-    const labelled = answer.data.points.filter((/** @type {any} */ point) => point.label && !/^EP/.test(point.label));
-    notes.replaceChildren(...labelled.map((/** @type {any} */ point) =>
-      html("button", { type: "button", class: "label", title: `${state.along.key} = ${readable(point.value, 7)}, period ${readable(point.period, 5)} s`, click: () => take(point) }, `${point.label}, ${state.along.key} = ${readable(point.value, 4)}`)));
+    notes.replaceChildren(...labels(answer), ...answer.warnings.map((warning) => html("p", { class: "note" }, warning)));
+    motions.offer("cycles", answer);
     box.dataset.done = "yes";
   } catch (error) {
     if (signal.aborted) return;
     answers.cycles = null;
+    motions.offer("cycles", null);
     showProblem(box, messageOf(error));
     notes.replaceChildren();
     box.dataset.done = "yes";
@@ -240,41 +284,67 @@ function take(point) {
   void change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [key]: Number(Number(point.value).toPrecision(6)) } } });
 }
 
-/** Lets the caster go at an angle from the uniform motion. @param {number} psi */
-async function release(psi) {
-  field("kick").value = readable(psi, 3);
-  showCommands();
-  const duration = Number(field("duration").value);
-  const note = byId("motion-note");
+/** @param {AbortSignal} signal */
+async function showShimmy(signal) {
+  const box = byId("shimmy-picture");
+  const notes = byId("shimmy-notes");
   try {
-    const answer = await compute("motion", "/api/wheel/simulate", { ...asked(), duration, perturb: { psi }, points: 2001, contact: field("slides").checked ? "sliding" : "rolling" });
-    answers.motion = answer;
-    byId("motion-tools").hidden = false;
-    const { data } = answer;
-    above.play({ t: data.t, u: data.u ?? data.t.map(() => 0), q: data.q, psi: data.psi });
-    const away = data.psi.map((/** @type {number} */ value) => Math.abs(value - rest.psi));
-    const last = Math.max(...away.slice(Math.floor(0.9 * away.length)));
-    note.textContent = `In the last tenth of ${readable(duration)} s the caster is up to ${readable(last, 3)} rad from rest; it was let go at ${readable(Math.abs(psi), 3)} rad.`;
-    const curve = data.t.map((/** @type {number} */ time, /** @type {number} */ index) => [time, data.psi[index]]);
-    const [low, high] = extent(data.psi);
-    const plot = draw({ description: "caster angle over the time", curves: [{ points: curve, kind: "cycle" }], x: { label: "t (s)", low: 0, high: duration }, y: { label: "ψ (rad)", low, high } });
-    byId("history").replaceChildren(plot.element);
+    const answer = await compute("shimmy", "/api/wheel/shimmy", { ...asked(), along: state.along, at: wanted() === null ? [] : [wanted()] });
+    answers.shimmy = answer;
+    if (answer.picture) showPicture(box, answer.picture, `Shimmy with sliding along ${state.along.key}`, null, null);
+    notes.replaceChildren(...labels(answer), ...answer.warnings.map((warning) => html("p", { class: "note" }, warning)));
+    motions.offer("shimmy", answer);
   } catch (error) {
-    if (!abort.signal.aborted) note.textContent = messageOf(error);
+    if (signal.aborted) return;
+    answers.shimmy = null;
+    motions.offer("shimmy", null);
+    showProblem(box, messageOf(error));
+    notes.replaceChildren();
+  }
+}
+
+/** The labelled points of a branch as buttons that take the wheel there. @param {Answer} answer */
+function labels(answer) {
+  const { key } = state.along;
+  const labelled = answer.data.points.filter((/** @type {any} */ point) => point.label && !/^EP/.test(point.label));
+  return labelled.map((/** @type {any} */ point) => {
+    const title = `${key} = ${readable(point.value, 7)}, period ${readable(point.period, 5)} s`;
+    return html("button", { type: "button", class: "label", title, click: () => take(point) }, `${point.label}, ${key} = ${readable(point.value, 4)}`);
+  });
+}
+
+/** @param {AbortSignal} signal */
+async function showReport(signal) {
+  const box = byId("findings");
+  box.setAttribute("aria-busy", "true");
+  try {
+    const { data } = await compute("report", "/api/wheel/report", asked());
+    box.replaceChildren(...data.findings.map((/** @type {any} */ finding) =>
+      html("li", { class: finding.undecided ? "undecided" : null }, html("strong", {}, `${finding.subject}. `), finding.text, finding.undecided && html("em", {}, " Undecided."),
+        finding.check && html("p", { class: "note" }, `Checked: ${finding.check}`))));
+  } catch (error) {
+    if (!signal.aborted) box.replaceChildren(html("li", { class: "problem" }, messageOf(error)));
+  } finally {
+    if (!signal.aborted) box.removeAttribute("aria-busy");
   }
 }
 
 function showFields() {
+  field("basin").checked = state.basin ?? false;
+  /** @type {HTMLDetailsElement} */ (byId("report")).open = state.report ?? false;
+  byId("shimmy").classList.toggle("asked", state.shimmy ?? false);
   const shown = keys.filter((key) => key.name in state.wheel.parameters);
   const quantity = (/** @type {Key} */ key) => {
     const value = valueOf(key.name);
     return {
-      key: key.name, value, note: key.unit === "1" ? "" : key.unit, title: `${key.meaning}; ${key.allowed}`, range: rangeOf(key),
+      key: key.name, symbol: key.symbol, value, note: key.unit === "1" ? "" : unitOf(key), title: `${key.meaning}; ${key.allowed}`, range: rangeOf(key),
       check: (/** @type {number} */ number) => ((number >= key.lowest && number <= key.highest) || (key.infinite && number === Infinity) ? "" : key.allowed),
     };
   };
-  const moved = (/** @type {string} */ key, /** @type {number} */ value, /** @type {boolean} */ rests) =>
-    void change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [key]: value === Infinity ? "inf" : value } } }, rests);
+  const moved = (/** @type {string} */ key, /** @type {number} */ value, /** @type {boolean} */ rests) => {
+    const next = { ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [key]: /** @type {Value} */ (value === Infinity ? "inf" : value) } } };
+    void (rests ? change(next) : follow(next));
+  };
   const fill = (/** @type {string} */ id, /** @type {Key[]} */ list) => {
     // What is being moved must not be replaced under the hand.
     if (!byId(id).contains(document.activeElement)) showQuantities(byId(id), list.map(quantity), moved);
@@ -282,10 +352,20 @@ function showFields() {
   fill("parameters", shown.filter((key) => FIRST.includes(key.name)));
   fill("more", shown.filter((key) => !FIRST.includes(key.name)));
   for (const [id, axis] of /** @type {[string, Interval][]} */ ([["x", state.x], ["y", state.y], ["along", state.along]])) {
-    byId(`${id}-key`).replaceChildren(...shown.map((key) => html("option", { value: key.name, selected: key.name === axis.key }, key.name)));
+    byId(`${id}-key`).replaceChildren(...shown.map((key) => html("option", { value: key.name, selected: key.name === axis.key }, key.name === key.symbol ? key.name : `${key.name} (${plain(key.symbol)})`)));
     field(`${id}-start`).value = readable(axis.start, 6);
     field(`${id}-end`).value = readable(axis.end, 6);
   }
+}
+
+/** The unit as it is printed. @param {Key} key */
+function unitOf(key) {
+  return key.unit.replace("^2", "²");
+}
+
+/** A symbol without its index lowered. @param {string} symbol */
+function plain(symbol) {
+  return symbol.replace("_", "");
 }
 
 /** The range of a slider. @param {Key} key @returns {[number, number]} */
@@ -328,19 +408,17 @@ byId("along").addEventListener("submit", (event) => {
   void change({ ...state, along: fields("along") });
 });
 byId("stop").addEventListener("click", () => {
-  for (const run of running.values()) if (run) ask("/api/stop", { run: Number(run) }).catch(() => {});
+  for (const { run } of running.values()) if (run) ask("/api/stop", { run: Number(run) }).catch(() => {});
 });
-byId("slides").addEventListener("change", () => {
-  hasChosen = true;
-  showCommands();
+for (const [id, lines] of /** @type {[string, string][]} */ ([["copy", "lines"], ["copy-python", "python-lines"]])) {
+  byId(id).addEventListener("click", () => void navigator.clipboard.writeText(byId(lines).textContent ?? ""));
+}
+byId("follow-shimmy").addEventListener("click", () => void change({ ...state, shimmy: true }));
+byId("basin").addEventListener("change", () => void change({ ...state, basin: field("basin").checked }));
+byId("report").addEventListener("toggle", () => {
+  const isOpen = /** @type {HTMLDetailsElement} */ (byId("report")).open;
+  if (isOpen !== (state.report ?? false)) void change({ ...state, report: isOpen });
 });
-byId("let-go").addEventListener("click", () => void release(Number(field("kick").value)));
-byId("play").addEventListener("click", () => {
-  above.isPlaying = !above.isPlaying;
-  byId("play").textContent = above.isPlaying ? "Pause" : "Play";
-  byId("play").setAttribute("aria-pressed", String(!above.isPlaying));
-});
-byId("copy").addEventListener("click", () => void navigator.clipboard.writeText(byId("lines").textContent ?? ""));
 byId("save-wheel").addEventListener("click", () => {
   const written = (/** @type {Value} */ value) => (value === "inf" ? "inf" : String(value));
   const lines = Object.entries(state.wheel.parameters).map(([key, value]) => `${key} = ${written(value)}`);
@@ -358,7 +436,7 @@ field("file").addEventListener("change", async () => {
     byId("wheel-problem").textContent = `${file.name}: ${messageOf(error)}`;
   }
 });
-for (const name of ["chart", "cycles", "motion"]) {
+for (const name of ["chart", "cycles", "shimmy", "motion", "basin"]) {
   byId(`${name}-tools`).append(saveMenu(name, ["svg", "png", "pdf", "csv", "text", "json"], async (format) => {
     const answer = answers[name];
     if (!answer) return;

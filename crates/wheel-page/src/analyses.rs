@@ -1,35 +1,38 @@
 //! Analyses of a wheel, each with its picture.
 
+use crate::limits::Limited;
 use arclength_analysis::Control;
-use arclength_page::{Answer, Asked, Events, Failure, PictureAnswer, Work, parse, saved};
-use axum::Router;
+use arclength_page::{Answer, Asked, Events, Failure, PictureAnswer, Routes, Work, parse, saved};
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
-use axum::routing::post;
+use kingpin_analysis::basin::{BasinRequest, BasinResult};
 use kingpin_analysis::chart::ChartRequest;
 use kingpin_analysis::cycles::CyclesRequest;
+use kingpin_analysis::report::ReportRequest;
+use kingpin_analysis::shimmy::ShimmyRequest;
 use kingpin_analysis::simulate::SimulateRequest;
 use kingpin_analysis::stability::{StabilityRequest, StabilityResult};
 use kingpin_analysis::steady::{SteadyRequest, SteadyResult};
-use kingpin_analysis::{Error, WheelRequest};
+use kingpin_analysis::{Error, Journal, SeenFromAbove, WheelRequest};
 use kingpin_report::{NamedNumbers, Report};
 use serde::{Deserialize, Serialize};
 
-/// Most points of a chart that the page asks for.
-const MOST_CHART_POINTS: usize = 250_000;
-/// Longest time in s for which a motion is followed.
-const LONGEST_MOTION: f64 = 600.0;
+/// Samples of a period that is seen from above.
+const PERIOD_SAMPLES: usize = 401;
 
 /// Routes of what can be asked of a wheel.
-pub(crate) fn routes() -> Router<Work> {
-    Router::new()
-        .route("/api/wheel/verdict", post(verdict))
-        .route("/api/wheel/chart", post(chart))
-        .route("/api/wheel/cycles", post(cycles))
-        .route("/api/wheel/simulate", post(simulate))
-        .route("/api/wheel/save", post(save))
+pub(crate) fn routes() -> Routes {
+    Routes::new()
+        .post("/api/wheel/verdict", verdict)
+        .post("/api/wheel/report", report)
+        .post("/api/wheel/chart", chart)
+        .post("/api/wheel/cycles", cycles)
+        .post("/api/wheel/shimmy", shimmy)
+        .post("/api/wheel/simulate", simulate)
+        .post("/api/wheel/basin", basin)
+        .post("/api/wheel/save", save)
 }
 
 fn failure(error: Error) -> Failure {
@@ -40,15 +43,11 @@ fn broken(message: String) -> Failure {
     Failure::new(StatusCode::INTERNAL_SERVER_ERROR, message)
 }
 
-/// That the wheel comes with the request, not from a file of the machine.
-fn without_file(wheel: &WheelRequest) -> Result<(), Failure> {
-    if wheel.wheel.is_none() {
-        return Ok(());
-    }
-    Err(Failure::new(
-        StatusCode::UNPROCESSABLE_ENTITY,
-        "wheel: no files are read; allowed: set, a list of keys and values",
-    ))
+/// Reads a request that the page waits for.
+fn limited<R: Limited + serde::de::DeserializeOwned>(body: &Bytes) -> Result<R, Failure> {
+    let Asked { request, .. } = parse::<Asked<R>>(body)?;
+    request.check()?;
+    Ok(request)
 }
 
 /// What is known of a wheel at once.
@@ -68,6 +67,8 @@ struct Verdict {
     critical_speed_with_friction: Option<f64>,
     /// As the commands `steady` and `stability` print it.
     text: String,
+    /// The uniform motion as it is seen from above, with its forces.
+    above: SeenFromAbove,
 }
 
 fn table<R: Report>(result: &R) -> Result<String, Failure> {
@@ -77,13 +78,13 @@ fn table<R: Report>(result: &R) -> Result<String, Failure> {
 }
 
 async fn verdict(State(work): State<Work>, body: Bytes) -> Result<Answer<Verdict>, Failure> {
-    let Asked { request: wheel, .. } = parse::<Asked<WheelRequest>>(&body)?;
-    without_file(&wheel)?;
+    let wheel: WheelRequest = limited(&body)?;
     work.answer(move |_| {
         let steady: SteadyResult = SteadyRequest { wheel: wheel.clone() }.run().map_err(failure)?;
         let stability: StabilityResult = StabilityRequest { wheel }.run().map_err(failure)?;
         let text = format!("{}\n{}", table(&steady)?, table(&stability)?);
         Ok(Answer(Verdict {
+            above: steady.seen_from_above().map_err(failure)?,
             state: steady.state,
             friction_force: steady.friction_force,
             normal_force: steady.normal_force,
@@ -101,6 +102,17 @@ async fn verdict(State(work): State<Work>, body: Bytes) -> Result<Answer<Verdict
     .await
 }
 
+async fn report(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
+    let request: ReportRequest = limited(&body)?;
+    work.stream(move || {
+        let analysis = request.validate().map_err(failure)?;
+        Ok(move |control: &Control<'_>, events: &Events| {
+            events.result(&analysis.find(control).map_err(failure)?)
+        })
+    })
+    .await
+}
+
 /// Tells the picture of a result, then the result.
 fn show<R: Report>(events: &Events, result: &R) -> Result<(), Failure> {
     if let Some(figure) = result.figure().map_err(|error| broken(error.to_string()))? {
@@ -110,40 +122,8 @@ fn show<R: Report>(events: &Events, result: &R) -> Result<(), Failure> {
     events.result(result)
 }
 
-/// That a chart is one that the page waits for, and its wheel comes with it.
-fn check_chart(request: &ChartRequest) -> Result<(), Failure> {
-    without_file(&request.wheel)?;
-    if request.x.count.saturating_mul(request.y.count) <= MOST_CHART_POINTS {
-        return Ok(());
-    }
-    let message = format!("x and y: too many points for the page; allowed: {MOST_CHART_POINTS} in all");
-    Err(Failure::new(StatusCode::UNPROCESSABLE_ENTITY, message))
-}
-
-/// That cycles start from Hopf points, not from a file of the machine.
-fn check_cycles(request: &CyclesRequest) -> Result<(), Failure> {
-    without_file(&request.wheel)?;
-    if request.from.is_none() {
-        return Ok(());
-    }
-    let message = "from: the page follows the cycles of all Hopf points; allowed: nothing";
-    Err(Failure::new(StatusCode::UNPROCESSABLE_ENTITY, message))
-}
-
-/// That a motion is one that the page waits for.
-fn check_motion(request: &SimulateRequest) -> Result<(), Failure> {
-    without_file(&request.wheel)?;
-    if request.duration <= LONGEST_MOTION {
-        return Ok(());
-    }
-    let message =
-        format!("duration {}: too long for the page; allowed: up to {LONGEST_MOTION} s", request.duration);
-    Err(Failure::new(StatusCode::UNPROCESSABLE_ENTITY, message))
-}
-
 async fn chart(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let Asked { request, .. } = parse::<Asked<ChartRequest>>(&body)?;
-    check_chart(&request)?;
+    let request: ChartRequest = limited(&body)?;
     work.stream(move || {
         let analysis = request.validate().map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
@@ -154,26 +134,117 @@ async fn chart(State(work): State<Work>, body: Bytes) -> Result<Response, Failur
     .await
 }
 
+/// A motion to be seen from above: of a labelled point of a branch, or one that was let go.
+#[derive(Serialize)]
+struct Motion<'a> {
+    label: Option<&'a str>,
+    #[serde(flatten)]
+    seen: SeenFromAbove,
+}
+
 async fn cycles(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let Asked { request, .. } = parse::<Asked<CyclesRequest>>(&body)?;
-    check_cycles(&request)?;
+    let request: CyclesRequest = limited(&body)?;
     work.stream(move || {
         let analysis = request.validate().map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
             events.warn_of(&analysis.warnings());
-            show(events, &analysis.run(control).map_err(failure)?)
+            let result = analysis.run(control).map_err(failure)?;
+            for point in &result.points {
+                let label = point.cycle.label.as_deref();
+                if let Some(seen) = result.seen_from_above(point, PERIOD_SAMPLES).map_err(failure)? {
+                    events.tell_data("motion", &Motion { label, seen });
+                }
+            }
+            show(events, &result)
+        })
+    })
+    .await
+}
+
+async fn shimmy(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
+    let request: ShimmyRequest = limited(&body)?;
+    work.stream(move || {
+        let analysis = request.validate().map_err(failure)?;
+        Ok(move |control: &Control<'_>, events: &Events| {
+            let result = analysis.run(control).map_err(failure)?;
+            for point in result.points.iter().filter(|point| point.label.is_some()) {
+                let seen = result.seen_from_above(point, PERIOD_SAMPLES, control).map_err(failure)?;
+                events.tell_data("motion", &Motion { label: point.label.as_deref(), seen });
+            }
+            show(events, &result)
         })
     })
     .await
 }
 
 async fn simulate(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let Asked { request, .. } = parse::<Asked<SimulateRequest>>(&body)?;
-    check_motion(&request)?;
+    let request: SimulateRequest = limited(&body)?;
     work.stream(move || {
         let analysis = request.validate().map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
-            show(events, &analysis.run(control).map_err(failure)?)
+            let result = analysis.run(control).map_err(failure)?;
+            events.warn_of(&result.warnings());
+            events.tell_data("motion", &Motion { label: None, seen: result.seen_from_above() });
+            show(events, &result)
+        })
+    })
+    .await
+}
+
+/// A fate as it is drawn.
+#[derive(Serialize)]
+struct DrawnFate {
+    name: &'static str,
+    /// Red, green, blue.
+    color: [u8; 3],
+}
+
+/// A map of fates: one byte for every cell, row by row from the lowest.
+#[derive(Serialize)]
+struct Map<'a> {
+    columns: usize,
+    rows: usize,
+    /// What each byte means, from `0` on.
+    fates: Vec<DrawnFate>,
+    /// The ends of both axes.
+    ends: [[f64; 2]; 2],
+    states: [&'a str; 2],
+    cells: String,
+}
+
+impl<'a> Map<'a> {
+    fn of(result: &'a BasinResult) -> Self {
+        let mut fates: Vec<DrawnFate> = Vec::new();
+        let mut cells = String::with_capacity(result.fates.len());
+        for fate in &result.fates {
+            let name = fate.0.name();
+            let index = fates.iter().position(|known| known.name == name).unwrap_or_else(|| {
+                fates.push(DrawnFate { name, color: fate.color().rgb });
+                fates.len() - 1
+            });
+            // There are fewer fates than digits.
+            cells.push(char::from(b'0' + index as u8));
+        }
+        Self {
+            columns: result.x.values.len(),
+            rows: result.y.values.len(),
+            fates,
+            ends: result.ends,
+            states: [result.x.state, result.y.state],
+            cells,
+        }
+    }
+}
+
+async fn basin(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
+    let request: BasinRequest = limited(&body)?;
+    work.stream(move || {
+        let analysis = request.validate().map_err(failure)?;
+        Ok(move |control: &Control<'_>, events: &Events| {
+            events.warn_of(analysis.warnings());
+            let result = analysis.run(control, &Journal::none()).map_err(failure)?;
+            events.tell_data("map", &Map::of(&result));
+            events.result(&result)
         })
     })
     .await
@@ -192,36 +263,35 @@ struct SaveRequest {
 enum SavedAnalysis {
     Chart(ChartRequest),
     Cycles(CyclesRequest),
+    Shimmy(ShimmyRequest),
     Motion(SimulateRequest),
+    Basin(BasinRequest),
 }
 
 async fn save(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
     let SaveRequest { analysis, format } = parse(&body)?;
     work.answer(move |control| match analysis {
         SavedAnalysis::Chart(request) => {
-            check_chart(&request)?;
+            request.check()?;
             saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
         }
         SavedAnalysis::Cycles(request) => {
-            check_cycles(&request)?;
+            request.check()?;
+            saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+        }
+        SavedAnalysis::Shimmy(request) => {
+            request.check()?;
             saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
         }
         SavedAnalysis::Motion(request) => {
-            check_motion(&request)?;
+            request.check()?;
             saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+        }
+        SavedAnalysis::Basin(request) => {
+            request.check()?;
+            let analysis = request.validate().map_err(failure)?;
+            saved(&format, &analysis.run(control, &Journal::none()).map_err(failure)?)
         }
     })
     .await
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_request_names_a_file() {
-        assert!(without_file(&WheelRequest::default()).is_ok());
-        let named = WheelRequest { wheel: Some("/etc/hostname".into()), set: Vec::new() };
-        assert!(without_file(&named).is_err());
-    }
 }

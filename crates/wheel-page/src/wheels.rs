@@ -1,9 +1,7 @@
 //! Wheels as the page has them: every parameter by key, with what is allowed; the wheels to begin with; files of wheels.
 
-use arclength_page::{Answer, Failure, Work, parse};
-use axum::Router;
+use arclength_page::{Answer, Failure, Routes, parse};
 use axum::body::Bytes;
-use axum::routing::{get, post};
 use kingpin::{Key, Tyre, Wheel};
 use kingpin_report::{NamedNumbers, Number};
 use serde::{Deserialize, Serialize};
@@ -61,11 +59,8 @@ struct WheelFile {
 }
 
 /// Routes of wheels.
-pub(crate) fn routes() -> Router<Work> {
-    Router::new()
-        .route("/api/keys", get(keys))
-        .route("/api/wheels", get(wheels))
-        .route("/api/wheel", post(wheel))
+pub(crate) fn routes() -> Routes {
+    Routes::new().get("/api/keys", keys).get("/api/wheels", wheels).post("/api/wheel", wheel)
 }
 
 async fn keys() -> Answer<Vec<KeyAnswer>> {

@@ -109,6 +109,7 @@ impl CyclesResult {
             Curve::of(
                 "limit cycle, extremes",
                 palette::VERMILION,
+                &["HB", "LPC"],
                 self.points.iter().filter_map(|point| {
                     Some(((point.value, end(point).named(state)?), point.stable, point.label.as_deref()))
                 }),

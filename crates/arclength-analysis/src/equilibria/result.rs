@@ -155,6 +155,7 @@ impl EquilibriaResult {
         vec![Curve::of(
             "equilibrium",
             palette::BLUE,
+            &["LP"],
             self.points.iter().filter_map(|point| {
                 Some(((point.value, height(point)?), point.stable, point.label.as_deref()))
             }),

@@ -159,6 +159,7 @@ impl CycleCurve {
         Curve::of(
             name,
             color,
+            &[],
             points.map(|point| {
                 ((first(point.values[0]), second(point.values[1])), Some(true), point.label.as_deref())
             }),

@@ -152,6 +152,7 @@ impl EquilibriumCurve {
         Curve::of(
             name,
             color,
+            &[],
             self.points.iter().map(|point| {
                 let real = self.kind != Some(SpecialKind::Hopf) || point.frequency.is_some();
                 ((first(point.values[0]), second(point.values[1])), Some(real), point.label.as_deref())

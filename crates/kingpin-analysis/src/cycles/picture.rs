@@ -32,6 +32,7 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
             let curve = Branch::new(
                 points.iter().map(|point| ((abscissa(point.cycle.value), angle(point)), stability(point))),
             )
+            .smooth(points.iter().map(|point| is_upright(point)))
             .dotted(points.iter().map(|point| needs_more_friction(point)))
             .color(palette::VERMILION);
             let first = largest && number == 1;
@@ -83,6 +84,11 @@ fn stability(point: &CyclePointResult) -> Stability {
     } else {
         Stability::from(point.cycle.stable == Some(true))
     }
+}
+
+/// Whether the parameter stands still along the branch: where cycles are born and where they turn.
+fn is_upright(point: &CyclePointResult) -> bool {
+    point.cycle.label.as_deref().is_some_and(|label| matches!(kind(label), "HB" | "LPC"))
 }
 
 /// Whether the wheel cannot roll like this.

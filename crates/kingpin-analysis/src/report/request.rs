@@ -125,6 +125,15 @@ impl Found {
 }
 
 impl ReportAnalysis {
+    /// Computes everything and writes nothing.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`]. What cannot be computed is said among the findings.
+    pub fn find(&self, control: &Control<'_>) -> Result<ReportResult, Error> {
+        let Found { findings, .. } = self.compute(control)?;
+        Ok(ReportResult { wheel: self.wheel, up_to: self.fastest, findings, files: Vec::new() })
+    }
+
     /// Computes everything and writes it when all is ready. What cannot be computed is said in the report.
     ///
     /// # Errors

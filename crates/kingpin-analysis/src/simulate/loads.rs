@@ -1,6 +1,6 @@
-//! What the king pin bears and the dampers take along a motion, and how much of the friction it uses.
+//! What king pin and ground bear and the dampers take along a motion, and how much of the friction it uses.
 
-use kingpin::Wheel;
+use kingpin::{RollingLoad, Wheel};
 use kingpin_report::Columns;
 
 /// The largest of some friction forces over `mu_s N`; nothing where nothing presses the wheel down.
@@ -17,4 +17,23 @@ pub(super) fn loads(columns: Columns, force: &[f64], damper_power: &[f64]) -> Co
         .unit("N")
         .numbers("damper_power", damper_power.iter().copied())
         .unit("W")
+}
+
+/// Forces in N, one for each time, forwards and towards the centre of the circle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ForcesFromAbove {
+    /// Of springs and dampers on the king pin.
+    pub king_pin: Vec<[f64; 2]>,
+    /// Of the ground on the wheel.
+    pub ground: Vec<[f64; 2]>,
+}
+
+impl ForcesFromAbove {
+    /// Those of a motion that rolls.
+    pub(crate) fn of_rolling(loads: &[RollingLoad]) -> Self {
+        Self {
+            king_pin: loads.iter().map(|load| load.king_pin.components).collect(),
+            ground: loads.iter().map(|load| load.ground).collect(),
+        }
+    }
 }

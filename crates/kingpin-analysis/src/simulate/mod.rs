@@ -8,6 +8,7 @@ mod rolling_result;
 mod sliding_result;
 mod tyre_result;
 
+pub use loads::ForcesFromAbove;
 pub use phase::Phase;
 pub use request::{SimulateAnalysis, SimulateRequest};
 pub use result::HistoryResult;

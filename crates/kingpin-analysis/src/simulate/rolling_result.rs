@@ -1,6 +1,6 @@
 //! Time histories of a wheel that rolls as a result.
 
-use super::loads::{largest_ratio, loads};
+use super::loads::{ForcesFromAbove, largest_ratio, loads};
 use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
@@ -46,6 +46,9 @@ pub struct RollingHistory {
     pub king_pin_force: Vec<f64>,
     /// What the dampers take in W, at every time.
     pub damper_power: Vec<f64>,
+    /// The forces as vectors, to be drawn.
+    #[serde(skip)]
+    pub forces: ForcesFromAbove,
     /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub king_pin: Option<Vec<&'static str>>,
@@ -64,19 +67,20 @@ impl RollingHistory {
     /// The result of a motion.
     ///
     /// # Errors
-    /// Those of [`Wheel::king_pin_loads`].
+    /// Those of [`Wheel::rolling_loads`].
     pub(super) fn new(wheel: Wheel, history: &TimeHistory) -> Result<Self, KingpinError> {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
         let dry = wheel.get(Key::MF) > 0.0;
         let moments = history.friction_moment.iter().copied().chain(std::iter::repeat(0.0));
-        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
+        let loads = wheel.rolling_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
         let friction_force = history.friction_force();
         Ok(Self {
             wheel,
             friction_ratio_max: largest_ratio(&wheel, &friction_force),
-            king_pin_force: loads.iter().map(|load| load.force).collect(),
-            damper_power: loads.iter().map(|load| load.damper_power).collect(),
+            king_pin_force: loads.iter().map(|load| load.king_pin.force()).collect(),
+            damper_power: loads.iter().map(|load| load.king_pin.damper_power).collect(),
+            forces: ForcesFromAbove::of_rolling(&loads),
             rolling_lost_at: history.rolling_lost_at,
             t: history.times.clone(),
             u: state(0),

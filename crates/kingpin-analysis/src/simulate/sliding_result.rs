@@ -1,11 +1,11 @@
 //! Time histories of a wheel that rolls or slides as a result.
 
-use super::loads::{largest_ratio, loads};
+use super::loads::{ForcesFromAbove, largest_ratio, loads};
 use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
 use kingpin::sliding::{Contact, SLIDING_STATE_NAMES};
-use kingpin::{Key, Wheel};
+use kingpin::{Key, KingPinLoad, Wheel, in_towing_frame};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, summary};
 use kingpin_report::numbers::readable;
@@ -54,6 +54,9 @@ pub struct SlidingHistory {
     pub king_pin_force: Vec<f64>,
     /// What the dampers take in W, at every time.
     pub damper_power: Vec<f64>,
+    /// The forces as vectors, to be drawn.
+    #[serde(skip)]
+    pub forces: ForcesFromAbove,
     /// What the wheel does at every time, `rolling` or `sliding`.
     pub phase: Vec<&'static str>,
     /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
@@ -73,13 +76,18 @@ pub struct SlidingHistory {
 
 impl SlidingHistory {
     /// The result of a motion.
-    pub(super) fn new(wheel: Wheel, history: kingpin::sliding::SlidingHistory) -> Self {
+    pub(crate) fn new(wheel: Wheel, history: kingpin::sliding::SlidingHistory) -> Self {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let friction_force: Vec<f64> =
             history.friction.iter().map(|[along, across]| along.hypot(*across)).collect();
         let contact = |&time: &f64| history.contact_at(time).map_or("rolling", phase::contact);
         let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
         let dry = wheel.get(Key::MF) > 0.0;
+        let ground = history.states.iter().zip(&history.friction);
+        let forces = ForcesFromAbove {
+            king_pin: history.king_pin_loads.iter().map(|load| load.components).collect(),
+            ground: ground.map(|(state, friction)| in_towing_frame(state[2], *friction)).collect(),
+        };
         Self {
             wheel,
             u: state(0),
@@ -92,9 +100,10 @@ impl SlidingHistory {
             slip: history.slip(),
             normal_force: vec![history.normal_force; friction_force.len()],
             friction_ratio_max: largest_ratio(&wheel, &friction_force),
-            king_pin_force: history.king_pin_loads.iter().map(|load| load.force).collect(),
+            king_pin_force: history.king_pin_loads.iter().map(KingPinLoad::force).collect(),
             damper_power: history.king_pin_loads.iter().map(|load| load.damper_power).collect(),
             friction_force,
+            forces,
             phase: history.times.iter().map(contact).collect(),
             king_pin: dry.then(|| history.times.iter().map(king_pin).collect()),
             friction_moment: dry.then_some(history.friction_moment.clone()),

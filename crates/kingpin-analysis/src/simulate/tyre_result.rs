@@ -1,6 +1,6 @@
 //! Time histories of a wheel with a tyre as a result.
 
-use super::loads::{largest_ratio, loads};
+use super::loads::{ForcesFromAbove, largest_ratio, loads};
 use super::phase::{self, Phase};
 use crate::description;
 use crate::parameters::parameters_of;
@@ -61,6 +61,9 @@ pub struct TyreHistoryResult {
     pub king_pin_force: Vec<f64>,
     /// What the dampers take in W, at every time.
     pub damper_power: Vec<f64>,
+    /// The forces as vectors, to be drawn.
+    #[serde(skip)]
+    pub forces: ForcesFromAbove,
     /// What the caster does at every time, `swinging` or `sticking`, where dry friction acts about the king pin.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub king_pin: Option<Vec<&'static str>>,
@@ -79,11 +82,11 @@ impl TyreHistoryResult {
     /// The result of a motion.
     ///
     /// # Errors
-    /// Those of [`Wheel::king_pin_loads`].
+    /// Those of [`Wheel::rolling_loads`].
     pub(super) fn new(wheel: Wheel, duration: f64, history: TyreHistory) -> Result<Self, KingpinError> {
         let state = |index: usize| history.states.iter().map(|state| state[index]).collect();
         let moments = history.friction_moment.iter().copied().chain(std::iter::repeat(0.0));
-        let loads = wheel.king_pin_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
+        let loads = wheel.rolling_loads(history.states.iter().map(|state| &state[..]).zip(moments))?;
         let king_pin = |&time: &f64| history.king_pin_at(time).map_or("swinging", phase::king_pin);
         let dry = wheel.get(Key::MF) > 0.0;
         let friction_force: Vec<f64> = history.contact_forces.iter().map(ContactForce::friction).collect();
@@ -91,8 +94,9 @@ impl TyreHistoryResult {
             wheel,
             duration,
             friction_ratio_max: largest_ratio(&wheel, &friction_force),
-            king_pin_force: loads.iter().map(|load| load.force).collect(),
-            damper_power: loads.iter().map(|load| load.damper_power).collect(),
+            king_pin_force: loads.iter().map(|load| load.king_pin.force()).collect(),
+            damper_power: loads.iter().map(|load| load.king_pin.damper_power).collect(),
+            forces: ForcesFromAbove::of_rolling(&loads),
             friction_exceeded_at: history.friction_exceeded_at,
             stopped_at: history.stopped_at,
             u: state(0),

@@ -113,9 +113,10 @@ fn sample(equations: &Equations<f64>, regime: Regime, state: &SlipState) -> Samp
         regime => regime.friction(equations, state),
     };
     let (towing, _) = equations.power(state, friction);
+    let [x, y] = equations.king_pin_force(state);
     Sample {
         friction: friction[0].hypot(friction[1]),
-        king_pin: equations.king_pin_force(state),
+        king_pin: x.hypot(y),
         powers: [equations.power_of_damping(state), equations.power_of_sliding(state, friction), towing],
     }
 }

@@ -164,7 +164,7 @@ impl SlidingWheel {
                 };
                 let (towing, dissipated) = equations.power(&state, friction);
                 history.king_pin_loads.push(KingPinLoad {
-                    force: equations.king_pin_force(&state),
+                    components: equations.king_pin_force(&state),
                     damper_power: equations.power_of_damping(&state),
                 });
                 history.friction.push(friction);

@@ -349,13 +349,15 @@ impl Equations<f64> {
             + 0.5 * body.rotational_stiffness * psi * psi
     }
 
-    /// Force of springs and dampers on the king pin in N.
-    pub(crate) fn king_pin_force(&self, state: &SlipState) -> f64 {
+    /// Force of springs and dampers on the king pin in N, forwards and towards the centre of the circle.
+    pub(crate) fn king_pin_force(&self, state: &SlipState) -> [f64; 2] {
         let mut rate = [0.0; 7];
         self.derivative(state, [0.0; 2], &mut rate);
         let body = &self.body;
-        let along = body.longitudinal_stiffness * state[0] + body.longitudinal_damping * rate[0];
-        along.hypot(body.lateral_stiffness * state[1] + body.lateral_damping * rate[1])
+        [
+            -body.longitudinal_stiffness * state[0] - body.longitudinal_damping * rate[0],
+            -body.lateral_stiffness * state[1] - body.lateral_damping * rate[1],
+        ]
     }
 
     /// Power in W that the dampers take.

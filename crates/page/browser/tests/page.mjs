@@ -9,14 +9,18 @@ import { chromium } from "playwright-core";
 const PROGRAMS = process.env.PROGRAMS ?? new URL("../../../../target/debug", import.meta.url).pathname;
 /** Where pictures of the page are kept; nowhere unless asked for. */
 const PICTURES = process.env.PICTURES;
+/** Whether the pictures of the documentation are made again. */
+const DOCUMENTATION = process.env.DOCUMENTATION;
 
 const AXE = readFileSync(new URL("../node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 
 /** Starts `program serve`; `end` stops it as Ctrl-C does. */
 export async function serve(program, ...options) {
   const child = spawn(`${PROGRAMS}/${program}`, ["serve", "--port", "0", ...options], { stdio: ["ignore", "pipe", "inherit"] });
-  const [line] = await once(child.stdout, "data");
-  const url = String(line).trim();
+  let line = "";
+  // It may come in parts.
+  while (!line.includes("\n")) line += String((await once(child.stdout, "data"))[0]);
+  const url = line.trim();
   return {
     url,
     async end() {
@@ -36,13 +40,14 @@ export async function launch() {
   });
 }
 
-/** Opens a page; `problems` gathers what must not happen. */
-export async function open(browser, url, options = {}) {
+/** Opens a page; `problems` gathers what must not happen, and what does not match `expected`, whenever it comes. */
+export async function open(browser, url, { expected, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
   const page = await context.newPage();
   const problems = [];
+  const isExpected = (text) => expected?.test(text) ?? false;
   page.on("console", (message) => {
-    if (message.type() === "error") problems.push(`console: ${message.text()}`);
+    if (message.type() === "error" && !isExpected(message.text())) problems.push(`console: ${message.text()}`);
   });
   page.on("pageerror", (error) => problems.push(`script: ${error.stack}`));
   page.on("request", (request) => {
@@ -57,7 +62,9 @@ export async function open(browser, url, options = {}) {
     async settled() {
       await page.waitForFunction(() => {
         const rows = [...document.querySelectorAll("#steps li")];
-        return rows.length > 0 && rows.every((row) => row.dataset.state !== "running") && !document.querySelector(".growing");
+        const pictures = [...document.querySelectorAll(".diagram .picture")];
+        // A picture that is asked for is not yet the one of the rows.
+        return rows.length > 0 && rows.every((row) => row.dataset.state !== "running") && pictures.every((picture) => picture.getAttribute("aria-busy") !== "true");
       }, null, { timeout: 120_000 });
     },
     /** What axe-core finds that people with disabilities would stumble over. */
@@ -69,6 +76,13 @@ export async function open(browser, url, options = {}) {
       if (!PICTURES) return;
       mkdirSync(PICTURES, { recursive: true });
       await page.screenshot({ path: `${PICTURES}/${name}.png`, fullPage: true });
+    },
+    /** The picture of this name in the documentation. */
+    async documented(name) {
+      if (!DOCUMENTATION) return;
+      // Nothing is pointed at.
+      await page.evaluate(() => document.activeElement?.blur());
+      await page.screenshot({ path: new URL(`../../../../docs/${name}.png`, import.meta.url).pathname, fullPage: true });
     },
     async close() {
       await context.close();

@@ -68,8 +68,143 @@ test("the caster is dragged aside and let go", async () => {
   await opened.close();
 });
 
-test("a value that is not allowed says what is", async () => {
+/** Length of an arrow that is drawn as a path. */
+function lengthOf(path) {
+  const [x, y, toX, toY] = path.match(/-?[\d.]+(e-?\d+)?/g).map(Number);
+  return Math.hypot(toX - x, toY - y);
+}
+
+test("forces are arrows to a scale that is told", async () => {
   const opened = await open(browser, server.url);
+  const { page } = opened;
+  const arrow = (name) => page.locator(`#above .${name}`).getAttribute("d");
+  await page.locator("#above .force-legend .value").waitFor({ state: "attached" });
+  const newtons = Number((await page.locator("#above .force-legend .value").textContent()).replace(" N", ""));
+  const perNewton = lengthOf(await arrow("scale")) / newtons;
+  const numbers = await page.locator("#numbers").textContent();
+  const friction = Number(numbers.match(/friction\D*([\d.]+)\s+N/)[1]);
+  const drawn = lengthOf(await arrow("ground-force")) / perNewton;
+  assert.ok(Math.abs(drawn / friction - 1) < 1e-3, `${drawn} ${friction}`);
+  // The springs: k times the displacement of the king pin, which the springs are drawn to.
+  const pin = page.locator("#above .pin");
+  const moved = Math.hypot(Number(await pin.getAttribute("cx")), Number(await pin.getAttribute("cy")));
+  const pulled = lengthOf(await arrow("king-pin-force")) / perNewton;
+  assert.ok(Math.abs(pulled / (100 * moved) - 1) < 1e-3, `${pulled} ${100 * moved}`);
+  await opened.close();
+});
+
+test("a cycle plays, and a blow from either side", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.locator("#shown-motion").selectOption({ label: "cycle AT1" });
+  await page.locator("#history .plot").waitFor();
+  await page.locator("#plane .curve.cycle").waitFor({ state: "attached" });
+  const first = await page.locator("#above .caster").getAttribute("x2");
+  await page.waitForFunction((x) => document.querySelector("#above .caster").getAttribute("x2") !== x, first);
+  await opened.picture("wheel-cycle");
+  await page.locator("#slides").uncheck();
+  const turned = async (side) => {
+    await page.locator("#blow-side").selectOption(side);
+    await page.locator("#motion-note").evaluate((element) => element.replaceChildren());
+    await page.locator("#hit").click();
+    await page.locator("#motion-note", { hasText: "it was hit with 0.05 N s" }).waitFor();
+    const points = (await page.locator("#history .curve").getAttribute("points")).split(" ").map((point) => Number(point.split(",")[1]));
+    return Math.sign(points[0] - points[8]);
+  };
+  // A blow towards the centre ahead of the wheel's centre turns the caster with the yaw, psi' = omega - Omega < 0.
+  assert.equal(await turned("1"), -1);
+  assert.equal(await turned("-1"), 1);
+  assert.match(await page.locator("#lines").textContent(), /^kingpin simulate --duration 3 --blow=-0\.05 -o motion\.json$/m);
+  assert.match(await page.locator("#python-lines").textContent(), /^motion = wheel\.simulate\(3, blow=-0\.05\)$/m);
+  await opened.close();
+});
+
+test("basins lie under the plane, and a press there starts a motion", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.locator("#slides").uncheck();
+  await page.locator("#basin").check();
+  await page.locator("#plane .basin").waitFor({ state: "attached" });
+  await page.waitForFunction(() => document.querySelector("#plane .plane")?.dataset.cells === String(81 * 61), null, { timeout: 120_000 });
+  assert.match(await page.locator("#plane .fates").textContent(), /uniform motion/);
+  // The middle of the picture returns: its colour is that of the uniform motion.
+  const [red, green, blue, opacity] = await page.locator("#plane .basin").evaluate((canvas) => [...canvas.getContext("2d").getImageData(43, 30, 1, 1).data]);
+  assert.ok(opacity > 0 && blue > red && blue > green, [red, green, blue, opacity].join());
+  await page.locator("#plane .plot").click({ position: { x: 170, y: 80 } });
+  await page.locator("#motion-note", { hasText: "it was let go" }).waitFor();
+  assert.match(await page.locator("#lines").textContent(), /--perturb psi=\S+ --perturb Omega=\S+ /);
+  assert.match(await page.locator("#lines").textContent(), /^kingpin basin --x psi=-1:1:81 --y Omega=\S+:61 --contact rolling/m);
+  assert.deepEqual(await opened.obstacles(), []);
+  await opened.picture("wheel-basin");
+  await opened.documented("page-wheel");
+  await opened.close();
+});
+
+test("the report is told in words", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.locator("#report summary").click();
+  await page.locator("#findings li", { hasText: "stability, straight" }).waitFor({ timeout: 120_000 });
+  await page.locator("#findings li", { hasText: "dampers, straight" }).waitFor();
+  await page.locator("#findings li", { hasText: "blow" }).first().waitFor();
+  assert.match(await page.locator("#lines").textContent(), /^kingpin report -o report$/m);
+  await opened.picture("wheel-report");
+  await opened.close();
+});
+
+test("shimmy with sliding is a curve, and plays", async () => {
+  const file = new URL("shimmy.toml", import.meta.url).pathname;
+  const other = await serve("kingpin", "--wheel", file);
+  try {
+    const opened = await open(browser, other.url);
+    const { page } = opened;
+    await done(page);
+    await page.locator("#along-start").fill("7");
+    await page.locator("#along-end").fill("9.6");
+    await page.locator("#along button").click();
+    await page.locator("#follow-shimmy").click();
+    await page.locator("#shimmy-picture svg.drawn").waitFor({ timeout: 120_000 });
+    await page.locator("#shimmy-notes button").first().waitFor();
+    await page.locator("#shown-motion option", { hasText: "shimmy" }).first().waitFor({ state: "attached" });
+    const label = await page.locator("#shown-motion option", { hasText: "shimmy" }).first().textContent();
+    await page.locator("#shown-motion").selectOption({ label });
+    await page.locator("#plane .curve.cycle").waitFor({ state: "attached" });
+    await opened.picture("wheel-shimmy");
+    await opened.close();
+  } finally {
+    await other.end();
+  }
+});
+
+test("while a slider moves chart and verdict follow, and are always there", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.evaluate(() => {
+    window.missing = 0;
+    new MutationObserver(() => {
+      if (!document.querySelector("#chart-picture .drawn") || !document.querySelector("#verdict strong")) window.missing++;
+    }).observe(document.querySelector("#middle"), { childList: true, subtree: true });
+  });
+  const slider = page.getByLabel("r, slider", { exact: true });
+  for (let step = 1; step <= 20; step++) {
+    await slider.evaluate((element, to) => {
+      element.value = String(to);
+      element.dispatchEvent(new Event("input", { bubbles: true }));
+    }, 1 - step / 50);
+  }
+  // The critical speed is r times 8.431 rad/s.
+  await page.locator("#verdict", { hasText: "5.0586 m/s" }).waitFor();
+  await page.waitForFunction(() => document.querySelector("#chart-picture").dataset.points === String(48 * 30));
+  assert.equal(await page.evaluate(() => window.missing), 0);
+  await opened.close();
+});
+
+test("a value that is not allowed says what is", async () => {
+  const opened = await open(browser, server.url, { expected: /422/ });
   const { page } = opened;
   await page.locator("#quantity-l").waitFor();
   await page.locator("#quantity-l").fill("-1");
@@ -80,7 +215,6 @@ test("a value that is not allowed says what is", async () => {
   await page.locator("#quantity-mu_s").fill("0.5");
   await page.locator("#quantity-mu_s").press("Tab");
   await page.locator("#wheel-problem", { hasText: "mu_d" }).waitFor();
-  opened.problems.splice(0, opened.problems.length, ...opened.problems.filter((problem) => !problem.includes("422")));
   await opened.close();
 });
 

@@ -1,6 +1,6 @@
 //! A server for a test, and a client that says exactly what it wants to.
 
-use arclength_page::{Server, model_site};
+use arclength_page::{Server, Site, model_site};
 use serde_json::Value;
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -15,11 +15,16 @@ pub(crate) struct Running {
 }
 
 impl Running {
+    /// One of the page for any model.
     pub(crate) fn start() -> Self {
+        Self::serve(model_site(None))
+    }
+
+    pub(crate) fn serve(site: Site) -> Self {
         let server = Server::listen(0).unwrap();
         let port = server.url().rsplit(':').next().unwrap().trim_end_matches('/').parse().unwrap();
         let stop: &AtomicBool = Box::leak(Box::default());
-        let thread = std::thread::spawn(|| server.run(model_site(None), stop).unwrap());
+        let thread = std::thread::spawn(move || server.run(site, stop).unwrap());
         Self { port, stop, thread: Some(thread) }
     }
 
@@ -33,8 +38,12 @@ impl Running {
 
     /// Sends a request and leaves the answer to be read.
     pub(crate) fn send(&self, text: &str) -> TcpStream {
+        self.send_bytes(text.as_bytes())
+    }
+
+    pub(crate) fn send_bytes(&self, bytes: &[u8]) -> TcpStream {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.write_all(text.as_bytes()).unwrap();
+        stream.write_all(bytes).unwrap();
         stream
     }
 

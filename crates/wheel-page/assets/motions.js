@@ -1,0 +1,214 @@
+// The motions of the wheel: the uniform one, cycles, shimmy, and what was let go or hit; from above, over the time, and in the plane of
+// caster angle and yaw rate with its basins.
+
+import { Above } from "./above.js";
+import { Refusal } from "./ask.js";
+import { byId, html } from "./element.js";
+import { extent, readable } from "./numbers.js";
+import { Plane } from "./plane.js";
+import { draw } from "./plot.js";
+
+/**
+ * @typedef {import("./above.js").Motion} Motion
+ * @typedef {import("./wheel.js").Answer} Answer
+ * @typedef {{
+ *   asked: () => any, valueOf: (key: string) => number, changed: () => void, keep: (name: string, answer: Answer | null) => void,
+ *   compute: (name: string, path: string, request: any, signal?: AbortSignal) => Promise<Answer>, wantsBasin: () => boolean, signal: () => AbortSignal,
+ * }} Page what motions need of the page
+ */
+
+/** The fastest swing that an eye follows, in rad/s: what is faster is played slower. */
+const SHOWN_SWING = 9;
+/** Caster angles to either side in the plane, in rad, and yaw rates in parts of what the fastest swing makes of them. */
+const WIDEST = 1;
+const FASTEST = 1.4;
+/** Motions across and up in a basin: at once, and then. */
+const COARSE = [25, 17];
+const FINE = [81, 61];
+
+/** @param {string} id */
+function field(id) {
+  return /** @type {HTMLInputElement} */ (byId(id));
+}
+
+export class Motions {
+  /** @param {Page} page */
+  constructor(page) {
+    this.page = page;
+    this.above = new Above(byId("above"), (psi) => {
+      field("kick").value = readable(psi - this.uniform("psi"), 3);
+      field("blow").value = "0";
+      void this.release([["psi", Number(field("kick").value)]], 0);
+    });
+    this.plane = new Plane(byId("plane"), (psi, rate) => {
+      const round = (/** @type {number} */ value) => Number(value.toPrecision(4));
+      void this.release([["psi", round(psi - this.uniform("psi"))], ["Omega", round(rate - this.uniform("Omega"))]], 0);
+    });
+    /** The uniform motion. @type {Motion | null} */
+    this.uniformMotion = null;
+    /** What can be played besides, by the branch it belongs to. @type {Record<string, Motion[]>} */
+    this.offered = { cycles: [], shimmy: [], motion: [] };
+    /** Changes of the states from which the last motion started. @type {[string, number][]} */
+    this.perturb = [];
+    this.blow = 0;
+    /** Whether the user has said whether the wheel may slide. */
+    this.hasChosen = false;
+    /** Ends the motion before when another one is let go. */
+    this.abort = new AbortController();
+    byId("slides").addEventListener("change", () => {
+      this.hasChosen = true;
+      page.changed();
+    });
+    byId("let-go").addEventListener("click", () => void this.release([["psi", Number(field("kick").value)]], 0));
+    byId("hit").addEventListener("click", () => void this.release([], Number(field("blow").value) * Number(field("blow-side").value)));
+    byId("play").addEventListener("click", () => {
+      this.above.isPlaying = !this.above.isPlaying;
+      byId("play").textContent = this.above.isPlaying ? "Pause" : "Play";
+      byId("play").setAttribute("aria-pressed", String(!this.above.isPlaying));
+    });
+    byId("shown-motion").addEventListener("change", () => this.choose());
+  }
+
+  /** A state of the uniform motion. @param {"psi" | "Omega"} state */
+  uniform(state) {
+    return this.uniformMotion?.[state][0] ?? 0;
+  }
+
+  /** What was let go last, for the lines. */
+  asked() {
+    /** @type {[string, number][]} */
+    const perturb = this.perturb.length || this.blow ? this.perturb : [["psi", Number(field("kick").value)]];
+    return { duration: Number(field("duration").value), perturb, blow: this.blow, slides: field("slides").checked };
+  }
+
+  /**
+   * Shows the uniform motion of another wheel.
+   * @param {any} verdict
+   * @param {boolean} isRigid
+   */
+  rest(verdict, isRigid) {
+    const { above, plane, page } = this;
+    this.abort.abort();
+    this.uniformMotion = verdict.above;
+    // A wheel that rolls in its uniform motion may slide when it is kicked; one with a tyre has a law of its own.
+    if (!this.hasChosen) field("slides").checked = verdict.rolls && isRigid;
+    const swing = Math.max(...verdict.eigenvalues.map((/** @type {[number, number]} */ [, im]) => Math.abs(im)));
+    above.speed = swing > SHOWN_SWING ? SHOWN_SWING / swing : 1;
+    byId("slowness").textContent = above.speed < 1 ? `It plays ${readable(1 / above.speed, 2)} times slower than it moves.` : "";
+    above.show({ l: page.valueOf("l"), R: page.valueOf("R"), r: page.valueOf("r"), v: page.valueOf("v") }, verdict.above);
+    const middle = this.uniform("Omega");
+    const half = Number((FASTEST * Math.max(swing, Math.abs(middle), 1) * WIDEST).toPrecision(2));
+    const round = (/** @type {number} */ value) => Number(value.toPrecision(3));
+    plane.limits = [[-WIDEST, WIDEST], [round(middle - half), round(middle + half)]];
+    Object.assign(plane, { rest: verdict.above, motion: null, map: null });
+    plane.draw();
+    this.offered = { cycles: [], shimmy: [], motion: [] };
+    page.keep("motion", null);
+    page.keep("basin", null);
+    byId("history").replaceChildren();
+    byId("motion-note").textContent = "";
+    this.list("");
+  }
+
+  /** Offers the motions of a branch. @param {string} name @param {Answer | null} answer */
+  offer(name, answer) {
+    this.offered[name] = answer?.motions ?? [];
+    this.list(/** @type {HTMLSelectElement} */ (byId("shown-motion")).value);
+  }
+
+  /** What can be played, as a list. @param {string} chosen */
+  list(chosen) {
+    const titles = /** @type {Record<string, string>} */ ({ cycles: "cycle", shimmy: "shimmy", motion: "what was let go" });
+    const options = [html("option", { value: "" }, "uniform motion")];
+    for (const [name, motions] of Object.entries(this.offered)) {
+      motions.forEach((motion, index) => {
+        const value = `${name}:${index}`;
+        options.push(html("option", { value, selected: value === chosen }, `${titles[name]}${motion.label ? ` ${motion.label}` : ""}`));
+      });
+    }
+    byId("shown-motion").replaceChildren(...options);
+  }
+
+  /** Plays what is chosen. */
+  choose() {
+    const [name, index] = /** @type {HTMLSelectElement} */ (byId("shown-motion")).value.split(":");
+    this.show(name ? (this.offered[name]?.[Number(index)] ?? null) : null);
+  }
+
+  /** @param {Motion | null} motion */
+  show(motion) {
+    this.above.play(motion);
+    this.plane.motion = motion;
+    this.plane.draw();
+    if (!motion) {
+      byId("history").replaceChildren();
+      return;
+    }
+    const curve = motion.t.map((time, index) => /** @type {[number, number]} */ ([time, motion.psi[index] ?? NaN]));
+    const [low, high] = extent(motion.psi);
+    const plot = draw({ description: "caster angle over the time", curves: [{ points: curve, kind: "cycle" }], x: { label: "t (s)", low: 0, high: motion.t.at(-1) ?? 1 }, y: { label: "ψ (rad)", low, high } });
+    byId("history").replaceChildren(plot.element);
+  }
+
+  /**
+   * Lets the wheel go from a changed uniform motion, or hits it.
+   * @param {[string, number][]} perturb
+   * @param {number} blow in N s, towards the centre of the circle
+   */
+  async release(perturb, blow) {
+    const { page } = this;
+    this.abort.abort();
+    this.abort = new AbortController();
+    // Another wheel ends it too.
+    const signal = AbortSignal.any([this.abort.signal, page.signal()]);
+    Object.assign(this, { perturb, blow });
+    page.changed();
+    const { duration, slides } = this.asked();
+    const note = byId("motion-note");
+    try {
+      const request = { ...page.asked(), duration, perturb: Object.fromEntries(perturb), blow, points: 2001, contact: slides ? "sliding" : "rolling" };
+      const answer = await page.compute("motion", "/api/wheel/simulate", request, signal);
+      if (signal.aborted) return;
+      const [motion] = answer.motions;
+      if (!motion) return;
+      page.keep("motion", answer);
+      this.offered.motion = [motion];
+      this.list("motion:0");
+      this.show(motion);
+      const away = motion.psi.map((value) => Math.abs(value - this.uniform("psi")));
+      const last = Math.max(...away.slice(Math.floor(0.9 * away.length)));
+      const start = blow ? `it was hit with ${readable(Math.abs(blow), 3)} N s` : `it was let go at ${readable(away[0] ?? 0, 3)} rad`;
+      note.replaceChildren(`In the last tenth of ${readable(motion.t.at(-1))} s the caster is up to ${readable(last, 3)} rad from rest; ${start}.`,
+        ...answer.warnings.map((warning) => html("span", { class: "note" }, ` ${warning}.`)));
+    } catch (error) {
+      if (!signal.aborted) note.textContent = error instanceof Refusal ? error.problem.message : String(error);
+    }
+  }
+
+  /** The axes of the basin. */
+  basinAsked() {
+    const [[left, right], [low, high]] = this.plane.limits;
+    return { x: { key: "psi", start: left, end: right }, y: { key: "Omega", start: low, end: high }, counts: FINE };
+  }
+
+  /** Computes the basins under the plane, roughly and then finely. @param {AbortSignal} signal */
+  async showBasin(signal) {
+    const { page, plane } = this;
+    const note = byId("basin-note");
+    note.textContent = "";
+    try {
+      for (const counts of [COARSE, FINE]) {
+        const { x, y } = this.basinAsked();
+        const request = { ...page.asked(), x: { ...x, count: counts[0] }, y: { ...y, count: counts[1] }, contact: field("slides").checked ? "sliding" : "rolling" };
+        const answer = await page.compute("basin", "/api/wheel/basin", request, signal);
+        if (signal.aborted) return;
+        page.keep("basin", answer);
+        plane.map = answer.map;
+        plane.draw();
+        note.textContent = answer.warnings.join("; ");
+      }
+    } catch (error) {
+      if (!signal.aborted) note.textContent = error instanceof Refusal ? error.problem.message : String(error);
+    }
+  }
+}
