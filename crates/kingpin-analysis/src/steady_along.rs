@@ -11,7 +11,7 @@ use crate::{axis_label, description};
 use arclength_analysis::{SampledInterval, VaryingParameter};
 use kingpin::branches::Along;
 use kingpin::{Key, KingpinError, Wheel};
-use kingpin_figure::{Axis, Dash, Figure, FigureError, Legend, LegendEntry, Line, Panel, palette};
+use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -169,18 +169,11 @@ impl Report for SteadyAlongResult {
         let (start, end) = self.interval.ends();
         let (start, end) = (abscissa(start), abscissa(end));
         let axis = || Axis::new(axis_label::of(key)).limits(start.min(end), start.max(end));
-        let mut angle = Panel::new(axis(), Axis::new("$\\psi$ (rad)"))
-            .curve(uniform_motion(&self.wheel, &self.interval, Vec::new()).color(palette::BLUE))
+        let (uniform, dashes) = uniform_motion(&self.wheel, &self.interval, Vec::new());
+        let angle = Panel::new(axis(), Axis::new("$\\psi$ (rad)"))
+            .curve(uniform.color(palette::BLUE))
             .legend(Legend::Below);
-        let unstable = self.points.iter().any(|point| point.motion.rolls && point.stable != Some(true));
-        let slides = self.points.iter().any(|point| !point.motion.rolls);
-        for (occurs, text, dash) in
-            [(unstable, "unstable", Dash::Dashed), (slides, "cannot roll", Dash::Dotted)]
-        {
-            if occurs {
-                angle = angle.legend_entry(LegendEntry::line(text, palette::BLUE, dash));
-            }
-        }
+        let angle = dashes.legend().fold(angle, Panel::legend_entry);
         let line = |value: &dyn Fn(&SteadyPoint) -> f64| {
             Line::new(self.points.iter().map(|point| (abscissa(point.value), value(point))))
         };

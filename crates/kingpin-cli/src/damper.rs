@@ -3,10 +3,11 @@
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::Assignment;
 use clap::Args;
-use kingpin_analysis::damper::DamperRequest;
+use kingpin_analysis::damper::{DamperRequest, Range};
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
-const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf";
+const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf
+         kingpin damper --up-to v=3 -s l=0.04 --radius 1:inf";
 
 /// Smallest dampers with which no shimmy is born up to a speed
 ///
@@ -14,13 +15,22 @@ const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf";
 /// to that one, each alone and both together, and the speed that decides. The wheel's own c_q and c_psi do not count. Large
 /// cycles beside stable motion (an isola) may take more: they are followed from the Hopf points of weaker dampers along the speed, the
 /// damping and their folds in both, and the wheel is kicked at random; the result says what was searched, which is no proof that there
-/// are none.
+/// are none. With --radius and --load the dampers are enough on all these circles and under all these loads: boundaries of stability
+/// are followed in both, and the fold of the last cycle from the radii at the ends, and from that which decides, over the others.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Damper {
     /// Speed up to which the motion is to be stable
     #[arg(long, value_name = "v=VALUE")]
     up_to: Assignment,
+
+    /// Radii in m for which the damper is to be enough: all from A to B, perhaps inf, or A,B,C
+    #[arg(long, value_name = "A:B")]
+    radius: Option<Range>,
+
+    /// Loads in N (F_Az, negative presses down) for which it is to be enough: all from A to B, or A,B,C
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true)]
+    load: Option<Range>,
 
     /// Only what small motions take: large cycles are not sought
     #[arg(long)]
@@ -42,6 +52,8 @@ impl Damper {
         let request = DamperRequest {
             wheel: self.wheel.request(),
             up_to: self.up_to.clone(),
+            radius: self.radius.clone(),
+            load: self.load.clone(),
             small_motions: self.small_motions,
         };
         let progress = ProgressDisplay::bar("dampers", output.is_quiet());

@@ -58,7 +58,7 @@ pub use boundary::Curve;
 pub use chart::{GrowthRateChart, StabilityChart};
 pub use contact::ContactForce;
 pub use critical_speed::CriticalSpeed;
-pub use damper::SmallestDamper;
+pub use damper::{Condition, SmallestDamper};
 pub use error::{KingpinError, NoUniformMotion, Position};
 pub use forces::{CycleForces, KingPinLoad, RollingLoad, in_towing_frame};
 pub use lateral::LateralWheel;

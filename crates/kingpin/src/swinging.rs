@@ -24,7 +24,7 @@ pub(crate) const MOST_STATES: usize = 7;
 /// The forward speed, as a part of the towing speed, that counts as none: at zero the moment of the tread width is infinite.
 const STANDSTILL: f64 = 1e-9;
 /// With `k_u = inf` the caster lies across where the cosine of its angle falls to this.
-const LYING_ACROSS: f64 = 0.01;
+pub(crate) const LYING_ACROSS: f64 = 0.01;
 /// Largest number of swings and rests of a motion.
 const MAXIMUM_PHASES: usize = 100_000;
 

@@ -31,6 +31,17 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
+/// A number of things, with the word for one of them or for several.
+///
+/// ```
+/// use arclength_numbers::counted;
+/// assert_eq!(counted(1, "branch", "branches"), "1 branch");
+/// assert_eq!(counted(0, "branch", "branches"), "0 branches");
+/// ```
+pub fn counted(number: usize, one: &str, several: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { several })
+}
+
 fn trimmed(number: &str) -> &str {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.') } else { number }
 }

@@ -4,7 +4,7 @@ use crate::axis_label;
 use crate::error::Error;
 use arclength_analysis::{Assignment, Control};
 use kingpin::{Curve, Key, KingpinError, Plane, Wheel};
-use kingpin_figure::{Color, Line, palette};
+use kingpin_figure::{Color, Dash, LegendEntry, Line, palette};
 use kingpin_report::numbers::readable;
 use serde::Serialize;
 
@@ -145,6 +145,14 @@ impl Overlay {
             }
         }
         lines
+    }
+
+    /// What the dashes of the limits mean, for those that are drawn.
+    pub(crate) fn legend(stability: bool, rolling: bool) -> impl Iterator<Item = LegendEntry> {
+        let entries =
+            [(stability, "limit of stability", Dash::Solid), (rolling, "limit of rolling", Dash::Dashed)];
+        let drawn = entries.into_iter().filter(|(is_drawn, ..)| *is_drawn);
+        drawn.map(|(_, name, dash)| LegendEntry::line(name, palette::BLACK, dash))
     }
 
     /// The points of its limits, curve by curve.

@@ -9,10 +9,9 @@ use crate::parameters::parameters_of;
 use arclength_analysis::Control;
 use kingpin::{Axis, GrowthRateChart, Plane, Wheel};
 use kingpin_figure::{
-    CategoryMap, ColorMap, Dash, Figure, FigureError, Grid, HeatMap, Legend, LegendEntry, Line, Panel,
-    palette,
+    CategoryMap, ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette,
 };
-use kingpin_report::numbers::{readable, significant};
+use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -168,7 +167,8 @@ impl Report for ChartResult {
             "\n+ stable, - unstable; s stable, u unstable, but the friction does not suffice; blank: no motion"
         )?;
         if undecided > 0 {
-            writeln!(out, "? undecided, at {undecided} points: rounding could make it stable or unstable")?;
+            let undecided = counted(undecided, "point", "points");
+            writeln!(out, "? undecided, at {undecided}: rounding could make it stable or unstable")?;
         }
         self.write_overlays(out)?;
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
@@ -270,10 +270,11 @@ impl ChartResult {
         for (overlay, color) in self.overlays.iter().zip(COLORS.into_iter().cycle()) {
             panel = panel.curves(overlay.lines(color, is_shared));
         }
-        for (name, dash) in [("limit of stability", Dash::Solid), ("limit of rolling", Dash::Dashed)] {
-            panel = panel.legend_entry(LegendEntry::line(name, palette::BLACK, dash));
-        }
-        Ok(panel)
+        let any = |curves: fn(&Overlay) -> &Vec<Vec<[f64; 2]>>| {
+            self.overlays.iter().any(|overlay| !curves(overlay).is_empty())
+        };
+        let drawn = [any(|overlay| &overlay.stability_boundary), any(|overlay| &overlay.rolling_limit)];
+        Ok(Overlay::legend(drawn[0], drawn[1]).fold(panel, Panel::legend_entry))
     }
 
     /// How far the limits of every overlay reach.

@@ -8,8 +8,7 @@ use arclength_analysis::labels::kind;
 use kingpin::Wheel;
 use kingpin::branches::Along;
 use kingpin_figure::{
-    Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
-    palette,
+    Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
 };
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
@@ -20,11 +19,8 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
     let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     let x = Axis::new(axis_label::of(key)).limits(low, high);
     let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)")).legend(Legend::Below);
-    panel = panel.curve(
-        uniform_motion(wheel, along, hopf_points(points, abscissa))
-            .color(palette::BLUE)
-            .legend("uniform motion"),
-    );
+    let (uniform, dashes) = uniform_motion(wheel, along, hopf_points(points, abscissa));
+    panel = panel.curve(uniform.color(palette::BLUE).legend("uniform motion"));
     let branches = points.last().map_or(0, |point| point.branch);
     for number in 1..=branches {
         let points: Vec<&CyclePointResult> = points.iter().filter(|point| point.branch == number).collect();
@@ -45,14 +41,11 @@ pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CycleP
             }
         }
     }
-    let anything_unstable = points.iter().any(|point| point.cycle.stable == Some(false));
-    if anything_unstable {
-        panel = panel.legend_entry(LegendEntry::line("unstable", palette::BLACK, Dash::Dashed));
-    }
-    if points.iter().any(needs_more_friction) {
-        let legend = LegendEntry::line("needs more than $\\mu_s N$", palette::BLACK, Dash::Dotted);
-        panel = panel.legend_entry(legend);
-    }
+    let unstable = |point: &CyclePointResult| {
+        point.cycle.stable == Some(false) && !point.is_hopf_point() && !needs_more_friction(point)
+    };
+    let dashes = dashes.and(points.iter().any(unstable), points.iter().any(needs_more_friction));
+    panel = dashes.legend().fold(panel, Panel::legend_entry);
     let description = format!(
         "Caster angle of limit cycles and of the uniform motion against {key} at {}",
         description::of(wheel, &[along.key()])

@@ -17,7 +17,7 @@ use arclength_analysis::{End, Interval, VaryingParameter};
 use kingpin::branches::Along;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{counted, readable};
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
@@ -211,7 +211,8 @@ impl Report for CyclesResult {
         writeln!(out, "limit cycles at {}", description::of(&self.wheel, &[self.interval.key()]))?;
         for branch in &self.branches {
             let points = self.points_of(branch);
-            writeln!(out, "\nbranch {} from {}, {} points", branch.branch, branch.from, points.len())?;
+            let count = counted(points.len(), "point", "points");
+            writeln!(out, "\nbranch {} from {}, {count}", branch.branch, branch.from)?;
             let [first, last] = branch.ends();
             writeln!(out, "  first: {}\n  last:  {}\n", first.text(), last.text())?;
             let mut table = Table::new([

@@ -7,6 +7,7 @@ use arclength_analysis::Control;
 use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
+use kingpin_report::numbers::counted;
 use serde::Serialize;
 use std::fmt;
 
@@ -47,26 +48,30 @@ impl fmt::Display for KickedWheels {
         let Self { kicks, returned, undecided, ends, .. } = self;
         match returned {
             returned if returned == kicks => write!(f, "all {kicks} strong random kicks return")?,
-            returned => write!(f, "{returned} of {kicks} strong random kicks return")?,
+            returned => {
+                let verb = if *returned == 1 { "returns" } else { "return" };
+                write!(f, "{returned} of {kicks} strong random kicks {verb}")?;
+            }
         }
         if *undecided > 0 {
-            write!(f, ", {undecided} are undecided")?;
+            write!(f, ", {}", counted(*undecided, "is undecided", "are undecided"))?;
         }
         if !ends.is_empty() {
             let ends: Vec<&str> = ends.iter().map(|fate| fate.0.name()).collect();
-            write!(f, ", {} end in {}", kicks - returned - undecided, ends.join(" or "))?;
+            let lost = counted(kicks - returned - undecided, "ends", "end");
+            write!(f, ", {lost} in {}", ends.join(" or "))?;
         }
         Ok(())
     }
 }
 
-/// Kicks a wheel with a damper, and with stronger ones until no kick ends elsewhere than in the uniform motion. Nothing where no
+/// Kicks wheels with a damper, and with stronger ones until no kick ends elsewhere than in the uniform motion. Nothing where no
 /// damper is allowed.
 ///
 /// # Errors
 /// A motion that cannot be followed, [`Error::Stopped`].
 pub(super) fn kick(
-    wheel: &Wheel,
+    wheels: &[Wheel],
     key: Key,
     [damping, up_to]: [f64; 2],
     control: &Control<'_>,
@@ -78,7 +83,7 @@ pub(super) fn kick(
             break;
         }
         let mut fates = Vec::new();
-        for speed in SPEEDS {
+        for (wheel, speed) in wheels.iter().flat_map(|wheel| SPEEDS.map(|speed| (wheel, speed))) {
             match fates_at(&wheel.with(key, damper)?.with(Key::V, speed * up_to)?, control) {
                 Ok(found) => fates.extend(found),
                 Err(Error::Simulation(

@@ -7,10 +7,11 @@
 
 use crate::cycles::from_hopf_points;
 use crate::error::{Error, unless_stopped};
-use crate::parabola::vertex;
+use crate::last_fold::LastFold;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Settings;
 use arclength::cycle::Orbit;
+use arclength::locus::CycleLocusPoint;
 use arclength_analysis::Control;
 use kingpin::branches::{Along, CurveOptions, CycleOptions};
 use kingpin::{CycleForces, Key, KingpinError, Wheel};
@@ -31,9 +32,11 @@ const LARGEST_NATURAL: f64 = 16.0;
 const SAME: f64 = 1e-2;
 /// Steps after which a branch or a curve is given up that gets nowhere.
 const MOST_STEPS: usize = 200;
-/// Times that the speed of the largest damping is narrowed down, and by how much each time.
-const REFINEMENTS: usize = 4;
-const NARROWER: f64 = 0.1;
+/// Times that the last fold is followed along circles and loads and along the speed again, and by which part it has to rise to go on.
+const ROUNDS: usize = 4;
+const HIGHER: f64 = 1e-6;
+/// Part by which the last stretch to the extremum is longer than it has to be.
+const MARGIN: f64 = 1e-3;
 
 /// A cycle at the largest damping at which one was found.
 #[derive(Clone, Debug)]
@@ -42,10 +45,14 @@ pub(super) struct LastCycle {
     pub damping: f64,
     /// Speed in m/s.
     pub speed: f64,
+    /// The wheel that it belongs to, with that speed and damping.
+    pub wheel: Wheel,
     pub period: f64,
     /// Smallest and largest caster angle in rad.
     pub angles: [f64; 2],
     pub orbit: Orbit,
+    /// Whether it is a fold: with more damping there is none beside it.
+    pub is_fold: bool,
 }
 
 /// What was found.
@@ -65,7 +72,7 @@ pub(super) struct LargeCycles {
 }
 
 impl LargeCycles {
-    /// Seeks them; `wheel` has no damper, and `needed` is the damper that small motions take.
+    /// Seeks them in a wheel, which has no damper; `needed` is the damper that its small motions take.
     ///
     /// # Errors
     /// [`Error::Stopped`].
@@ -75,27 +82,67 @@ impl LargeCycles {
         [needed, up_to]: [f64; 2],
         control: &Control<'_>,
     ) -> Result<Self, Error> {
-        let largest = (LARGEST * needed).max(LARGEST_NATURAL * natural_damper(wheel, key));
-        let largest = largest.min(key.allowed().highest);
-        let plane = [Along::new(Key::V, SLOWEST * up_to, up_to)?, Along::new(key, 0.0, largest)?];
-        let mut search =
-            Search { plane, control, found: Self { largest, ..Self::default() }, folds: Vec::new() };
+        let mut search = Search::new(wheel, key, [needed, up_to], control)?;
         let weaker: Vec<f64> =
             if needed > 0.0 { WEAKER.iter().map(|part| part * needed).collect() } else { vec![0.0] };
         for damping in weaker {
             search.along_speed(&wheel.with(key, damping)?, up_to)?;
             unless_stopped(control)?;
         }
-        search.along_folds(wheel)?;
+        search.along_folds()?;
         unless_stopped(control)?;
         Ok(search.found)
+    }
+
+    /// Follows the last fold along other parameters, and along the speed again, as long as the damping rises.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`].
+    pub(super) fn followed_along(
+        self,
+        variables: &[Along],
+        key: Key,
+        up_to: f64,
+        control: &Control<'_>,
+    ) -> Result<Self, Error> {
+        let Some(last) = self.last.clone().filter(|last| last.is_fold) else { return Ok(self) };
+        let mut search = Search::new(&last.wheel, key, [last.damping, up_to], control)?;
+        search.found = Self { largest: search.found.largest.max(self.largest), ..self };
+        let speeds = search.plane[0];
+        for _ in 0..ROUNDS {
+            let before = search.last_damping();
+            for along in variables.iter().chain([&speeds]) {
+                let Some(last) = search.found.last.clone() else { break };
+                search.along_curve(&last, *along)?;
+                unless_stopped(control)?;
+            }
+            if search.last_damping() < before * (1.0 + HIGHER) {
+                break;
+            }
+        }
+        Ok(search.found)
+    }
+
+    /// Both, with the last of their cycles.
+    pub(super) fn and(self, other: Self) -> Self {
+        let damping = |found: &Self| found.last.as_ref().map_or(0.0, |last| last.damping);
+        let is_later = self.last.is_none() || damping(&other) > damping(&self);
+        let last = if is_later { other.last } else { self.last };
+        Self {
+            last,
+            at_every_damper: self.at_every_damper || other.at_every_damper,
+            largest: self.largest.max(other.largest),
+            branches: self.branches + other.branches,
+            curves: self.curves + other.curves,
+            problems: [self.problems, other.problems].concat(),
+        }
     }
 }
 
 impl LastCycle {
     /// The forces along it; nothing where they are not known.
-    pub(super) fn forces(&self, wheel: &Wheel, key: Key) -> Result<CycleForces, KingpinError> {
-        wheel.with(Key::V, self.speed)?.with(key, self.damping)?.cycle_forces(&self.orbit)
+    pub(super) fn forces(&self) -> Result<CycleForces, KingpinError> {
+        self.wheel.cycle_forces(&self.orbit)
     }
 }
 
@@ -113,7 +160,24 @@ struct Search<'a> {
     folds: Vec<LastCycle>,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(
+        wheel: &Wheel,
+        key: Key,
+        [needed, up_to]: [f64; 2],
+        control: &'a Control<'a>,
+    ) -> Result<Self, Error> {
+        let largest = (LARGEST * needed).max(LARGEST_NATURAL * natural_damper(wheel, key));
+        let largest = largest.min(key.allowed().highest);
+        let plane = [Along::new(Key::V, SLOWEST * up_to, up_to)?, Along::new(key, 0.0, largest)?];
+        let found = LargeCycles { largest, ..LargeCycles::default() };
+        Ok(Self { plane, control, found, folds: Vec::new() })
+    }
+
+    fn last_damping(&self) -> f64 {
+        self.found.last.as_ref().map_or(0.0, |last| last.damping)
+    }
+
     fn key(&self) -> Key {
         self.plane[1].key()
     }
@@ -160,7 +224,10 @@ impl Search<'_> {
                 }
                 let angles = caster_angles(damped, &point.min, &point.max);
                 let (speed, period) = (point.value, point.period);
-                let cycle = LastCycle { damping, speed, period, angles, orbit: point.orbit.clone() };
+                let is_fold = kind == Some(SpecialKind::FoldOfCycles);
+                let wheel = damped.with(Key::V, speed)?;
+                let orbit = point.orbit.clone();
+                let cycle = LastCycle { damping, speed, wheel, period, angles, orbit, is_fold };
                 match kind {
                     Some(SpecialKind::FoldOfCycles) => self.folds.push(cycle),
                     Some(SpecialKind::Requested) => self.along_damping(damped, &cycle)?,
@@ -182,15 +249,18 @@ impl Search<'_> {
         self.found.branches += 1;
         for point in branch.points {
             let angles = caster_angles(&wheel, &point.min, &point.max);
+            let is_fold = point.label.is_some_and(|label| label.kind == SpecialKind::FoldOfCycles);
             let reached = LastCycle {
                 damping: point.value,
                 speed: cycle.speed,
+                wheel: wheel.with(along.key(), point.value)?,
                 period: point.period,
                 angles,
                 orbit: point.orbit,
+                is_fold,
             };
             self.found.at_every_damper |= reached.damping >= along.ends().1;
-            if point.label.is_some_and(|label| label.kind == SpecialKind::FoldOfCycles) {
+            if is_fold {
                 self.folds.push(reached.clone());
             }
             self.take(reached);
@@ -199,79 +269,88 @@ impl Search<'_> {
     }
 
     /// Follows the folds in speed and damping, each curve once.
-    fn along_folds(&mut self, wheel: &Wheel) -> Result<(), Error> {
+    fn along_folds(&mut self) -> Result<(), Error> {
         let mut known: Vec<Vec<LastCycle>> = Vec::new();
         for fold in std::mem::take(&mut self.folds) {
             if known.iter().any(|curve| lies_on(&fold, curve)) {
                 continue;
             }
-            let Some(curve) = self.folds_through(wheel, &fold, self.plane[0], &[])? else { continue };
-            self.found.curves += 1;
-            if let Some(largest) = curve.iter().max_by(|a, b| a.damping.total_cmp(&b.damping)).cloned() {
-                self.take(largest);
+            if let Some(curve) = self.along_curve(&fold, self.plane[0])? {
+                known.push(curve);
             }
-            if let Some(extremum) = self.narrowed(wheel, &curve)? {
-                self.take(extremum);
-            }
-            known.push(curve);
         }
         Ok(())
     }
 
+    /// Follows a fold along a parameter and the damping, and takes the one with the largest damping.
+    fn along_curve(&mut self, fold: &LastCycle, along: Along) -> Result<Option<Vec<LastCycle>>, Error> {
+        let wheel = fold.wheel;
+        let Some(points) = self.folds_through(&wheel, &fold.orbit, along, &[])? else { return Ok(None) };
+        self.found.curves += 1;
+        let curve =
+            points.iter().map(|point| self.cycle(&wheel, along, point)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(largest) = curve.iter().max_by(|a, b| a.damping.total_cmp(&b.damping)).cloned() {
+            self.take(largest);
+        }
+        let extremum = LastFold::inside(
+            &points,
+            |_| f64::NAN,
+            |start, [from, to], wanted| {
+                let allowed = along.key().allowed();
+                let window = Along::new(along.key(), from.max(allowed.lowest), to.min(allowed.highest))?;
+                let wheel = wheel.with(along.key(), start.values[0])?.with(self.key(), start.values[1])?;
+                Ok::<_, Error>(self.folds_through(&wheel, &start.orbit, window, wanted)?.unwrap_or_default())
+            },
+        )?;
+        let (low, high) = along.ends();
+        if let Some(LastFold { value, .. }) = extremum.filter(|fold| (low..=high).contains(&fold.value)) {
+            let nearest = points
+                .iter()
+                .min_by(|a, b| (a.values[0] - value).abs().total_cmp(&(b.values[0] - value).abs()));
+            if let Some(start) = nearest {
+                let wheel = wheel.with(along.key(), start.values[0])?.with(self.key(), start.values[1])?;
+                let [from, to] = [start.values[0].min(value), start.values[0].max(value)];
+                let margin = 0.1 * (to - from) + MARGIN * value.abs();
+                let (low, high) = (along.key().allowed().lowest, along.key().allowed().highest);
+                let window = Along::new(along.key(), (from - margin).max(low), (to + margin).min(high))?;
+                let points = self.folds_through(&wheel, &start.orbit, window, &[value])?.unwrap_or_default();
+                for point in points.iter().filter(|point| point.values[0] == value) {
+                    let last = self.cycle(&wheel, along, point)?;
+                    self.take(last);
+                }
+            }
+        }
+        Ok(Some(curve))
+    }
+
+    /// The folds through one of a wheel along a parameter and the damping.
     fn folds_through(
         &mut self,
         wheel: &Wheel,
-        fold: &LastCycle,
-        speeds: Along,
+        orbit: &Orbit,
+        along: Along,
         at: &[f64],
-    ) -> Result<Option<Vec<LastCycle>>, Error> {
-        let key = self.key();
-        let wheel = wheel.with(Key::V, fold.speed)?.with(key, fold.damping)?;
-        let plane = [speeds, self.plane[1]];
+    ) -> Result<Option<Vec<CycleLocusPoint>>, Error> {
+        let plane = [along, self.plane[1]];
         let options = CurveOptions { at: at.to_vec(), settings: Some(settings()), ..CurveOptions::default() };
         let kind = SpecialKind::FoldOfCycles;
-        let curve = wheel.cycle_curve(kind, &fold.orbit, plane, &options, |_| self.observer());
-        let Some(curve) = self.followed(curve.map_err(Error::from))? else { return Ok(None) };
-        let cycle = |point: arclength::locus::CycleLocusPoint| LastCycle {
-            damping: point.values[1],
-            speed: point.values[0],
-            period: point.period,
-            angles: caster_angles(&wheel, &point.min, &point.max),
-            orbit: point.orbit,
-        };
-        Ok(Some(curve.points.into_iter().map(cycle).collect()))
+        let curve = wheel.cycle_curve(kind, orbit, plane, &options, |_| self.observer());
+        Ok(self.followed(curve.map_err(Error::from))?.map(|curve| curve.points))
     }
 
-    /// The fold with the largest damping inside a curve: vertices of parabolas through three folds, at closer and closer speeds.
-    fn narrowed(&mut self, wheel: &Wheel, curve: &[LastCycle]) -> Result<Option<LastCycle>, Error> {
-        let inside = 1..curve.len().saturating_sub(1);
-        let Some(highest) = inside.max_by(|&a, &b| curve[a].damping.total_cmp(&curve[b].damping)) else {
-            return Ok(None);
-        };
-        let around = &curve[highest - 1..=highest + 1];
-        if around[0].damping.max(around[2].damping) >= around[1].damping {
-            return Ok(None);
-        }
-        let mut triple = [0, 1, 2].map(|index| around[index].clone());
-        for _ in 0..REFINEMENTS {
-            let [left, middle, right] = &triple;
-            let Some(vertex) = vertex([left, middle, right].map(|fold| [fold.speed, fold.damping])) else {
-                break;
-            };
-            let (low, high) = self.plane[0].ends();
-            let width = NARROWER * (right.speed - left.speed).abs();
-            let wanted = [vertex - width, vertex, vertex + width].map(|speed| speed.clamp(low, high));
-            let reach = wanted.iter().chain([&middle.speed]);
-            let (from, to) =
-                reach.fold((f64::INFINITY, 0.0_f64), |(from, to), &speed| (from.min(speed), to.max(speed)));
-            let window = Along::new(Key::V, from - 0.1 * width, to + 0.1 * width)?;
-            let middle = middle.clone();
-            let Some(folds) = self.folds_through(wheel, &middle, window, &wanted)? else { break };
-            let at = |speed: f64| folds.iter().find(|fold| fold.speed == speed).cloned();
-            let [Some(left), Some(middle), Some(right)] = wanted.map(at) else { break };
-            triple = [left, middle, right];
-        }
-        Ok(Some(triple[1].clone()))
+    /// A fold of a curve.
+    fn cycle(&self, wheel: &Wheel, along: Along, point: &CycleLocusPoint) -> Result<LastCycle, Error> {
+        let [value, damping] = point.values;
+        let wheel = wheel.with(along.key(), value)?.with(self.key(), damping)?;
+        Ok(LastCycle {
+            damping,
+            speed: wheel.get(Key::V),
+            wheel,
+            period: point.period,
+            angles: caster_angles(&wheel, &point.min, &point.max),
+            orbit: point.orbit.clone(),
+            is_fold: true,
+        })
     }
 }
 

@@ -1,14 +1,16 @@
 //! What the smallest dampers are asked for by, and how they are found.
 
+use super::condition::Range;
 use super::kicks::kick;
-use super::large_cycles::LargeCycles;
-use super::result::{Corner, DamperResult, Front, IsolaFree, REQUIREMENT, WithoutCycles};
+use super::large_cycles::{LargeCycles, LastCycle};
+use super::result::{Conditions, Corner, DamperResult, Front, IsolaFree, REQUIREMENT, WithoutCycles};
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
-use kingpin::{Key, SmallestDamper, Wheel};
+use kingpin::branches::Along;
+use kingpin::{Condition, Key, SmallestDamper, Tyre, Wheel};
 use serde::{Deserialize, Serialize};
 
 /// What the search for what small motions take is of the whole time, roughly.
@@ -18,7 +20,7 @@ const PART_OF_CYCLES: f64 = 0.3;
 /// Dampers on the front between the lateral and the rotational one.
 const FRONT: usize = 9;
 
-/// The smallest dampers with which no shimmy is born up to a speed.
+/// The smallest dampers with which no shimmy is born up to a speed, on all of some circles and under all of some loads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DamperRequest {
     /// Which wheel; its own `c_q` and `c_psi` do not count.
@@ -26,92 +28,205 @@ pub struct DamperRequest {
     pub wheel: WheelRequest,
     /// The speed, `v=3`.
     pub up_to: Assignment,
+    /// The radii in place of the wheel's own.
+    #[serde(default)]
+    pub radius: Option<Range>,
+    /// The loads `F_Az` in place of the wheel's own.
+    #[serde(default)]
+    pub load: Option<Range>,
     /// Only what small motions take: no large cycles are sought.
     #[serde(default)]
     pub small_motions: bool,
 }
 
 impl DamperRequest {
+    /// For the wheel's own radius and load, large cycles too.
+    pub fn new(wheel: WheelRequest, up_to: Assignment) -> Self {
+        Self { wheel, up_to, radius: None, load: None, small_motions: false }
+    }
+
     /// Computes them.
     ///
     /// # Errors
-    /// What is wrong with the wheel or the speed; an interruption.
+    /// What is wrong with the wheel, the speed, the radii or the loads; an interruption.
     pub fn run(&self, control: &Control<'_>) -> Result<DamperResult, Error> {
-        let wheel = self.wheel.read()?.with(Key::CQ, 0.0)?.with(Key::CPsi, 0.0)?;
+        let mut wheel = self.wheel.read()?.with(Key::CQ, 0.0)?.with(Key::CPsi, 0.0)?;
         let up_to = up_to::speed(&wheel, &self.up_to)?;
-        let whole = control;
-        let part = if self.small_motions { 1.0 } else { PART_OF_SMALL_MOTIONS };
-        let control = &whole.part(0.0..part);
-        let alone = |key, part| wheel.smallest_damper(key, up_to, &control.part(part));
-        let lateral = alone(Key::CQ, 0.0..0.1)?;
-        let rotational = alone(Key::CPsi, 0.1..0.2)?;
-        let mut front = Front::default();
-        if let Some(SmallestDamper { damping, .. }) = lateral {
-            let count = if damping > 0.0 { FRONT } else { 1 };
-            for index in 0..count {
-                let part = index as f64 / (FRONT - 1) as f64;
-                let damped = wheel.with(Key::CQ, part * damping)?;
-                let control = control.part(0.2 + 0.8 * part..(0.2 + 0.8 * (part + 0.1)).min(1.0));
-                let beside = if index + 1 == FRONT {
-                    Some(0.0)
-                } else {
-                    damped.smallest_damper(Key::CPsi, up_to, &control)?.map(|damper| damper.damping)
-                };
-                if let Some(beside) = beside {
-                    front.c_q.push(part * damping);
-                    front.c_psi.push(beside);
+        let mut conditions = Vec::new();
+        let given: [(_, _, &'static [&'static str]); 2] =
+            [(&self.radius, Key::TurningRadius, &["radius"]), (&self.load, Key::FAz, &["load"])];
+        for (range, key, field) in given {
+            if let Some(range) = range {
+                let condition = range.of(key, field, &wheel)?;
+                if let Some(first) = condition.extremes().first() {
+                    wheel = wheel.with(key, *first)?;
                 }
+                conditions.push(condition);
             }
         }
-        let [c_q, c_psi] = [lateral, rotational].map(|damper| damper.map(|damper| damper.damping));
-        let speed = |damper: Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
-        let corner = Corner { c_q: speed(lateral), c_psi: speed(rotational) };
-        let dry_friction = NeglectedDryFriction::of(&wheel, &[Key::V]);
+        let sizing = Sizing { wheel, up_to, conditions };
+        let part = if self.small_motions { 1.0 } else { PART_OF_SMALL_MOTIONS };
+        let small = &control.part(0.0..part);
+        let lateral = sizing.alone(&wheel, Key::CQ, &small.part(0.0..0.1))?;
+        let rotational = sizing.alone(&wheel, Key::CPsi, &small.part(0.1..0.2))?;
+        let front = sizing.front(lateral, &small.part(0.2..1.0))?;
         let isola_free = match self.small_motions {
             true => None,
             false => {
                 let middle = 0.5 * (PART_OF_SMALL_MOTIONS + 1.0);
-                let part = |range| whole.part(range);
+                let part = |range| control.part(range);
                 Some(IsolaFree {
-                    c_q: without_cycles(&wheel, Key::CQ, c_q, up_to, &part(PART_OF_SMALL_MOTIONS..middle))?,
-                    c_psi: without_cycles(&wheel, Key::CPsi, c_psi, up_to, &part(middle..1.0))?,
+                    c_q: sizing.without_cycles(Key::CQ, lateral, &part(PART_OF_SMALL_MOTIONS..middle))?,
+                    c_psi: sizing.without_cycles(Key::CPsi, rotational, &part(middle..1.0))?,
                 })
             }
         };
+        let [c_q, c_psi] = [lateral, rotational].map(|damper| damper.map(|damper| damper.damping));
+        let speed = |damper: Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
         Ok(DamperResult {
-            wheel,
             requirement: REQUIREMENT,
             up_to,
             c_q,
             c_psi,
-            corner,
+            corner: Corner {
+                c_q: speed(lateral),
+                c_psi: speed(rotational),
+                c_q_at: sizing.decides(lateral),
+                c_psi_at: sizing.decides(rotational),
+            },
             front,
             isola_free,
-            dry_friction,
+            dry_friction: NeglectedDryFriction::of(&wheel, &[Key::V]),
+            wheel,
+            radius: self.radius.clone(),
+            load: self.load.clone(),
         })
     }
 }
 
-/// The damper alone with which no large cycle was found either; nothing where none is enough for small motions.
-fn without_cycles(
-    wheel: &Wheel,
-    key: Key,
-    needed: Option<f64>,
+/// What dampers are sized for.
+struct Sizing {
+    /// Without a damper, at the first of the radii and loads.
+    wheel: Wheel,
     up_to: f64,
-    control: &Control<'_>,
-) -> Result<Option<WithoutCycles>, Error> {
-    let Some(needed) = needed else { return Ok(None) };
-    let cycles = LargeCycles::seek(wheel, key, [needed, up_to], &control.part(0.0..PART_OF_CYCLES))?;
-    let forces = match &cycles.last {
-        Some(last) => Some(last.forces(wheel, key)?),
-        None => None,
-    };
-    let last = cycles.last.as_ref().map_or(0.0, |last| last.damping);
-    let by_continuation = (!cycles.at_every_damper).then(|| needed.max(last));
-    let kicked = match by_continuation {
-        Some(damping) => kick(wheel, key, [damping, up_to], &control.part(PART_OF_CYCLES..1.0))?,
-        None => None,
-    };
-    let decisive = last > needed;
-    Ok(Some(WithoutCycles::new(by_continuation, decisive, cycles, forces, kicked)))
+    conditions: Vec<Condition>,
+}
+
+impl Sizing {
+    /// Conditions that the equations of rolling motion know of: a load only through the limit of a brush tyre.
+    fn of_small_motions(&self) -> Vec<Condition> {
+        let counts = |condition: &&Condition| condition.key() != Key::FAz || self.wheel.tyre() == Tyre::Brush;
+        self.conditions.iter().filter(counts).cloned().collect()
+    }
+
+    /// The smallest of one damper beside what the wheel has of the other.
+    fn alone(&self, wheel: &Wheel, key: Key, control: &Control<'_>) -> Result<Option<SmallestDamper>, Error> {
+        Ok(wheel.smallest_damper_over(key, self.up_to, &self.of_small_motions(), control)?)
+    }
+
+    /// The least damper about the king pin beside parts of the lateral one that is enough alone.
+    fn front(&self, lateral: Option<SmallestDamper>, control: &Control<'_>) -> Result<Front, Error> {
+        let mut front = Front::default();
+        let Some(SmallestDamper { damping, .. }) = lateral else { return Ok(front) };
+        let count = if damping > 0.0 { FRONT } else { 1 };
+        for index in 0..count {
+            let part = index as f64 / (FRONT - 1) as f64;
+            let damped = self.wheel.with(Key::CQ, part * damping)?;
+            let control = control.part(part..(part + 0.1).min(1.0));
+            let beside = if index + 1 == FRONT {
+                Some(0.0)
+            } else {
+                self.alone(&damped, Key::CPsi, &control)?.map(|damper| damper.damping)
+            };
+            if let Some(beside) = beside {
+                front.c_q.push(part * damping);
+                front.c_psi.push(beside);
+            }
+        }
+        Ok(front)
+    }
+
+    /// Where a damper is decided; nothing where there is one radius and one load, or where none is needed.
+    fn decides(&self, damper: Option<SmallestDamper>) -> Option<Conditions> {
+        let corner = damper?.corner?;
+        (!self.conditions.is_empty()).then(|| Conditions::of(&corner))
+    }
+
+    /// The wheels at the ends of all intervals and at all values, and the one that decides over small motions.
+    fn extremes(&self, decisive: Option<Wheel>, all: bool) -> Result<Vec<Wheel>, Error> {
+        let mut wheels = vec![self.wheel];
+        let conditions = if all { self.conditions.clone() } else { self.of_small_motions() };
+        for condition in conditions {
+            let mut more = Vec::new();
+            for wheel in &wheels {
+                for value in condition.extremes() {
+                    more.push(wheel.with(condition.key(), value)?);
+                }
+            }
+            wheels = more;
+        }
+        if let Some(corner) = decisive {
+            let same = |wheel: &Wheel| {
+                [Key::Curvature, Key::FAz].iter().all(|key| wheel.get(*key) == corner.get(*key))
+            };
+            if !wheels.iter().any(same) {
+                let at = self.wheel.with(Key::Curvature, corner.get(Key::Curvature))?;
+                wheels.push(at.with(Key::FAz, corner.get(Key::FAz))?);
+            }
+        }
+        Ok(wheels)
+    }
+
+    /// The damper alone with which no large cycle was found either; nothing where none is enough for small motions. Cycles are sought on the
+    /// circles at the ends of the range and on the decisive one, the last fold is followed over the others, and the wheel is kicked there.
+    fn without_cycles(
+        &self,
+        key: Key,
+        needed: Option<SmallestDamper>,
+        control: &Control<'_>,
+    ) -> Result<Option<WithoutCycles>, Error> {
+        let Some(SmallestDamper { damping: needed, corner, .. }) = needed else { return Ok(None) };
+        let (up_to, seek) = (self.up_to, control.part(0.0..PART_OF_CYCLES));
+        let wheels = self.extremes(corner, false)?;
+        let mut cycles = LargeCycles::default();
+        for (index, wheel) in wheels.iter().enumerate() {
+            let part = |index: usize| index as f64 / wheels.len() as f64;
+            let seek = seek.part(part(index)..part(index + 1));
+            // What the small motions of this one take.
+            let own = if wheels.len() == 1 {
+                needed
+            } else {
+                wheel.smallest_damper(key, up_to, &seek.quiet())?.map_or(needed, |damper| damper.damping)
+            };
+            cycles = cycles.and(LargeCycles::seek(wheel, key, [own, up_to], &seek)?);
+        }
+        let mut variables = Vec::new();
+        for condition in self.of_small_motions() {
+            if let Condition::Interval(along) = condition {
+                let (from, to) = along.ends();
+                variables.push(match along.key() {
+                    Key::TurningRadius => Along::new(Key::Curvature, to.recip(), from.recip())?,
+                    key => Along::new(key, from, to)?,
+                });
+            }
+        }
+        if !variables.is_empty() {
+            cycles = cycles.followed_along(&variables, key, up_to, &seek.quiet())?;
+        }
+        let forces = cycles.last.as_ref().map(LastCycle::forces).transpose()?;
+        let last = cycles.last.as_ref().map_or(0.0, |last| last.damping);
+        let by_continuation = (!cycles.at_every_damper).then(|| needed.max(last));
+        let decisive = last > needed;
+        let worst = if decisive { cycles.last.as_ref().map(|last| last.wheel) } else { corner };
+        let kicked = match by_continuation {
+            Some(damping) => {
+                let wheels = self.extremes(worst, true)?;
+                kick(&wheels, key, [damping, up_to], &control.part(PART_OF_CYCLES..1.0))?
+            }
+            None => None,
+        };
+        let at = cycles.last.as_ref().filter(|_| !self.conditions.is_empty());
+        let at = at.map(|last| Conditions::of(&last.wheel));
+        Ok(Some(WithoutCycles::new(by_continuation, decisive, cycles, at, forces, kicked)))
+    }
 }

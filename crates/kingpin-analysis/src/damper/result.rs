@@ -1,12 +1,13 @@
 //! The smallest dampers as a result.
 
+use super::condition::Range;
 use super::kicks::KickedWheels;
 use super::large_cycles::LargeCycles;
 use crate::description;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
 use kingpin::{CycleForces, Key, Wheel};
-use kingpin_report::numbers::{readable, significant};
+use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -21,6 +22,12 @@ pub struct DamperResult {
     pub requirement: &'static str,
     /// The speed in m/s up to which the uniform motion is to be stable.
     pub up_to: f64,
+    /// The radii, where they are not the wheel's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<Range>,
+    /// The loads, where they are not the wheel's own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load: Option<Range>,
     /// The smallest lateral damper alone, in N s/m; nothing where none was found that is enough.
     pub c_q: Option<f64>,
     /// The smallest damper about the king pin alone, in N m s/rad.
@@ -43,6 +50,32 @@ pub struct Corner {
     pub c_q: Option<f64>,
     /// Of the one about the king pin.
     pub c_psi: Option<f64>,
+    /// Where the lateral damper is decided, over several circles or loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub c_q_at: Option<Conditions>,
+    /// Where the one about the king pin is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub c_psi_at: Option<Conditions>,
+}
+
+/// One of several circles and loads, at one speed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Conditions {
+    /// Speed in m/s.
+    pub v: f64,
+    /// Radius in m.
+    #[serde(with = "kingpin_report::number")]
+    pub r: f64,
+    /// Vertical force on the king pin in N.
+    #[serde(rename = "F_Az")]
+    pub load: f64,
+}
+
+impl Conditions {
+    /// Those of a wheel.
+    pub(super) fn of(wheel: &Wheel) -> Self {
+        Self { v: wheel.get(Key::V), r: wheel.get(Key::TurningRadius), load: wheel.get(Key::FAz) }
+    }
 }
 
 /// What it takes that no large cycle is found.
@@ -85,6 +118,9 @@ pub struct LastCycleResult {
     pub damping: f64,
     /// Speed in m/s.
     pub speed: f64,
+    /// Where it is, over several circles or loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<Conditions>,
     /// Period in s.
     pub period: f64,
     /// Smallest caster angle in rad.
@@ -105,6 +141,7 @@ impl WithoutCycles {
         by_continuation: Option<f64>,
         decisive: bool,
         cycles: LargeCycles,
+        at: Option<Conditions>,
         forces: Option<CycleForces>,
         kicked: Option<KickedWheels>,
     ) -> Self {
@@ -113,6 +150,7 @@ impl WithoutCycles {
         let last_cycle = cycles.last.as_ref().map(|last| LastCycleResult {
             damping: last.damping,
             speed: last.speed,
+            at,
             period: last.period,
             psi_min: last.angles[0],
             psi_max: last.angles[1],
@@ -139,7 +177,7 @@ impl WithoutCycles {
     }
 
     /// What is said of it.
-    fn write(&self, key: Key, name: &str, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, (key, name): (Key, &str), ranges: &Ranges, out: &mut dyn Write) -> io::Result<()> {
         let quantity = |damping: f64| description::quantity(key, damping);
         match self.by_continuation {
             None => writeln!(
@@ -160,8 +198,8 @@ impl WithoutCycles {
         {
             write!(
                 out,
-                "  the last cycle: v = {} m/s, psi from {} to {} rad, period {} s",
-                readable(last.speed),
+                "  the last cycle: {}, psi from {} to {} rad, period {} s",
+                ranges.place(last.speed, last.at),
                 significant(last.psi_min, 4),
                 significant(last.psi_max, 4),
                 significant(last.period, 5)
@@ -215,30 +253,67 @@ pub struct Front {
     pub c_psi: Vec<f64>,
 }
 
+/// The circles and loads for which dampers were asked.
+struct Ranges([(Key, Option<Range>); 2]);
+
+impl Ranges {
+    /// What is said of them in a heading.
+    fn in_words(&self) -> String {
+        let given = self.0.iter().filter_map(|(key, range)| Some((key, range.as_ref()?)));
+        given.map(|(key, range)| format!(", {key} {range} {}", key.unit())).collect()
+    }
+
+    /// A speed and, over several circles and loads, one of them.
+    fn place(&self, speed: f64, at: Option<Conditions>) -> String {
+        let mut place = vec![description::quantity(Key::V, speed)];
+        for (key, range) in &self.0 {
+            if let (Some(at), Some(_)) = (at, range) {
+                let value = if *key == Key::TurningRadius { at.r } else { at.load };
+                place.push(description::quantity(*key, value));
+            }
+        }
+        place.join(", ")
+    }
+}
+
+impl DamperResult {
+    fn ranges(&self) -> Ranges {
+        Ranges([(Key::TurningRadius, self.radius.clone()), (Key::FAz, self.load.clone())])
+    }
+
+    /// Keys of which the wheel's own values do not count.
+    fn replaced(&self) -> Vec<Key> {
+        let given = self.ranges().0.into_iter().filter(|(_, range)| range.is_some()).map(|(key, _)| key);
+        [Key::V, Key::CQ, Key::CPsi].into_iter().chain(given).collect()
+    }
+}
+
 impl Report for DamperResult {
     fn schema(&self) -> Schema {
         Schema::first("kingpin.damper")
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi])
+        parameters_of(&self.wheel, &self.replaced())
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let wheel = description::of(&self.wheel, &[Key::V, Key::CQ, Key::CPsi]);
-        writeln!(out, "dampers for stability up to v = {} m/s at {wheel}\n", readable(self.up_to))?;
-        for (key, name, damping, speed) in [
-            (Key::CQ, "lateral damper", self.c_q, self.corner.c_q),
-            (Key::CPsi, "damper about the king pin", self.c_psi, self.corner.c_psi),
+        let ranges = self.ranges();
+        let wheel = description::of(&self.wheel, &self.replaced());
+        let up_to = readable(self.up_to);
+        writeln!(out, "dampers for stability up to v = {up_to} m/s{} at {wheel}\n", ranges.in_words())?;
+        for (key, name, damping, speed, at) in [
+            (Key::CQ, "lateral damper", self.c_q, self.corner.c_q, self.corner.c_q_at),
+            (Key::CPsi, "damper about the king pin", self.c_psi, self.corner.c_psi, self.corner.c_psi_at),
         ] {
             match (damping, speed) {
                 (None, _) => writeln!(out, "{name} alone: none was found that is enough")?,
                 (Some(_), None) => writeln!(out, "{name} alone: none is needed")?,
                 (Some(damping), Some(speed)) => writeln!(
                     out,
-                    "{name} alone: {} at least; v = {} m/s decides",
+                    "{name} alone: {} at least; {} decides",
                     description::quantity(key, damping),
-                    readable(speed)
+                    ranges.place(speed, at)
                 )?,
             }
         }
@@ -265,7 +340,7 @@ impl Report for DamperResult {
                     (Key::CPsi, "damper about the king pin", &isola_free.c_psi),
                 ] {
                     if let Some(found) = found {
-                        found.write(key, name, out)?;
+                        found.write((key, name), &ranges, out)?;
                     }
                 }
                 writeln!(out, "\nwhat was searched is no proof that there is none")?;
@@ -281,9 +356,4 @@ impl Report for DamperResult {
             .numbers("c_psi", self.front.c_psi.iter().copied())
             .unit("N m s/rad")
     }
-}
-
-/// A number of things, in words for one of them and for several.
-fn counted(number: usize, one: &str, several: &str) -> String {
-    format!("{number} {}", if number == 1 { one } else { several })
 }

@@ -10,7 +10,7 @@ use crate::parameters::parameters_of;
 use kingpin::identification::{Identified, NotSeparated, Record};
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::numbers::{readable, significant};
+use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -160,14 +160,13 @@ impl Report for FitResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let count = self.records.len();
-        let records = if count == 1 { "1 record".to_owned() } else { format!("{count} records") };
+        let records = counted(self.records.len(), "record", "records");
         writeln!(out, "parameters from {records} at {}", description::of(&self.wheel, &self.keys))?;
         writeln!(
             out,
-            "{} values, {} unknowns: {}\n",
-            self.values,
-            self.unknowns.len(),
+            "{}, {}: {}\n",
+            counted(self.values, "value", "values"),
+            counted(self.unknowns.len(), "unknown", "unknowns"),
             self.unknowns.join(", ")
         )?;
         let mut table = Table::new(["", "estimate", "standard error", "95 % interval", "by", ""]);
@@ -272,9 +271,9 @@ impl FitResult {
         if let (Some(value), Some(probability)) = (self.chi_squared, self.chi_squared_probability) {
             writeln!(
                 out,
-                "\nchi-squared {} with {} degrees of freedom: probability {}",
+                "\nchi-squared {} with {} of freedom: probability {}",
                 significant(value, DIGITS),
-                self.degrees_of_freedom,
+                counted(self.degrees_of_freedom, "degree", "degrees"),
                 significant(probability, 2)
             )?;
         }

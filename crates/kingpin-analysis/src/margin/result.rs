@@ -11,7 +11,7 @@ use kingpin::basin::{ContactModel, Disturbance};
 use kingpin::branches::Along;
 use kingpin::{Key, Wheel};
 use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{counted, readable};
 use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -234,8 +234,8 @@ impl Report for MarginResult {
         if let Some(indicator) = &self.indicator {
             writeln!(
                 out,
-                "\nat {} values the safe {} is {} to {} {unit} per rad of amplitude{}",
-                indicator.values,
+                "\nat {} the safe {} is {} to {} {unit} per rad of amplitude{}",
+                counted(indicator.values, "value", "values"),
                 self.kind,
                 readable(indicator.smallest_ratio),
                 readable(indicator.largest_ratio),

@@ -16,7 +16,7 @@ use kingpin_report::numbers::{readable, significant};
 /// [`Error::Stopped`].
 pub(super) fn seek(wheel: &WheelRequest, fastest: f64, control: &Control<'_>) -> Result<DamperResult, Error> {
     let up_to = Assignment { key: "v".to_owned(), value: fastest.to_string() };
-    DamperRequest { wheel: wheel.clone(), up_to, small_motions: false }.run(control)
+    DamperRequest::new(wheel.clone(), up_to).run(control)
 }
 
 /// What is said of them.

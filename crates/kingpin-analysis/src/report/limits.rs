@@ -48,11 +48,9 @@ pub(super) fn illustration(
     }
     let here = (wheel.get(Key::V), wheel.get(Key::L));
     let marker = Marker::new(MarkerShape::Diamond).color(palette::BLACK);
-    panel = panel.markers(Markers::new([here], marker).legend("the wheel")).legend_entry(LegendEntry::line(
-        "limit of rolling",
-        palette::BLACK,
-        Dash::Dashed,
-    ));
+    panel = panel.markers(Markers::new([here], marker).legend("the wheel"));
+    let rolling = overlays.iter().any(|overlay| !overlay.rolling_limit.is_empty());
+    panel = Overlay::legend(false, rolling).fold(panel, Panel::legend_entry);
     let figure = Figure::single_column()
         .description("Limits of stability and of rolling over speed and caster length for several circles")
         .panel(panel);
@@ -67,7 +65,13 @@ pub(super) fn illustration(
         .unit("m/s")
         .numbers("l", numbers(|point| point.at[1]))
         .unit("m");
-    let caption = "Limits of stability (solid) and of rolling (dashed) on several circles; a circle without a solid line has no change of \
-                   stability here. The diamond is the wheel.";
-    Ok(Illustration { figure, data, caption: caption.to_owned() })
+    let limits = if rolling {
+        "Limits of stability (solid) and of rolling (dashed) on several circles"
+    } else {
+        "Limits of stability on several circles, on which the wheel can roll everywhere here"
+    };
+    let caption = format!(
+        "{limits}; a circle without a solid line has no change of stability here. The diamond is the wheel."
+    );
+    Ok(Illustration { figure, data, caption })
 }

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::margin::Found;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::Control;
-use kingpin::basin::{ClassificationSettings, DisturbedMotion};
+use kingpin::basin::{ClassificationSettings, DisturbedMotion, Fate};
 use kingpin::{Key, Wheel};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,8 @@ const MOST_SAMPLES: f64 = 40_000.0;
 /// longer.
 const PARTED: f64 = 0.5;
 const AFTER_PARTING: f64 = 1.25;
+/// The end of the model is sought for up to so many times the duration, for which motions are followed at most.
+const LONGEST: f64 = 10.0;
 
 /// The smallest disturbance of a kind from which the wheel does not return to its uniform motion, in both directions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -100,7 +102,7 @@ impl SafeKickAnalysis {
         // Where nothing returns there are no two sides.
         let smallest = smallest.filter(|edge| !edge.is_unstable());
         let motions = match smallest {
-            Some(edge) => Some(self.motions(&self.wheel, &edge, self.settings.duration, control)?),
+            Some(edge) => Some(self.motions(&edge, self.settings.duration, control)?),
             None => None,
         };
         Ok(SafeKickResult::new(
@@ -113,29 +115,34 @@ impl SafeKickAnalysis {
         ))
     }
 
-    /// The motions on both sides of the edge, until they have parted.
+    /// The motions on both sides of the edge, until they have parted, and until the model ends where it does beyond the edge.
     fn motions(
         &self,
-        wheel: &Wheel,
         edge: &Edge,
         duration: f64,
         control: &Control<'_>,
     ) -> Result<[DisturbedMotion; 2], Error> {
-        let period = natural_period(wheel);
+        let period = natural_period(&self.wheel);
         let history = |magnitude: f64, duration: f64| {
             let samples = (SAMPLES_PER_PERIOD * duration / period).clamp(2.0, MOST_SAMPLES) as usize;
-            let model = self.contact.model();
-            self.disturbance.disturbance().history(wheel, model, magnitude, duration, samples, control)
+            let (kind, model) = (self.disturbance.disturbance(), self.contact.model());
+            kind.history(&self.wheel, model, magnitude, duration, samples, control)
         };
-        let motions = [history(edge.returns, duration)?, history(edge.fails, duration)?];
-        let both = motions[0].states.iter().zip(&motions[1].states).zip(&motions[1].times);
-        let parting = both.into_iter().find(|((returns, fails), _)| (returns[2] - fails[2]).abs() > PARTED);
-        match parting {
-            Some((_, &time)) if AFTER_PARTING * time < duration => {
-                let shown = AFTER_PARTING * time.max(period);
-                Ok([history(edge.returns, shown)?, history(edge.fails, shown)?])
+        let pair = |shown| Ok::<_, Error>([history(edge.returns, shown)?, history(edge.fails, shown)?]);
+        let sides = pair(duration)?;
+        let (one, other) = (&sides[0], &sides[1]);
+        let mut both = one.states.iter().zip(&other.states).zip(&other.times);
+        let parting = both.find(|((returns, fails), _)| (returns[2] - fails[2]).abs() > PARTED);
+        let mut shown = parting.map_or(duration, |(_, &time)| AFTER_PARTING * time.max(period)).min(duration);
+        if edge.fate.is_some_and(|fate| fate.0 == Fate::ModelEnds) {
+            // Motions are followed for longer than the duration where they are slow to settle.
+            let (mut end, mut reach) = (other.model_ends_at, duration);
+            while end.is_none() && reach < LONGEST * duration {
+                reach = (2.0 * reach).min(LONGEST * duration);
+                end = history(edge.fails, reach)?.model_ends_at;
             }
-            _ => Ok(motions),
+            shown = shown.max(AFTER_PARTING * end.unwrap_or(reach));
         }
+        if shown == duration { Ok(sides) } else { pair(shown) }
     }
 }

@@ -15,6 +15,11 @@ use serde::Serialize;
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
+/// A motion in which the model ends is replayed for so much longer than until then.
+const BEYOND_END: f64 = 1.01;
+/// Digits of the time for which a motion is replayed.
+const REPLAYED_DIGITS: usize = 4;
+
 /// A motion after a disturbance.
 #[derive(Debug, Serialize)]
 pub struct DisturbedMotionResult {
@@ -133,6 +138,11 @@ impl SafeKickResult {
         let edges = [positive, negative];
         let reached = reached(edges.into_iter().take(kind.directions()), largest);
         let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
+        let replayed = motions.as_ref().map_or(settings.duration, |[_, fails]| {
+            let last = fails.times.last().copied().unwrap_or(settings.duration);
+            // Samples end before the model does.
+            fails.model_ends_at.map_or(last, |end| last.max(BEYOND_END * end))
+        });
         let (returns, fails) = match (smallest, motions) {
             (Some(edge), Some([returns, fails])) => (
                 Some(DisturbedMotionResult::new(edge.returns, returns, model, wheel.tyre())),
@@ -146,9 +156,7 @@ impl SafeKickResult {
                 Disturbance::ReleaseAngle => format!("--perturb psi={}", edge.fails),
                 Disturbance::Jolt | Disturbance::StepSteer => return None,
             };
-            let shown =
-                fails.as_ref().and_then(|motion| motion.t.last().copied()).unwrap_or(settings.duration);
-            Some(format!("{disturbance} --contact {} --duration {}", model.name(), significant(shown, 3)))
+            Some(format!("{disturbance} --contact {} --duration {}", model.name(), rounded_up(replayed)))
         });
         Self {
             wheel,
@@ -384,5 +392,35 @@ impl Report for SafeKickResult {
             self.description()
         );
         Ok(Some(Figure::single_column().description(description).panel(panel)))
+    }
+}
+
+/// A duration with few digits that is not shorter.
+fn rounded_up(duration: f64) -> String {
+    let nearest = significant(duration, REPLAYED_DIGITS);
+    if nearest.parse().is_ok_and(|nearest: f64| nearest >= duration) {
+        return nearest;
+    }
+    let unit = 10_f64.powi(duration.log10().floor() as i32 + 1 - REPLAYED_DIGITS as i32);
+    significant(duration + unit, REPLAYED_DIGITS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    #[test]
+    fn durations_are_rounded_up() {
+        for step in -6000..6000 {
+            let duration = 10.0_f64.powf(f64::from(step) * 2.001e-3);
+            let rounded: f64 = rounded_up(duration).parse().unwrap();
+            assert!((duration..duration * 1.0021).contains(&rounded), "{duration} {rounded}");
+        }
+    }
+
+    #[test]
+    fn durations_with_few_digits_stay() {
+        for (duration, expected) in [(30.0, "30"), (2.0345, "2.035"), (2.0341, "2.035"), (0.99999, "1")] {
+            assert_eq!(rounded_up(duration), expected);
+        }
     }
 }

@@ -8,8 +8,7 @@ use arclength_analysis::labels::kind;
 use kingpin::Wheel;
 use kingpin::branches::Along;
 use kingpin_figure::{
-    Axis, Branch, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel, Stability,
-    palette,
+    Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
 };
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
@@ -20,8 +19,8 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
     let (low, high) = (start.min(end), start.max(end));
     let x = Axis::new(axis_label::of(key)).limits(low, high);
     let mut panel = Panel::new(x, Axis::new("$\\psi$ (rad)")).legend(Legend::Below);
-    panel =
-        panel.curve(uniform_motion(wheel, along, Vec::new()).color(palette::BLUE).legend("uniform motion"));
+    let (uniform, dashes) = uniform_motion(wheel, along, Vec::new());
+    panel = panel.curve(uniform.color(palette::BLUE).legend("uniform motion"));
     let branches = points.last().map_or(0, |point| point.branch);
     for number in 1..=branches {
         let points: Vec<&ShimmyPointResult> = points.iter().filter(|point| point.branch == number).collect();
@@ -41,9 +40,8 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
             }
         }
     }
-    if points.iter().any(|point| point.stable == Some(false)) {
-        panel = panel.legend_entry(LegendEntry::line("unstable", palette::BLACK, Dash::Dashed));
-    }
+    let dashes = dashes.and(points.iter().any(|point| point.stable == Some(false)), false);
+    panel = dashes.legend().fold(panel, Panel::legend_entry);
     let description = format!(
         "Caster angle of shimmy with sliding phases and of the uniform motion against {key} at {}",
         description::of(wheel, &[along.key()])

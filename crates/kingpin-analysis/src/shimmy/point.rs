@@ -3,8 +3,9 @@
 use crate::forces::ForcesResult;
 use arclength_analysis::branch::{pairs, stability};
 use arclength_analysis::labels::is_bifurcation;
+use kingpin::Key;
 use kingpin::shimmy::{PeriodicSliding, SlidingBranchPoint, SlidingRole};
-use kingpin::sliding::{Contact, SLIDING_STATE_NAMES};
+use kingpin::sliding::{Contact, KingPin, SLIDING_STATE_NAMES};
 use kingpin_report::numbers::{readable, significant};
 use kingpin_report::{Cell, NamedNumbers};
 use num_complex::Complex64;
@@ -18,6 +19,9 @@ pub(super) const GRAZING: &str = "GR";
 pub struct ShimmyPhase {
     /// `rolling` or `sliding`.
     pub contact: &'static str,
+    /// `swinging` or `sticking`, where dry friction acts about the king pin.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub king_pin: Option<&'static str>,
     /// Its start in s; the period starts inside a phase.
     pub start: f64,
     /// Its end in s.
@@ -63,6 +67,9 @@ pub struct ShimmyPointResult {
     pub forces: ForcesResult,
     /// What the friction takes while the wheel slides, the mean over a period in W.
     pub sliding_power: Option<f64>,
+    /// What dry friction about the king pin takes, the mean over a period in W, where there is any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dry_friction_power: Option<f64>,
     /// Part of the period in which the wheel slides.
     pub sliding_fraction: f64,
     /// The phases of a period.
@@ -83,11 +90,16 @@ pub(super) fn at_motion(
 ) -> ShimmyPointResult {
     let motion = &point.motion;
     let psi_0 = motion.wheel.uniform_motion().ok().map(|uniform| uniform.psi());
+    let is_dry = motion.wheel.get(Key::MF) > 0.0;
     let phases: Vec<ShimmyPhase> = motion
         .phases
         .iter()
         .map(|phase| ShimmyPhase {
             contact: if phase.contact == Contact::Rolling { "rolling" } else { "sliding" },
+            king_pin: is_dry.then_some(match phase.king_pin {
+                KingPin::Swinging => "swinging",
+                KingPin::Sticking => "sticking",
+            }),
             start: phase.start,
             end: phase.end,
             duration: phase.end - phase.start,
@@ -114,6 +126,7 @@ pub(super) fn at_motion(
         error_estimate: motion.error_estimate,
         forces: forces_result,
         sliding_power: forces.map(|forces| forces.sliding_power),
+        dry_friction_power: forces.filter(|_| is_dry).map(|forces| forces.dry_friction_power),
         sliding_fraction: motion.sliding_fraction(),
         phases,
         state: NamedNumbers(state.collect()),
@@ -132,7 +145,11 @@ impl ShimmyPointResult {
 
     /// Its phases with their durations in words.
     pub(super) fn phases_in_words(&self) -> String {
-        let phase = |phase: &ShimmyPhase| format!("{} {}", phase.contact, readable(phase.duration));
+        let phase = |phase: &ShimmyPhase| {
+            let king_pin = phase.king_pin.filter(|what| *what == "sticking");
+            let king_pin = king_pin.map(|what| format!(" {what}")).unwrap_or_default();
+            format!("{}{king_pin} {}", phase.contact, readable(phase.duration))
+        };
         self.phases.iter().map(phase).collect::<Vec<_>>().join(" ")
     }
 

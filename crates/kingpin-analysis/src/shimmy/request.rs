@@ -56,8 +56,7 @@ impl ShimmyRequest {
     /// Reads the wheel and checks every field.
     ///
     /// # Errors
-    /// What is wrong with the wheel or the interval; a wheel that cannot slide in this program: with a tyre, with `k_u = inf`, with
-    /// dry friction about the king pin.
+    /// What is wrong with the wheel or the interval; a wheel that cannot slide in this program: with a tyre, with `k_u = inf`.
     pub fn validate(&self) -> Result<ShimmyAnalysis, Error> {
         let along = along(&self.along)?;
         self.along.check_values(&self.at)?;

@@ -18,7 +18,7 @@ use kingpin::shimmy::{
 };
 use kingpin::sliding::SLIDING_STATE_NAMES;
 use kingpin_figure::{Figure, FigureError};
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{counted, readable};
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -214,7 +214,8 @@ impl Report for ShimmyResult {
         writeln!(out, "shimmy with sliding at {}", description::of(&self.wheel, &[self.interval.key()]))?;
         for branch in &self.branches {
             let points = self.points_of(branch);
-            writeln!(out, "\nbranch {} from {}, {} points", branch.branch, branch.from, points.len())?;
+            let count = counted(points.len(), "point", "points");
+            writeln!(out, "\nbranch {} from {}, {count}", branch.branch, branch.from)?;
             writeln!(out, "  first: {}\n  last:  {}\n", branch.ends[0], branch.ends[1])?;
             let heading = self.along.heading();
             let mut table = Table::new([

@@ -3,7 +3,7 @@
 use kingpin::sliding::{self, Contact, KingPin};
 use kingpin::{Key, Wheel};
 use kingpin_report::Columns;
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{counted, readable};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -84,7 +84,8 @@ impl Phase {
         let share = if total > 0.0 { 100.0 * stuck / total } else { 0.0 };
         writeln!(
             out,
-            "the caster swings in {swings} phases and sticks for {share:.1} % of the time; dry friction takes {} J",
+            "the caster swings in {} and sticks for {share:.1} % of the time; dry friction takes {} J",
+            counted(swings, "phase", "phases"),
             readable(work)
         )?;
         // Contact may change while it goes on sticking.

@@ -8,7 +8,7 @@ use kingpin::sliding::{Contact, SLIDING_STATE_NAMES};
 use kingpin::{Key, KingPinLoad, Wheel, in_towing_frame};
 use kingpin_figure::{Axis, Figure, FigureError, Line, Panel, palette};
 use kingpin_report::history::{drawn, summary};
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{counted, readable};
 use kingpin_report::{Columns, Parameters, Report, Schema};
 use serde::Serialize;
 use std::io::{self, Write};
@@ -153,9 +153,9 @@ impl Report for SlidingHistory {
         match slides.first() {
             Some(first) => writeln!(
                 out,
-                "it slides first at {} s, in {} phases, for {:.1} % of the time",
+                "it slides first at {} s, in {}, for {:.1} % of the time",
                 readable(first.start),
-                slides.len(),
+                counted(slides.len(), "phase", "phases"),
                 100.0 * self.sliding_fraction
             ),
             None => writeln!(out, "it rolls throughout"),

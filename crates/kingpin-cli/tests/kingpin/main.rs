@@ -4,6 +4,7 @@ mod bad_input;
 mod basin;
 mod branches;
 mod curves;
+mod damper;
 mod dry_friction;
 mod files;
 mod fit;

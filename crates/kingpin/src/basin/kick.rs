@@ -3,7 +3,8 @@
 use super::{ClassificationSettings, ContactModel, Destinations, Fate};
 use crate::error::KingpinError;
 use crate::parameters::{Key, Tyre};
-use crate::simulation::SimulationError;
+use crate::simulation::{SimulationError, TimeHistory};
+use crate::swinging::LYING_ACROSS;
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use rayon::prelude::*;
@@ -87,25 +88,26 @@ impl Disturbance {
             let motion = match model {
                 ContactModel::Rolling if wheel.tyre() != Tyre::Rigid => wheel
                     .simulate_with_tyre_from(&state, duration, samples, control)
-                    .map(|history| DisturbedMotion { times: history.times, states: history.states }),
-                ContactModel::Rolling => {
-                    wheel.simulate_from(&[u, q, psi, speed, yaw], duration, samples, control).map(|history| {
-                        let widen = |&[u, q, psi, speed, yaw]: &[f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
-                        let states = history.states.iter().map(widen).collect();
-                        DisturbedMotion { times: history.times, states }
+                    .map(|history| DisturbedMotion {
+                        times: history.times,
+                        states: history.states,
+                        model_ends_at: history.stopped_at,
+                    }),
+                ContactModel::Rolling => wheel
+                    .simulate_from(&[u, q, psi, speed, yaw], duration, samples, control)
+                    .map(|history| DisturbedMotion::rolling(&wheel, history)),
+                ContactModel::Sliding => {
+                    wheel.sliding()?.simulate_from(&state, duration, samples, control).map(|history| {
+                        DisturbedMotion { times: history.times, states: history.states, model_ends_at: None }
                     })
                 }
-                ContactModel::Sliding => wheel
-                    .sliding()?
-                    .simulate_from(&state, duration, samples, control)
-                    .map(|history| DisturbedMotion { times: history.times, states: history.states }),
             };
             match motion {
                 Err(SimulationError::Integration(_)) => duration *= 0.5,
                 other => return other,
             }
         }
-        Ok(DisturbedMotion { times: vec![0.0], states: vec![state] })
+        Ok(DisturbedMotion { times: vec![0.0], states: vec![state], model_ends_at: None })
     }
 
     /// The wheel after the disturbance and its state (u, q, psi, V1, V2, Omega, W), with a tyre (u, q, psi, V1, V2, Omega, y_t). Of the states
@@ -205,6 +207,24 @@ pub struct DisturbedMotion {
     pub times: Vec<f64>,
     /// States (u, q, psi, V1, V2, Omega, W), with a tyre (u, q, psi, V1, V2, Omega, y_t), one for each time.
     pub states: Vec<[f64; 7]>,
+    /// Time in s at which the model ends: with a tyre where `V1` falls to zero, which ends the motion; with `k_u = inf` the first sample at
+    /// which the caster lies across.
+    pub model_ends_at: Option<f64>,
+}
+
+impl DisturbedMotion {
+    /// Of a wheel without a tyre, which does not slide.
+    fn rolling(wheel: &Wheel, history: TimeHistory) -> Self {
+        let lies_across = |&(_, state): &(&f64, &[f64; 5])| state[2].cos().abs() < LYING_ACROSS;
+        let mut samples = history.times.iter().zip(&history.states);
+        let across = samples.find(lies_across).map(|(time, _)| *time);
+        let widen = |&[u, q, psi, speed, yaw]: &[f64; 5]| [u, q, psi, speed, 0.0, yaw, speed];
+        Self {
+            states: history.states.iter().map(widen).collect(),
+            times: history.times,
+            model_ends_at: across.filter(|_| wheel.has_lateral_elasticity_only()),
+        }
+    }
 }
 
 /// The edge of what the wheel returns from.

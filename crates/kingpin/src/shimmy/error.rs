@@ -127,7 +127,7 @@ impl From<IntegrationError> for Refusal {
     }
 }
 
-/// How the sequence of rolling and sliding changes.
+/// How the sequence of phases changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum Grazing {
     /// The friction force of a rolling phase touches the static limit: a sliding phase appears.
@@ -154,4 +154,7 @@ pub enum Grazing {
     /// Where slip vanishes the static friction now holds the wheel.
     #[error("where slip vanishes the static friction holds the wheel: it rolls instead of sliding on")]
     HoldsAgain,
+    /// A rest about the king pin begins between two swings, or is lost.
+    #[error("between two swings the caster begins or ceases to stick about its king pin")]
+    KingPin,
 }

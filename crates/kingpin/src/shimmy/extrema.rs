@@ -17,9 +17,10 @@ pub(super) fn caster_angles(equations: &Equations<f64>, passages: &[Passage]) ->
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     let mut include = |angle: f64| range = [range[0].min(angle), range[1].max(angle)];
     for passage in passages {
+        let equations = equations.under(passage.mode.friction_moment);
         let node = |(time, state): (f64, &SlipState)| {
             let mut rate = [0.0; STATES];
-            passage.mode.regime.field(equations, state, &mut rate);
+            passage.mode.regime.field(&equations, state, &mut rate);
             (time, [state[PSI], rate[PSI], -rate[5]])
         };
         let mut before: Option<Node> = None;

@@ -23,6 +23,8 @@ pub struct ShimmyForces {
     pub sliding_power: f64,
     /// What the towing frame gives, the mean over a period in W: as much as dampers and friction take.
     pub towing_power: f64,
+    /// What dry friction about the king pin takes, the mean over a period in W.
+    pub dry_friction_power: f64,
 }
 
 /// Values at a sample.
@@ -30,8 +32,8 @@ pub struct ShimmyForces {
 struct Sample {
     friction: f64,
     king_pin: f64,
-    /// Of dampers, of sliding friction and of the towing frame.
-    powers: [f64; 3],
+    /// Of dampers, of sliding friction, of the towing frame and of dry friction about the king pin.
+    powers: [f64; 4],
 }
 
 impl PeriodicSliding {
@@ -44,9 +46,9 @@ impl PeriodicSliding {
         let times: Vec<f64> = bounds.iter().flat_map(|passage| self.inner_times(passage)).collect();
         let (passages, _) = self.map.follow(&self.start, &times, control)?;
         let equations = Equations::new(&self.wheel)?;
-        let (mut friction_max, mut king_pin_force_max, mut energies) = (0.0_f64, 0.0_f64, [0.0; 3]);
+        let (mut friction_max, mut king_pin_force_max, mut energies) = (0.0_f64, 0.0_f64, [0.0; 4]);
         for passage in &passages {
-            let samples = samples(&equations, passage);
+            let samples = samples(&equations.under(passage.mode.friction_moment), passage);
             if samples.len().is_multiple_of(2) {
                 let cause = format!("{} samples of a phase cannot be integrated", samples.len());
                 return Err(Refusal::Integration(cause).into());
@@ -59,12 +61,13 @@ impl PeriodicSliding {
                 *energy += simpson(values, samples.len() - 1) * step;
             }
         }
-        let [damper_power, sliding_power, towing_power] = energies.map(|energy| energy / self.period);
+        let [damper_power, sliding_power, towing_power, dry_friction_power] =
+            energies.map(|energy| energy / self.period);
         let static_limit = self.wheel.static_limit();
         // The force at which a phase of rolling ends is the limit.
         let friction_max = if self.starts_to_slide() { static_limit } else { friction_max };
         let forces = CycleForces { friction_max, static_limit, king_pin_force_max, damper_power };
-        Ok(ShimmyForces { forces, sliding_power, towing_power })
+        Ok(ShimmyForces { forces, sliding_power, towing_power, dry_friction_power })
     }
 
     /// Whether a phase of sliding follows one of rolling. The period begins inside a phase.
@@ -117,7 +120,12 @@ fn sample(equations: &Equations<f64>, regime: Regime, state: &SlipState) -> Samp
     Sample {
         friction: friction[0].hypot(friction[1]),
         king_pin: x.hypot(y),
-        powers: [equations.power_of_damping(state), equations.power_of_sliding(state, friction), towing],
+        powers: [
+            equations.power_of_damping(state),
+            equations.power_of_sliding(state, friction),
+            towing,
+            equations.friction_moment(state, friction) * equations.swing_rate(state),
+        ],
     }
 }
 

@@ -27,12 +27,8 @@ impl Wheel {
     /// That shimmy with sliding can be sought.
     ///
     /// # Errors
-    /// What [`sliding`](Self::sliding) refuses, and dry friction about the king pin.
+    /// What [`sliding`](Self::sliding) refuses.
     pub fn check_shimmy(&self) -> Result<(), SimulationError> {
-        self.check_without_dry_friction(
-            "periodic motion with sliding phases",
-            "set M_f = 0, or see with `simulate` on what the motion settles",
-        )?;
         self.sliding().map(drop)
     }
 

@@ -6,7 +6,8 @@
 //! parameter, stable or not, until the sequence of its phases changes.
 //!
 //! Where the wheel rolls the motion has five states and where it slides seven. A motion with a rolling phase has five multipliers: the
-//! other two of the seven-state model are exactly zero, since all that is left of the slip is forgotten where it vanishes.
+//! other two of the seven-state model are exactly zero, since all that is left of the slip is forgotten where it vanishes. With dry
+//! friction about the king pin the caster swings and sticks by turns besides; where it sticks its yaw rate is forgotten in the same way.
 
 mod branch;
 mod curve;
@@ -40,8 +41,11 @@ use return_map::{Return, ReturnMap, Start, newton_update};
 /// Relative tolerance of the integration of periodic motions.
 pub const MOTION_TOLERANCE: f64 = 1e-11;
 
-/// The error estimate compares with a motion computed with a tolerance so much looser.
+/// The error estimate compares with a motion computed with a tolerance so much looser, ...
 const LOOSER: f64 = 100.0;
+/// ... and in which slip is taken to begin and to end at slip speeds so many times as high: beside them the steps do not depend on the
+/// tolerance, but on how well the direction of the slip is known.
+const HIGHER: f64 = 10.0;
 
 /// Samples of a period between which extrema are sought.
 const SAMPLES_PER_PERIOD: usize = 400;
@@ -69,7 +73,7 @@ pub struct PeriodicSliding {
     /// Whether the motion is stable; `None` when a multiplier is closer to the unit circle than the error.
     pub stable: Option<bool>,
     /// Change of period and extrema, relative to the period and the range of the angle, when the tolerance of the integration is a hundred
-    /// times looser.
+    /// times looser and slip begins and ends at ten times the slip speed; no less than the tolerance.
     pub error_estimate: f64,
     start: Start,
     map: ReturnMap,
@@ -188,6 +192,7 @@ fn error_estimate(
 ) -> Result<f64, Refusal> {
     let mut loose = map.clone();
     loose.tolerance *= LOOSER;
+    loose.slips = loose.slips.map(|slip| HIGHER * slip);
     // Near a grazing the looser tolerance may pass it.
     loose.expected = None;
     let residual = loose.evaluate(start, false, control)?.residual;
@@ -198,7 +203,8 @@ fn error_estimate(
     Ok((moved.period / start.period - 1.0)
         .abs()
         .max((loose_range[0] - range[0]).abs() / size)
-        .max((loose_range[1] - range[1]).abs() / size))
+        .max((loose_range[1] - range[1]).abs() / size)
+        .max(map.tolerance))
 }
 
 /// The phases as they are told: an onset is part of the sliding phase that it begins.
@@ -208,12 +214,16 @@ fn phases(passages: &[Passage]) -> Vec<Phase> {
     for passage in passages {
         let phase = Phase {
             contact: passage.mode.regime.contact(),
-            king_pin: KingPin::Swinging,
+            king_pin: passage.mode.king_pin(),
             start: passage.start,
             end: passage.end,
         };
         match list.last_mut() {
-            Some(last) if before == Some(Regime::Onset) && passage.mode.regime == Regime::Sliding => {
+            Some(last)
+                if before == Some(Regime::Onset)
+                    && passage.mode.regime == Regime::Sliding
+                    && last.king_pin == phase.king_pin =>
+            {
                 last.end = phase.end;
             }
             _ => list.push(phase),
@@ -227,9 +237,13 @@ fn phases(passages: &[Passage]) -> Vec<Phase> {
 /// passage of a period are one.
 fn middle_of_longest_passage(passages: &[Passage], period: f64) -> f64 {
     let [first, .., last] = passages else { return 0.0 };
-    let is_split = first.mode.regime == last.mode.regime;
+    let is_split = first.mode.regime == last.mode.regime && first.mode.king_pin() == last.mode.king_pin();
     let lead = if is_split { last.duration() } else { 0.0 };
-    let candidates = passages.iter().enumerate().filter(|(_, passage)| passage.mode.regime != Regime::Onset);
+    // A caster that sticks has no yaw rate of its own.
+    let is_free = |passage: &Passage| {
+        passage.mode.regime != Regime::Onset && passage.mode.king_pin() == KingPin::Swinging
+    };
+    let candidates = passages.iter().enumerate().filter(|(_, passage)| is_free(passage));
     let spans = candidates.map(|(index, passage)| match index {
         0 => (passage.start - lead, passage.end),
         _ if index + 1 == passages.len() && is_split => (0.0, 0.0),

@@ -12,6 +12,8 @@ pub(crate) struct Passage {
     pub mode: Mode,
     pub start: f64,
     pub end: f64,
+    /// Whether what the caster does about the king pin ends it: a swing stands still, or a rest takes more than `M_f`.
+    pub ends_about_king_pin: bool,
     pub initial: SlipState,
     /// State at the end.
     pub last: SlipState,
@@ -58,6 +60,7 @@ pub(crate) fn passages(
                 mode,
                 start: phase.start,
                 end: phase.end,
+                ends_about_king_pin: solution.ended_by == Some(mode.regime.contact_events()),
                 initial: present,
                 last,
                 vanishing: (mode.regime == Regime::Sliding)
@@ -76,8 +79,9 @@ pub(crate) fn passages(
 pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Grazing> {
     /// Times that differ by more than this part of the whole belong to different events.
     const SAME_EVENT: f64 = 0.02;
-    let regimes = |list: &[Passage]| list.iter().map(|passage| passage.mode.regime).collect::<Vec<_>>();
-    if regimes(expected) == regimes(found) {
+    let what =
+        |passage: &Passage| (passage.mode.regime, passage.mode.king_pin(), passage.ends_about_king_pin);
+    if expected.len() == found.len() && expected.iter().map(what).eq(found.iter().map(what)) {
         return None;
     }
     let (Some(last_expected), Some(last_found)) = (expected.last(), found.last()) else {
@@ -86,8 +90,18 @@ pub(super) fn difference(expected: &[Passage], found: &[Passage]) -> Option<Graz
     let tolerance = SAME_EVENT * last_expected.end.max(last_found.end);
     for (one, other) in expected.iter().zip(found) {
         let rolls = one.mode.regime == Regime::Rolling;
+        let same_regime = one.mode.regime == other.mode.regime;
+        if same_regime && (one.mode.king_pin() != other.mode.king_pin()) {
+            return Some(Grazing::KingPin);
+        }
         if one.mode.regime != other.mode.regime {
             return Some(if rolls { Grazing::HoldsNoLonger } else { Grazing::HoldsAgain });
+        }
+        let is_moved = (other.end - one.end).abs() > tolerance;
+        if one.ends_about_king_pin != other.ends_about_king_pin
+            || (is_moved && (one.ends_about_king_pin || other.ends_about_king_pin))
+        {
+            return Some(Grazing::KingPin);
         }
         if other.end < one.end - tolerance {
             return Some(if rolls { Grazing::StaticLimitReached } else { Grazing::SlipVanishes });

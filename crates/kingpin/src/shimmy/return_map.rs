@@ -8,7 +8,7 @@ use super::passage::{Passage, difference, passages};
 use super::variation::{Columns, DIRECTIONS, PARAMETER, STATES, carry, varied_equations};
 use crate::parameters::Key;
 use crate::sliding::model::SlipState;
-use crate::sliding::{Contact, HybridState, SlidingWheel};
+use crate::sliding::{Contact, HybridState, ONSET_SLIP, SlidingWheel, VANISHING_SLIP};
 use crate::wheel::Wheel;
 use arclength::control::{Control, Interrupted};
 use arclength::linear::lu;
@@ -55,6 +55,8 @@ pub(super) struct ReturnMap {
     /// Turns of the caster in a period.
     pub turns: i32,
     pub tolerance: f64,
+    /// Slip speeds in m/s up to which slip keeps its limit direction, and at which it is taken straight to zero.
+    pub slips: [f64; 2],
     /// The passages that the motion has to have, where that is known.
     pub expected: Option<Vec<Passage>>,
 }
@@ -90,6 +92,7 @@ impl ReturnMap {
             period_scale: start.period,
             turns,
             tolerance,
+            slips: [ONSET_SLIP, VANISHING_SLIP],
             expected: None,
         };
         map.set_reference(start.state)?;
@@ -107,7 +110,8 @@ impl ReturnMap {
     }
 
     pub(super) fn sliding(&self) -> Result<SlidingWheel, Refusal> {
-        Ok(self.wheel.sliding().map_err(Refusal::from)?.tolerance(self.tolerance))
+        let [onset, vanishing] = self.slips;
+        Ok(self.wheel.sliding().map_err(Refusal::from)?.slips(onset, vanishing).tolerance(self.tolerance))
     }
 
     /// The states that vary at the start.

@@ -35,6 +35,13 @@ fn short_caster_motion() -> PeriodicSliding {
     FOUND.get_or_init(|| settled(&short_caster(), 0.2, &search)).clone()
 }
 
+/// The short caster with dry friction about its king pin, which turns round where the caster does.
+fn dry_motion() -> PeriodicSliding {
+    static FOUND: OnceLock<PeriodicSliding> = OnceLock::new();
+    let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
+    FOUND.get_or_init(|| settled(&short_caster().with(Key::MF, 5e-4).unwrap(), 1.0, &search)).clone()
+}
+
 fn loaded_motion() -> PeriodicSliding {
     static FOUND: OnceLock<PeriodicSliding> = OnceLock::new();
     FOUND.get_or_init(|| loaded_motion_at(7.0)).clone()
@@ -58,6 +65,7 @@ fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) 
     let inside = list[1..list.len() - 1]
         .iter()
         .filter(|passage| passage.mode.regime != Regime::Onset && passage.mode.regime.contact() == contact)
+        .filter(|passage| passage.mode.king_pin() == KingPin::Swinging)
         .max_by(|a, b| a.duration().total_cmp(&b.duration()))
         .unwrap();
     let middle = 0.5 * (inside.start + inside.end);
@@ -70,7 +78,7 @@ fn started_in(motion: &PeriodicSliding, contact: Contact) -> (ReturnMap, Start) 
 
 #[test]
 fn long_simulation_settles_on_the_motion() {
-    for (motion, kick) in [(short_caster_motion(), 0.2), (loaded_motion(), 0.8)] {
+    for (motion, kick) in [(short_caster_motion(), 0.2), (loaded_motion(), 0.8), (dry_motion(), 1.0)] {
         assert_eq!(motion.stable, Some(true));
         let start = motion.wheel.perturbed_uniform_motion(&[("psi", kick)]).unwrap();
         let settling = 20.0;
@@ -122,7 +130,7 @@ fn perturbations_decay_as_the_multipliers_say() {
 
 #[test]
 fn derivatives_of_the_return_map_are_those_of_finite_differences() {
-    for motion in [short_caster_motion(), loaded_motion()] {
+    for motion in [short_caster_motion(), loaded_motion(), dry_motion()] {
         for contact in [Contact::Rolling, Contact::Sliding] {
             let (mut map, start) = started_in(&motion, contact);
             map.parameter = Some((Key::V, 1.0));
@@ -159,7 +167,7 @@ fn derivatives_of_the_return_map_are_those_of_finite_differences() {
 
 #[test]
 fn multipliers_do_not_depend_on_the_start() {
-    for motion in [short_caster_motion(), loaded_motion()] {
+    for motion in [short_caster_motion(), loaded_motion(), dry_motion()] {
         for contact in [Contact::Rolling, Contact::Sliding] {
             let (map, start) = started_in(&motion, contact);
             let other = PeriodicSliding::describe(
@@ -232,6 +240,28 @@ fn branch_meets_motions_found_otherwise() {
     assert!((asked.motion.period / found.period - 1.0).abs() < 1e-9);
     assert!((asked.motion.psi_max - found.psi_max).abs() < 1e-8);
     assert!((asked.motion.multipliers[1] - found.multipliers[1]).norm() < 1e-5);
+}
+
+#[test]
+fn shimmy_with_dry_friction_is_smaller_and_its_branch_meets_motions_found_otherwise() {
+    let motion = dry_motion();
+    assert_eq!(motion.stable, Some(true));
+    assert!(motion.psi_max < short_caster_motion().psi_max);
+    // Sliding goes on where the caster turns round: that is the end of a phase.
+    let slides_on = |pair: &[Phase]| pair.iter().all(|phase| phase.contact == Contact::Sliding);
+    assert!(motion.phases.windows(2).any(slides_on), "{:?}", motion.phases);
+    assert!(motion.trivial_multiplier_error < 1e-7, "{:?}", motion.multipliers);
+    let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
+    for (key, ends, value) in [(Key::V, [0.49, 0.5], 0.495), (Key::MF, [5e-4, 5.2e-4], 5.1e-4)] {
+        let along = Along::new(key, ends[0], ends[1]).unwrap();
+        let options = SlidingBranchOptions { at: vec![value], ..SlidingBranchOptions::default() };
+        let branch =
+            motion.along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(())).unwrap();
+        let asked = branch.points.iter().find(|point| point.role == SlidingRole::Requested).unwrap();
+        let found = settled(&motion.wheel.with(key, value).unwrap(), 1.0, &search);
+        assert!((asked.motion.period / found.period - 1.0).abs() < 1e-9, "{key}");
+        assert!((asked.motion.psi_max - found.psi_max).abs() < 1e-8, "{key}");
+    }
 }
 
 #[test]
@@ -437,9 +467,10 @@ fn large_shimmy_of_the_papers_wheel_beside_stable_uniform_motion() {
 
 #[test]
 fn the_towing_gives_what_dampers_and_sliding_take() {
-    for motion in [short_caster_motion(), loaded_motion()] {
+    for motion in [short_caster_motion(), loaded_motion(), dry_motion()] {
         let found = motion.forces(&Control::none()).unwrap();
-        let taken = found.forces.damper_power + found.sliding_power;
+        let taken = found.forces.damper_power + found.sliding_power + found.dry_friction_power;
+        assert_eq!(found.dry_friction_power > 0.0, motion.wheel.get(Key::MF) > 0.0);
         assert!((found.towing_power / taken - 1.0).abs() < 1e-6, "{found:?}");
         assert_eq!(found.forces.friction_max, motion.wheel.static_limit());
         // Against a fine history: the powers as means, the king-pin force from springs and dampers.

@@ -11,13 +11,14 @@
 //!
 //! Where slip vanishes `P` removes both components of it: neighbouring motions all arrive along the limit direction, so that their
 //! slip, which has two components, vanishes at one time. Two directions of the state space are lost there.
+//! Where a swing about the king pin ends in a rest the yaw rate is forgotten in the same way, by the formula itself.
 //! All derivatives, those of the events and of the limit direction included, come from dual numbers.
 
 use super::error::Refusal;
 use super::passage::Passage;
 use crate::parameters::Key;
 use crate::sliding::Regime;
-use crate::sliding::model::{Equations, S1, S2, slip_squared};
+use crate::sliding::model::{Equations, FrictionMoment, S1, S2, slip_squared};
 use crate::sliding::{ONSET_SLIP, VANISHING_SLIP};
 use crate::wheel::Wheel;
 use arclength::differentiation::{Dual, Scalar};
@@ -78,6 +79,7 @@ pub(super) fn carry(
     let integrator = Integrator::default().relative_tolerance(tolerance).absolute_tolerances(&absolute);
     let mut extended = [0.0; EXTENDED];
     for (index, passage) in passages.iter().enumerate() {
+        let equations = &under(equations, passage);
         extended[..STATES].copy_from_slice(&passage.initial);
         extended[STATES..].as_chunks_mut().0.copy_from_slice(columns);
         let end = passage.vanishing.map_or(passage.end, |(time, _)| time);
@@ -102,7 +104,7 @@ pub(super) fn carry(
         }
         let mut state = varied_state(stepper.state());
         if let Some(next) = passages.get(index + 1) {
-            jump(equations, passage, next, &mut state);
+            jump([equations, &under(equations, next)], [passage, next], &mut state);
         }
         for (column, varied) in columns.iter_mut().zip(&state) {
             *column = varied.derivatives;
@@ -119,10 +121,31 @@ fn varied_state(extended: &[f64]) -> [Varied; STATES] {
     })
 }
 
+/// The equations that hold along a passage: the moment of dry friction about the king pin is that of its swing or rest.
+fn under(equations: &Equations<Varied>, passage: &Passage) -> Equations<Varied> {
+    equations.under(match passage.mode.friction_moment {
+        FrictionMoment::Absent => FrictionMoment::Absent,
+        FrictionMoment::Sticking => FrictionMoment::Sticking,
+        FrictionMoment::Swinging(moment) => {
+            FrictionMoment::Swinging(equations.largest_friction_moment * moment.signum())
+        }
+    })
+}
+
 /// The event that ends a passage.
-fn event(equations: &Equations<Varied>, regime: Regime, state: &[Varied; STATES]) -> Varied {
+fn event(equations: &Equations<Varied>, passage: &Passage, state: &[Varied; STATES]) -> Varied {
     /// The onset of slip ends at [`ONSET_SLIP`] unless the slip shrinks again before.
     const NEARLY: f64 = 0.999;
+    let regime = passage.mode.regime;
+    if passage.ends_about_king_pin {
+        return match passage.mode.friction_moment {
+            FrictionMoment::Sticking => {
+                let moment = equations.friction_moment(state, regime.friction(equations, state));
+                equations.largest_friction_moment.powi(2) - moment.powi(2)
+            }
+            _ => equations.swing_rate(state),
+        };
+    }
     match regime {
         Regime::Rolling => equations.static_reserve(state),
         Regime::Onset if slip_squared(state).value < (NEARLY * ONSET_SLIP).powi(2) => {
@@ -133,22 +156,26 @@ fn event(equations: &Equations<Varied>, regime: Regime, state: &[Varied; STATES]
 }
 
 /// Turns the derivatives at the end of a passage into those at the start of the next.
-fn jump(equations: &Equations<Varied>, before: &Passage, after: &Passage, state: &mut [Varied; STATES]) {
+fn jump(
+    [equations, equations_after]: [&Equations<Varied>; 2],
+    [before, after]: [&Passage; 2],
+    state: &mut [Varied; STATES],
+) {
     let values = state.map(|varied| Varied::from(varied.value));
-    let rate_of = |regime: Regime, state: &[Varied; STATES]| {
+    let rate_of = |equations: &Equations<Varied>, regime: Regime, state: &[Varied; STATES]| {
         let mut rate = [Varied::zero(); STATES];
         regime.field(equations, state, &mut rate);
         rate.map(|component| component.value)
     };
-    let rate_before = rate_of(before.mode.regime, &values);
+    let rate_before = rate_of(equations, before.mode.regime, &values);
     // The event along the motion: the first direction is that of the flow, free of the parameter.
     let mut along = values;
     for (varied, rate) in along.iter_mut().zip(rate_before) {
         varied.derivatives[0] = rate;
     }
-    let event_rate = event(equations, before.mode.regime, &along).derivatives[0];
-    let delay = event(equations, before.mode.regime, state).derivatives.map(|change| -change / event_rate);
-    let rate_after = rate_of(after.mode.regime, &after.initial.map(Varied::from));
+    let event_rate = event(equations, before, &along).derivatives[0];
+    let delay = event(equations, before, state).derivatives.map(|change| -change / event_rate);
+    let rate_after = rate_of(equations_after, after.mode.regime, &after.initial.map(Varied::from));
     for i in 0..STATES {
         // No slip is left where the passage after begins without.
         let kept = if (i == S1 || i == S2) && after.mode.regime != Regime::Sliding { 0.0 } else { 1.0 };

@@ -117,6 +117,20 @@ impl<T: Scalar> Equations<T> {
         self
     }
 
+    /// The moment of dry friction in N m that acts under a friction force of the ground: of a caster that sticks, the one that it takes.
+    pub(crate) fn friction_moment(&self, state: &[T], friction: [T; 2]) -> T {
+        match self.friction_moment {
+            FrictionMoment::Absent => T::zero(),
+            FrictionMoment::Swinging(moment) => moment,
+            FrictionMoment::Sticking => {
+                let mut rate = [T::zero(); 7];
+                self.under(FrictionMoment::Absent).derivative(state, friction, &mut rate);
+                // What takes the yaw acceleration away, the force of the ground being the same.
+                -(rate[5] * self.determinant) / self.mass
+            }
+        }
+    }
+
     /// Rate of the caster angle.
     #[inline]
     pub(crate) fn swing_rate(&self, state: &[T]) -> T {
@@ -321,20 +335,6 @@ fn reserve<T: Scalar>(limit: T, force: [T; 2]) -> T {
 }
 
 impl Equations<f64> {
-    /// The moment of dry friction in N m that acts under a friction force of the ground: of a caster that sticks, the one that it takes.
-    pub(crate) fn friction_moment(&self, state: &[f64], friction: [f64; 2]) -> f64 {
-        match self.friction_moment {
-            FrictionMoment::Absent => 0.0,
-            FrictionMoment::Swinging(moment) => moment,
-            FrictionMoment::Sticking => {
-                let mut rate = [0.0; 7];
-                self.under(FrictionMoment::Absent).derivative(state, friction, &mut rate);
-                // What takes the yaw acceleration away, the force of the ground being the same.
-                -rate[5] * self.determinant / self.mass
-            }
-        }
-    }
-
     /// Kinetic energy and energy of the springs in J.
     pub(crate) fn energy(&self, state: &SlipState) -> f64 {
         let [u, q, psi, forward, lateral, yaw, slip] = *state;

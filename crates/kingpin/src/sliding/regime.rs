@@ -88,8 +88,12 @@ impl SlidingWheel {
             Contact::Rolling => Regime::Rolling,
             Contact::Sliding => Regime::Sliding,
         };
+        let friction_moment = match self.equations.largest_friction_moment {
+            0.0 => FrictionMoment::Absent,
+            _ => self.mode(state).friction_moment,
+        };
         let mut rate = [0.0; 7];
-        regime.field(&self.equations, &state.state, &mut rate);
+        regime.field(&self.equations_in(Mode { regime, friction_moment }), &state.state, &mut rate);
         rate
     }
 

@@ -5,6 +5,7 @@
 //! they must.
 
 use arclength::control::Control;
+use kingpin::shimmy::SlidingMotionSearch;
 use kingpin::sliding::{Contact, KingPin, SlidingHistory};
 use kingpin::{Key, Wheel};
 use proptest::prelude::*;
@@ -390,4 +391,26 @@ proptest! {
         prop_assume!(wheel.uniform_motion().is_ok());
         check_energy(&wheel, &[("psi", psi), ("Omega", 0.2 * yaw * rate)], 10.0 * period)?;
     }
+}
+
+/// Shimmy with sliding and dry friction about the king pin, found by shooting, comes back to its start.
+#[test]
+fn shimmy_returns_in_the_second_formulation() {
+    let short = with(
+        Wheel::default(),
+        &[(Key::L, 0.03), (Key::V, 0.5), (Key::Curvature, 0.0), (Key::CU, 0.1), (Key::CQ, 0.1)],
+    );
+    let wheel = with(short, &[(Key::MF, 5e-4)]);
+    let start = wheel.perturbed_uniform_motion(&[("psi", 1.0)]).unwrap();
+    let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
+    let motion = wheel.sliding_motion(&start, &search, &Control::none()).unwrap();
+    assert!(motion.forces(&Control::none()).unwrap().dry_friction_power > 0.0);
+    let state = motion.state();
+    let sizes = [0.01, 0.01, 1.0, 0.5, 0.5, 0.5 / 0.03, 0.5];
+    let ground = Ground { wheel: &wheel };
+    let errors = [20_000, 80_000].map(|steps| {
+        let end = ground.run(&state, motion.period, steps);
+        (0..7).map(|i| ((end[i] - state[i]) / sizes[i]).abs()).fold(0.0, f64::max)
+    });
+    assert!(errors[1] < 1e-3 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }

@@ -80,7 +80,7 @@ impl Isola {
         .curve(Line::new(hopf).color(palette::BLUE).legend("Hopf points"))
         .curve(Line::new(folds).color(palette::VERMILION).legend("folds of cycles"))
         .markers(Markers::new([(self.birth.speed, self.birth.damping)], marker(palette::BLUE)))
-        .markers(Markers::new([(self.death.speed, self.death.damping)], marker(palette::VERMILION)))
+        .markers(Markers::new([(self.death.value, self.death.damping)], marker(palette::VERMILION)))
         .legend_entry(LegendEntry::marker("birth and death of the isola", marker(palette::BLACK)))
     }
 

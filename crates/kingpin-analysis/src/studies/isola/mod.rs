@@ -5,18 +5,17 @@
 //! speed for several dampers, then the folds in speed and damping; [`drawing`](Isola::drawing) shows both.
 
 mod drawing;
-mod extremum;
 
 use super::study::{Finding, Study};
 use super::wheel::{rounded, wheel};
 use crate::error::{Error, unless_stopped};
+use crate::last_fold::LastFold;
 use arclength::branch::SpecialKind;
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleBranch, CycleEnd, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::{Equilibria, HopfPoint};
 use arclength::locus::{CycleLocus, CycleLocusBranch};
 use arclength_analysis::Control;
-use extremum::{Extremum, largest_damping};
 use kingpin::{Key, KingpinError, LateralWheel, Wheel};
 use kingpin_report::numbers::readable;
 
@@ -114,7 +113,7 @@ pub(super) struct Isola {
     /// Where straight running loses its Hopf points and the isola is born, from the closed form.
     pub birth: HopfVertex,
     /// Where the isola shrinks to a point.
-    pub death: Extremum,
+    pub death: LastFold,
     /// What was looked at.
     pub ranges: Ranges,
 }
@@ -360,7 +359,7 @@ impl Isola {
         find("the last Hopf points meet, the isola is born: c_q".to_owned(), self.birth.damping, "N s/m");
         find("  v".to_owned(), self.birth.speed, "m/s");
         find("the isola shrinks to a point and dies: c_q".to_owned(), self.death.damping, "N s/m");
-        find("  v".to_owned(), self.death.speed, "m/s");
+        find("  v".to_owned(), self.death.value, "m/s");
         find("  period".to_owned(), self.death.period, "s");
         find("  largest psi".to_owned(), self.death.angle, "rad");
         let neglected = self.birth.wheel.get(Key::MF);
@@ -403,4 +402,27 @@ fn along_speed(
         .at(&[ranges.bridge])
         .settings(settings())
         .run()
+}
+
+/// The fold with the largest damping.
+fn largest_damping(field: &LateralWheel, folds: &CycleLocusBranch) -> Result<LastFold, Error> {
+    let found = LastFold::inside(
+        &folds.points,
+        |fold| fold.max[1],
+        |start, [from, to], wanted| {
+            let [speed, damping] = start.values;
+            let window = CycleLocus::of(field)
+                .from_cycle(SpecialKind::FoldOfCycles, &start.orbit, &[speed, damping])
+                .along("v", from..=to)
+                .and("c_q", 0.5 * damping..=2.0 * damping)
+                .at(wanted)
+                .run()?;
+            Ok::<_, Error>(window.points)
+        },
+    )?;
+    found.ok_or_else(|| {
+        let ends: Vec<String> = folds.stops.iter().flatten().map(ToString::to_string).collect();
+        let place = format!("the curve of folds, which ends because: {}", ends.join("; "));
+        Error::not_found("largest damping", &place)
+    })
 }
