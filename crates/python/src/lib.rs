@@ -32,7 +32,7 @@ mod _native {
     #[pymodule_export]
     use super::run::run_analysis;
     #[pymodule_export]
-    use super::wheel::{parameter_table, wheel_parameters, wheel_toml};
+    use super::wheel::{parameter_table, stability_at, wheel_parameters, wheel_toml};
     use pyo3::prelude::*;
 
     #[pymodule_init]

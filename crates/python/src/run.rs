@@ -17,6 +17,9 @@ use std::time::Duration;
 /// How often Python is asked for signals, and told the progress.
 const TICK: Duration = Duration::from_millis(20);
 
+/// Analyses that take less than waking a thread twice, on one thread, and tell no progress: they run where they are asked for.
+const SHORT: [&str; 2] = ["kingpin.steady", "kingpin.stability"];
+
 /// The last that was told of a computation: the part that is done, or where it is.
 type Told = Arc<Mutex<Option<(Option<f64>, Option<String>)>>>;
 
@@ -30,6 +33,11 @@ pub(crate) fn run_analysis(
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<NativeResult> {
+    if SHORT.contains(&analysis.as_str()) {
+        let run = || analyses::run(&analysis, &request, &Control::none());
+        let outcome = py.detach(|| catch_unwind(AssertUnwindSafe(run)));
+        return Ok(NativeResult::new(outcome.map_err(|_| mistake())??, false));
+    }
     let stop = Arc::new(AtomicBool::new(false));
     let told: Told = Arc::default();
     let observed = progress.is_some();
@@ -71,8 +79,7 @@ pub(crate) fn run_analysis(
             Err(RecvTimeoutError::Timeout) => {}
         }
     };
-    let outcome =
-        outcome.map_err(|_| Failure::internal("the computation failed by a mistake in the library"))?;
+    let outcome = outcome.map_err(|_| mistake())?;
     let by_signal = stopped_by.as_ref().is_some_and(|error| error.is_instance_of::<PyKeyboardInterrupt>(py));
     match (outcome, stopped_by) {
         (Ok(finished), None) => Ok(NativeResult::new(finished, false)),
@@ -82,6 +89,10 @@ pub(crate) fn run_analysis(
         // What a progress function raised.
         (_, Some(error)) => Err(error),
     }
+}
+
+fn mistake() -> Failure {
+    Failure::internal("the computation failed by a mistake in the library")
 }
 
 /// Calls the progress function with what was told since the last time.

@@ -136,6 +136,10 @@ def test_analyses_of_wheels_and_models(tmp_path, lure):
     one = wheel.replace(v=4.5, l=0.1).stability()
     assert table["growth_rate"][3] == one.growth_rate
     assert table["eigenvalues.0.1"][3] == one.eigenvalues[0].imag
+    # All at once gives the same numbers.
+    at_once = arclength.sweep(wheel.stability_at, sample, tmp_path / "b").to_pandas()
+    np.testing.assert_array_equal(at_once["growth_rate"], table["growth_rate"])
+    np.testing.assert_array_equal(at_once["stable"], table["stable"])
     model = arclength.Model.from_ode(lure)
     motion = arclength.sweep(
         model.simulate, {"alpha": [1.5, 2.0]}, tmp_path / "c", constants={"duration": 1.0, "start": {"x": 0.1}}, fields=["states.x.0", "states.x.-1"]
@@ -144,6 +148,21 @@ def test_analyses_of_wheels_and_models(tmp_path, lure):
     assert motion["states.x.-1"][1] == model.simulate(1.0, start={"x": 0.1})["x"][-1]
     with pytest.raises(arclength.InvalidInput, match="growth_rate"):
         arclength.sweep(wheel.stability, sample, tmp_path / "d", fields=["growth"])
+
+
+def test_stability_at_points_is_that_of_a_chart():
+    chart = Wheel().chart(("v", 0.5, 12, 40), ("l", 0.02, 0.3, 30))
+    v, l = np.meshgrid(chart.x["values"], chart.y["values"])
+    at = Wheel().stability_at({"v": v.ravel(), "l": l.ravel()}, threads=2)
+    np.testing.assert_array_equal(at["growth_rate"], chart.growth_rate.ravel())
+    np.testing.assert_array_equal(at["rolls"], chart.rolls.ravel().astype(bool))
+    decided = np.array([stable is not None for stable in chart.stable.ravel()])
+    np.testing.assert_array_equal(np.ma.getmaskarray(at["stable"]), ~decided)
+    np.testing.assert_array_equal(at["stable"][decided].astype(bool), chart.stable.ravel()[decided].astype(bool))
+    with pytest.raises(arclength.InvalidInput, match="unknown key"):
+        Wheel().stability_at({"w": np.ones(3)})
+    with pytest.raises(arclength.InvalidInput, match="equal length"):
+        Wheel().stability_at({"v": np.ones(3), "l": np.ones(2)})
 
 
 STUDY = """
@@ -161,7 +180,7 @@ study = dict(function=slow, sample=arclength.grid(x=(1, 2, 400)), folder="out", 
 
 def command(folder, *arguments):
     return subprocess.Popen(
-        [sys.executable, "-m", "arclength", *arguments], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "arclength", *arguments], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
 
 

@@ -42,6 +42,10 @@ if TYPE_CHECKING:
 __all__ = ["Basin", "Chart", "Cycles", "Fit", "HopfPoints", "Motion", "Parameter", "ParameterTable", "Wheel", "WheelPoint"]
 
 
+#: Points that the engine gets at a time: a tenth of a second of work.
+_POINTS_AT_ONCE = 1 << 16
+
+
 class Parameter(NamedTuple):
     """A parameter of a wheel."""
 
@@ -219,6 +223,36 @@ class Wheel:
         """Eigenvalues of the uniform motion (complex, 1/s), whether it is stable (``None``: undecided), its critical speed (m/s)."""
         result: Result = self._run("stability", {})
         return result
+
+    def stability_at(self, points: Mapping[str, Any], *, threads: int | None = None) -> dict[str, np.ndarray[Any, Any]]:
+        """What a chart says, at many points at once.
+
+        ``points`` are arrays of shape ``(n,)``, the values of as many parameters as vary, by key: a mapping or a DataFrame. The answer
+        has arrays of that shape: ``growth_rate`` (1/s, not a number where there is no uniform motion), ``stable`` (masked where
+        rounding could decide it) and ``rolls``. Raises :class:`~arclength.InvalidInput` for a value that is not allowed.
+        """
+        import numpy as np
+
+        keys = [str(key) for key in points.keys()]
+        arrays = [np.ascontiguousarray(points[key], dtype=float) for key in keys]
+        if not keys or any(array.ndim != 1 or len(array) != len(arrays[0]) for array in arrays):
+            allowed = "arrays of shape (n,), one for each key"
+            raise InvalidInput(f"points: not columns of equal length; allowed: {allowed}", key="points", allowed=allowed)
+        at_once = 0 if threads is None else whole("threads", threads)
+        parts = []
+        # Between parts Python listens to Ctrl-C.
+        for start in range(0, max(len(arrays[0]), 1), _POINTS_AT_ONCE):
+            part = [array[start : start + _POINTS_AT_ONCE] for array in arrays]
+            parts.append(_native.stability_at(list(self._given.items()), keys, part, at_once))
+        growth_rate, stable, rolls = (np.concatenate(column) for column in zip(*parts, strict=True))
+        undecided = np.isnan(stable)
+        return {
+            "growth_rate": growth_rate,
+            "stable": np.ma.MaskedArray(stable == 1.0, mask=undecided),
+            "rolls": rolls == 1.0,
+        }
+
+    stability_at.batched = True  # type: ignore[attr-defined]  # a sweep hands it arrays
 
     def chart(
         self,
@@ -462,7 +496,7 @@ def _wheel(given: dict[str, str]) -> Wheel:
     return Wheel(**given)
 
 
-def _listed(values: float | Iterable[float]) -> list[float]:
+def _listed(values: Any) -> list[Any]:
     return list(values) if isinstance(values, Iterable) and not isinstance(values, str) else [values]
 
 
@@ -577,7 +611,7 @@ class Cycles(WheelBranch):
 
 
 class Chart(Result):
-    """A stability chart: ``x.values`` of shape ``(m,)``, ``y.values`` ``(n,)``, and arrays of shape ``(n, m)``."""
+    """A stability chart: ``x["values"]`` of shape ``(m,)``, ``y["values"]`` ``(n,)``, and arrays of shape ``(n, m)``."""
 
     def _plane(self, name: str) -> np.ndarray[Any, Any]:
         return self.columns[name].reshape(len(self.document["y"]["values"]), len(self.document["x"]["values"]))
