@@ -8,8 +8,7 @@
 //!
 //! Any other cycle whose mesh may not resolve what happens beside it has its multipliers from exponentials: the two of every part of an
 //! interval are exact where the Jacobian does not change, however fast a direction turns or dies out, and are of order four where it
-//! does (Blanes and Moan, "Fourth- and sixth-order commutator-free Magnus integrators for linear and non-linear dynamical systems" (2006),
-//! equation 43; stiff equations: Thalhammer (2006)).
+//! does (Thalhammer, "A fourth-order commutator-free exponential integrator for nonautonomous differential equations" (2006)).
 
 use super::floquet::{DEFECT, Floquet, floquet, floquet_of, multiplier_changes};
 use super::limit_cycle::LimitCycle;
