@@ -167,12 +167,12 @@ mod tests {
     /// The largest of the smallest dampers on many circles.
     fn over_circles(wheel: &Wheel, key: Key, up_to: f64, [from, to]: [f64; 2]) -> f64 {
         let none = Control::none();
-        let circle = |index: u32| from + (to - from) * f64::from(index) / 24.0;
+        let circle = |index: u32| from + (to - from) * f64::from(index) / 8.0;
         let damper = |curvature: f64| {
             let wheel = wheel.with(Key::Curvature, curvature).unwrap();
             wheel.smallest_damper(key, up_to, &none).unwrap().unwrap().damping
         };
-        (0..=24).map(|index| damper(circle(index))).fold(0.0, f64::max)
+        (0..=8).map(|index| damper(circle(index))).fold(0.0, f64::max)
     }
 
     #[test]
@@ -190,7 +190,7 @@ mod tests {
             let circles = Condition::Interval(circles);
             let found = wheel.smallest_damper_over(key, up_to, &[circles], &none).unwrap().unwrap();
             let expected = over_circles(&wheel, key, up_to, [from, to]);
-            // No sample is worse, and one comes near.
+            // No sample is worse, and one comes near: those at the ends are among them.
             let ratio = expected / found.damping;
             assert!((0.97..1.0 + 2e-6).contains(&ratio), "{key} {up_to}: {found:?} {expected}");
             let corner = found.corner.unwrap();
@@ -212,6 +212,7 @@ mod tests {
             let wheel = wheel.with(Key::TurningRadius, radius).unwrap();
             wheel.smallest_damper(Key::CQ, 3.0, &none).unwrap().unwrap().damping
         });
-        assert_eq!(found.damping, alone.into_iter().fold(0.0, f64::max));
+        let worst = alone.into_iter().fold(0.0, f64::max);
+        assert!((found.damping / worst - 1.0).abs() < 1e-9, "{found:?} {alone:?}");
     }
 }
