@@ -15,8 +15,8 @@ const EXAMPLE: &str = "kingpin damper --up-to v=3 -s l=0.04 -s r=inf
 /// to that one, each alone and both together, and the speed that decides. The wheel's own c_q and c_psi do not count. Large
 /// cycles beside stable motion (an isola) may take more: they are followed from the Hopf points of weaker dampers along the speed, the
 /// damping and their folds in both, and the wheel is kicked at random; the result says what was searched, which is no proof that there
-/// are none. With --radius and --load the dampers are enough on all these circles and under all these loads: boundaries of stability
-/// are followed in both, and the fold of the last cycle from the radii at the ends, and from that which decides, over the others.
+/// are none. With --radius and --load the dampers are enough on all these circles and under all these loads, wherever the motion grows
+/// fastest; the fold of the last cycle is followed from the radii at the ends, and from that which decides, over the others.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Damper {

@@ -120,7 +120,7 @@ fn product([a1, a2]: [f64; 2], [b1, b2, b3]: [f64; 3]) -> [f64; 5] {
 }
 
 /// The coefficients `c1 ... cn` of the polynomial with these roots, complex ones in pairs.
-fn polynomial_of(roots: &[Complex64]) -> Vec<f64> {
+pub(crate) fn polynomial_of(roots: &[Complex64]) -> Vec<f64> {
     let mut coefficients = vec![Complex64::ONE];
     for root in roots {
         coefficients.push(Complex64::ZERO);

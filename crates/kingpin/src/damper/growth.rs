@@ -1,0 +1,186 @@
+//! Where the uniform motion grows fastest, over speeds and other conditions.
+//!
+//! The growth rate is computed on a grid; from each of its local maxima a compass search (Kolda, Lewis and Torczon 2003) goes up
+//! within the neighbouring cells, from those below zero as well: what is unstable between the points of the grid is seen where the
+//! growth rate rises towards it.
+
+use super::condition::Condition;
+use crate::error::KingpinError;
+use crate::parameters::Key;
+use crate::plane::Axis;
+use crate::wheel::Wheel;
+use arclength::control::Control;
+use rayon::prelude::*;
+
+/// Points along the speed, about half in geometric progression and half evenly spaced, and along each other interval, for no, one
+/// and several other intervals.
+const SPEEDS: [usize; 3] = [400, 120, 60];
+const VALUES: [usize; 3] = [0, 49, 13];
+/// Halvings of the steps of a compass search, from one cell of the grid on: an error of the maximum of 1e-12 of the change over a cell.
+const HALVINGS: usize = 20;
+
+/// Values of a parameter.
+#[derive(Clone, Debug)]
+struct Coordinate {
+    key: Key,
+    /// Ascending.
+    values: Vec<f64>,
+    /// Whether values between them count.
+    is_interval: bool,
+}
+
+/// The wheels among which the growth rate is looked for.
+pub(super) struct Conditions {
+    wheel: Wheel,
+    /// The speed is the first.
+    coordinates: Vec<Coordinate>,
+}
+
+impl Conditions {
+    /// The wheel at these speeds and at all values of the conditions; a radius is followed as curvature.
+    ///
+    /// # Errors
+    /// Values that are not allowed.
+    pub(super) fn new(wheel: &Wheel, speeds: Axis, conditions: &[Condition]) -> Result<Self, KingpinError> {
+        let intervals =
+            conditions.iter().filter(|condition| matches!(condition, Condition::Interval(_))).count().min(2);
+        let mut values: Vec<f64> = speeds.values(SPEEDS[intervals] / 2);
+        let ratio = speeds.end() / speeds.start();
+        let even = values.len();
+        values.extend((1..even).map(|index| speeds.start() * ratio.powf(index as f64 / even as f64)));
+        values.sort_by(f64::total_cmp);
+        let mut coordinates = vec![Coordinate { key: Key::V, values, is_interval: true }];
+        for condition in conditions {
+            coordinates.push(match condition {
+                Condition::Interval(along) => {
+                    let axis = Axis::new(along.followed(), along.range())?;
+                    Coordinate { key: axis.key(), values: axis.values(VALUES[intervals]), is_interval: true }
+                }
+                Condition::Values(key, values) => {
+                    values.iter().try_for_each(|value| wheel.with(*key, *value).map(|_| ()))?;
+                    Coordinate { key: *key, values: values.clone(), is_interval: false }
+                }
+            });
+        }
+        Ok(Self { wheel: *wheel, coordinates })
+    }
+
+    /// The wheel at some values; nothing where they are not allowed together.
+    fn at(&self, values: &[f64]) -> Option<Wheel> {
+        let mut wheel = self.wheel;
+        for (coordinate, value) in self.coordinates.iter().zip(values) {
+            wheel = wheel.with(coordinate.key, *value).ok()?;
+        }
+        Some(wheel)
+    }
+
+    /// The growth rate at some values; infinite where there is no uniform motion.
+    fn growth_rate(&self, values: &[f64], (key, damping): (Key, f64)) -> f64 {
+        let motion = self.at(values).and_then(|wheel| wheel.with(key, damping).ok()?.uniform_motion().ok());
+        motion.map_or(f64::INFINITY, |motion| motion.growth_rate())
+    }
+
+    fn points(&self) -> usize {
+        self.coordinates.iter().map(|coordinate| coordinate.values.len()).product()
+    }
+
+    /// The index along each coordinate of a point of the grid.
+    fn indices(&self, point: usize) -> Vec<usize> {
+        let mut rest = point;
+        let index = |coordinate: &Coordinate| {
+            let index = rest % coordinate.values.len();
+            rest /= coordinate.values.len();
+            index
+        };
+        self.coordinates.iter().map(index).collect()
+    }
+
+    fn values(&self, indices: &[usize]) -> Vec<f64> {
+        self.coordinates.iter().zip(indices).map(|(coordinate, index)| coordinate.values[*index]).collect()
+    }
+
+    /// The wheels where the growth rate has a local maximum and the motion is surely unstable with a damper. Values that are no
+    /// interval have a maximum each.
+    ///
+    /// # Errors
+    /// [`Interrupted`](KingpinError::Interrupted).
+    pub(super) fn unstable(
+        &self,
+        damper: (Key, f64),
+        control: &Control<'_>,
+    ) -> Result<Vec<Wheel>, KingpinError> {
+        let rate_at = |point: usize| {
+            control.check()?;
+            Ok(self.growth_rate(&self.values(&self.indices(point)), damper))
+        };
+        let rates =
+            (0..self.points()).into_par_iter().map(rate_at).collect::<Result<Vec<f64>, KingpinError>>()?;
+        let maxima: Vec<usize> = (0..rates.len()).filter(|point| self.is_maximum(*point, &rates)).collect();
+        let climbed = |point: usize| {
+            control.check()?;
+            let values = self.climb(&self.indices(point), rates[point], damper);
+            Ok(self.at(&values).filter(|wheel| is_unstable(wheel, damper)))
+        };
+        let found = maxima.into_par_iter().map(climbed).collect::<Result<Vec<_>, KingpinError>>()?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    /// Whether no neighbour along a coordinate grows faster.
+    fn is_maximum(&self, point: usize, rates: &[f64]) -> bool {
+        let mut stride = 1;
+        self.coordinates.iter().zip(self.indices(point)).all(|(coordinate, index)| {
+            let step = stride;
+            stride *= coordinate.values.len();
+            !coordinate.is_interval
+                || ((index == 0 || rates[point - step] <= rates[point])
+                    && (index + 1 == coordinate.values.len() || rates[point + step] <= rates[point]))
+        })
+    }
+
+    /// A compass search for the maximum within the cells beside a point of the grid.
+    fn climb(&self, indices: &[usize], start: f64, damper: (Key, f64)) -> Vec<f64> {
+        let (mut best, mut highest) = (self.values(indices), start);
+        if highest == f64::INFINITY {
+            return best;
+        }
+        let cells: Vec<[f64; 2]> = self
+            .coordinates
+            .iter()
+            .zip(indices)
+            .map(|(Coordinate { values, is_interval, .. }, &index)| match is_interval {
+                true => [values[index.saturating_sub(1)], values[(index + 1).min(values.len() - 1)]],
+                false => [values[index]; 2],
+            })
+            .collect();
+        for halving in 1..=HALVINGS {
+            let part = f64::powi(0.5, halving as i32);
+            // A step is taken again as long as it leads up: not for ever, for the cell is finite.
+            loop {
+                let before = highest;
+                for (index, [low, high]) in cells.iter().copied().enumerate() {
+                    for step in [-part, part] {
+                        let mut other = best.clone();
+                        other[index] = (other[index] + step * (high - low)).clamp(low, high);
+                        if other[index] == best[index] {
+                            continue;
+                        }
+                        let rate = self.growth_rate(&other, damper);
+                        if rate > highest {
+                            (best, highest) = (other, rate);
+                        }
+                    }
+                }
+                if highest <= before || highest == f64::INFINITY {
+                    break;
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Whether the motion is surely unstable with a damper, or there is none.
+fn is_unstable(wheel: &Wheel, (key, damping): (Key, f64)) -> bool {
+    let damped = wheel.with(key, damping).and_then(|wheel| wheel.uniform_motion());
+    damped.map_or(true, |motion| motion.is_stable() == Some(false))
+}
