@@ -315,7 +315,22 @@ impl Pursuit<'_, '_> {
                 return Ok(PhaseEnd::Interrupted);
             }
             control.done((reached - start_time) / (end_time - start_time));
-            stepper.advance().map_err(too_many)?;
+            match stepper.advance() {
+                Ok(()) => {}
+                Err(error @ (IntegrationError::NotFinite { .. } | IntegrationError::StepTooSmall { .. })) => {
+                    let (time, state) = (stepper.time(), stepper.state());
+                    let Some(exit) = stage.exit_without_step(phase, &exits, time, state) else {
+                        return Err(error);
+                    };
+                    let done = stepper.statistics();
+                    self.motion.steps += done.accepted_steps + done.rejected_steps;
+                    self.time = time;
+                    self.state.copy_from_slice(state);
+                    stage.draw_to_border(phase, exit, time, &mut self.state);
+                    return Ok(PhaseEnd::Passed(exit));
+                }
+                Err(error) => return Err(too_many(error)),
+            }
         }
     }
 }

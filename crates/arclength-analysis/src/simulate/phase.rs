@@ -173,6 +173,40 @@ impl<'a> Stage<'a> {
         if upwards { border + margin } else { border - margin }
     }
 
+    /// The exit over a border at a state from which there is no step, as the field of the region ends at the border: a root of what
+    /// is cut off, which is no number beyond. Nothing where the state is on no border that it moves to.
+    pub(super) fn exit_without_step(
+        &self,
+        phase: &Phase,
+        exits: &[Exit],
+        time: f64,
+        state: &[f64],
+    ) -> Option<Exit> {
+        let flow = self.flow(phase);
+        let values = flow.switches(time, state, self.thresholds.len());
+        let velocity = flow.velocity(time, state);
+        exits.iter().copied().find(|exit| {
+            let Exit::Border { switch, upwards } = *exit else { return false };
+            let border = self.border(phase, switch, upwards);
+            let rate = flow.rates(time, state, switch, [&velocity, &velocity]).below;
+            let leads_out = if upwards { rate >= 0.0 } else { rate <= 0.0 };
+            leads_out && (values[switch] - border).abs() <= ON_BORDER * border.abs().max(1e-3)
+        })
+    }
+
+    /// Draws a state that is on a border but for rounding to the border itself, by the shortest way.
+    pub(super) fn draw_to_border(&self, phase: &Phase, exit: Exit, time: f64, state: &mut [f64]) {
+        let Exit::Border { switch, upwards } = exit else { return };
+        let slope = self.flow(phase).switch_slope(time, state, switch);
+        let excess = slope.value - self.border(phase, switch, upwards);
+        let square: f64 = slope.gradient[..state.len()].iter().map(|gradient| gradient * gradient).sum();
+        if square > 0.0 {
+            state.iter_mut().zip(&slope.gradient).for_each(|(value, gradient)| {
+                *value -= excess * gradient / square;
+            });
+        }
+    }
+
     /// The phase behind an exit that is passed at a state.
     pub(super) fn behind(&self, phase: &Phase, exit: Exit, time: f64, state: &[f64]) -> Phase {
         let (switch, upwards) = match (exit, phase) {
@@ -232,8 +266,11 @@ impl<'a> Stage<'a> {
         state: &[f64],
     ) -> Phase {
         let entry = switch.map(|switch| {
-            let margin = self.within(&cells).switch_slope(time, state, switch).noise(time, state);
-            Entry { switch, is_upper, margin }
+            let slope = self.within(&cells).switch_slope(time, state, switch);
+            let border = self.thresholds[switch].borders(cells[switch])[usize::from(is_upper)];
+            // A border where the motion could not be followed to the far side is not quite reached.
+            let excess = if is_upper { slope.value - border } else { border - slope.value };
+            Entry { switch, is_upper, margin: slope.noise(time, state).max(2.0 * excess) }
         });
         Phase::Within { cells, entry }
     }

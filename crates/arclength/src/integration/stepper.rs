@@ -265,14 +265,15 @@ impl<S: System> Stepper<S> {
             }
             let end = if is_last { self.end } else { self.time + direction * step };
             let error = self.try_step(end - self.time);
-            was_finite = error.is_finite();
+            // The slope at the end is no part of the error, and the next step begins with it.
+            was_finite = error.is_finite() && self.stage(STAGES - 1).iter().all(|slope| slope.is_finite());
             let factor = if was_finite {
                 SAFETY * error.max(f64::MIN_POSITIVE).powf(-PI_EXPONENT) * self.previous_error.powf(PI_WEIGHT)
             } else {
                 NOT_FINITE_RATIO
             };
             let factor = factor.clamp(STEP_RATIO.0.min(NOT_FINITE_RATIO), STEP_RATIO.1);
-            if error <= 1.0 {
+            if error <= 1.0 && was_finite {
                 self.statistics.accepted_steps += 1;
                 self.previous_time = self.time;
                 self.time = end;

@@ -1,5 +1,6 @@
 //! Motions of models that jump, switch and slide.
 
+mod borders;
 mod events;
 mod history;
 mod slides;
