@@ -135,6 +135,12 @@ def test_dampers():
     damper = Wheel(r=math.inf, l=0.04).damper(up_to=3, small_motions=True)
     assert damper.c_q == pytest.approx(0.068781957, rel=1e-7)
     assert damper.c_psi == pytest.approx(3.6264e-4, rel=1e-4)
+    # On circles it takes more, most on the tightest.
+    over = Wheel(l=0.04).damper(up_to=3, radius=(0.9, math.inf), small_motions=True)
+    assert over.c_q > damper.c_q and over.corner["c_q_at"]["r"] == pytest.approx(0.9)
+    assert Wheel(l=0.04).damper(up_to=3, radius=[math.inf], small_motions=True).c_q == pytest.approx(damper.c_q)
+    with pytest.raises(arclength.InvalidInput, match="radius"):
+        Wheel().damper(up_to=3, radius=(1.0, 2.0, 3.0))
 
 
 def test_parameters_from_a_record():

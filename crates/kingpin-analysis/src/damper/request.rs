@@ -3,7 +3,9 @@
 use super::condition::Range;
 use super::kicks::kick;
 use super::large_cycles::{LargeCycles, LastCycle};
-use super::result::{Conditions, Corner, DamperResult, Front, IsolaFree, REQUIREMENT, WithoutCycles};
+use super::result::{
+    Conditions, Corner, DamperResult, Front, IsolaFree, REQUIREMENT, WithLongitudinalDamper, WithoutCycles,
+};
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::up_to;
@@ -19,6 +21,10 @@ const PART_OF_SMALL_MOTIONS: f64 = 0.1;
 const PART_OF_CYCLES: f64 = 0.3;
 /// Dampers on the front between the lateral and the rotational one.
 const FRONT: usize = 9;
+/// The slight longitudinal damper that is tried on circles, as a part of the critical damping of the wheel's mass on its spring.
+const SLIGHT: f64 = 1e-3;
+/// Part by which it has to change the others to be told.
+const CHANGED: f64 = 0.3;
 
 /// The smallest dampers with which no shimmy is born up to a speed, on all of some circles and under all of some loads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -69,7 +75,9 @@ impl DamperRequest {
         let small = &control.part(0.0..part);
         let lateral = sizing.alone(&wheel, Key::CQ, &small.part(0.0..0.1))?;
         let rotational = sizing.alone(&wheel, Key::CPsi, &small.part(0.1..0.2))?;
-        let front = sizing.front(lateral, &small.part(0.2..1.0))?;
+        let with_longitudinal_damper =
+            sizing.with_longitudinal_damper([lateral, rotational], &small.part(0.2..0.3))?;
+        let front = sizing.front(lateral, &small.part(0.3..1.0))?;
         let isola_free = match self.small_motions {
             true => None,
             false => {
@@ -94,6 +102,7 @@ impl DamperRequest {
                 c_q_at: sizing.decides(lateral),
                 c_psi_at: sizing.decides(rotational),
             },
+            with_longitudinal_damper,
             front,
             isola_free,
             dry_friction: NeglectedDryFriction::of(&wheel, &[Key::V]),
@@ -122,6 +131,37 @@ impl Sizing {
     /// The smallest of one damper beside what the wheel has of the other.
     fn alone(&self, wheel: &Wheel, key: Key, control: &Control<'_>) -> Result<Option<SmallestDamper>, Error> {
         Ok(wheel.smallest_damper_over(key, self.up_to, &self.of_small_motions(), control)?)
+    }
+
+    /// The dampers beside a slight longitudinal one, where they are others on circles on which nothing damps the longitudinal motion: turning
+    /// makes that grow or decay, slowly on wide circles, and dampers of the caster hardly matter to it.
+    fn with_longitudinal_damper(
+        &self,
+        without: [Option<SmallestDamper>; 2],
+        control: &Control<'_>,
+    ) -> Result<Option<WithLongitudinalDamper>, Error> {
+        let wheel = &self.wheel;
+        let turns = wheel.get(Key::Curvature) != 0.0
+            || self.conditions.iter().any(|condition| condition.key() == Key::TurningRadius);
+        let is_undamped = wheel.get(Key::CU) == 0.0 && wheel.get(Key::KU).is_finite();
+        if !turns || !is_undamped || wheel.tyre() != Tyre::Rigid {
+            return Ok(None);
+        }
+        let c_u = SLIGHT * 2.0 * (wheel.get(Key::KU) * wheel.mass()).sqrt();
+        let damped = wheel.with(Key::CU, c_u)?;
+        let [lateral, rotational] =
+            [Key::CQ, Key::CPsi].map(|key| self.alone(&damped, key, &control.quiet()));
+        let with = [lateral?, rotational?];
+        let differs = |(with, without): (&Option<SmallestDamper>, &Option<SmallestDamper>)| {
+            let [with, without] = [with, without].map(|damper| damper.map(|damper| damper.damping));
+            match (with, without) {
+                (Some(with), Some(without)) => (with - without).abs() > CHANGED * with.max(without),
+                (with, without) => with != without,
+            }
+        };
+        let [c_q, c_psi] = with.map(|damper| damper.map(|damper| damper.damping));
+        let is_told = with.iter().zip(&without).any(differs);
+        Ok(is_told.then_some(WithLongitudinalDamper { c_u, c_q, c_psi }))
     }
 
     /// The least damper about the king pin beside parts of the lateral one that is enough alone.

@@ -34,6 +34,9 @@ pub struct DamperResult {
     pub c_psi: Option<f64>,
     /// The speeds that decide.
     pub corner: Corner,
+    /// The dampers beside a slight longitudinal one, where nothing damps the longitudinal motion and that decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub with_longitudinal_damper: Option<WithLongitudinalDamper>,
     /// Both dampers together.
     pub front: Front,
     /// What it takes that no large cycle is found either, each damper alone; nothing where none was sought.
@@ -41,6 +44,36 @@ pub struct DamperResult {
     /// Dry friction about the king pin that was left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dry_friction: Option<NeglectedDryFriction>,
+}
+
+/// The smallest dampers beside a longitudinal one.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct WithLongitudinalDamper {
+    /// The longitudinal damper in N s/m: a thousandth of the critical damping of the wheel's mass on its spring.
+    pub c_u: f64,
+    /// The smallest lateral damper alone beside it.
+    pub c_q: Option<f64>,
+    /// The smallest damper about the king pin alone beside it.
+    pub c_psi: Option<f64>,
+}
+
+impl WithLongitudinalDamper {
+    /// What is said of them.
+    fn write(&self, out: &mut dyn Write) -> io::Result<()> {
+        let damper = |key: Key, damping: Option<f64>| match damping {
+            None => format!("no {key} that is enough"),
+            Some(0.0) => format!("no {key} needed"),
+            Some(damping) => description::quantity(key, damping),
+        };
+        writeln!(
+            out,
+            "\nthe longitudinal motion decides: nothing damps it (c_u = 0), and on circles it grows, however slowly; beside\n\
+             {}, a thousandth of its critical damping: {} or {}",
+            description::quantity(Key::CU, self.c_u),
+            damper(Key::CQ, self.c_q),
+            damper(Key::CPsi, self.c_psi)
+        )
+    }
 }
 
 /// Speeds in m/s at which the motion is unstable with a weaker damper; nothing where none is needed.
@@ -316,6 +349,9 @@ impl Report for DamperResult {
                     ranges.place(speed, at)
                 )?,
             }
+        }
+        if let Some(with) = self.with_longitudinal_damper {
+            with.write(out)?;
         }
         if self.front.c_q.len() > 1 {
             writeln!(out, "\nboth together:\n")?;

@@ -37,6 +37,30 @@ fn over_circles_and_loads() {
     }
 }
 
+/// On circles the longitudinal motion of a wheel that nothing damps in that direction grows, and asks for other dampers.
+#[test]
+fn the_longitudinal_motion_decides_where_nothing_damps_it() {
+    let folder = Folder::new();
+    let wheel = "damper --up-to v=3 -s l=0.2 -s r=4 -s k=100 -s k_psi=0.01 --small-motions";
+    let strict = folder.json(wheel);
+    assert!(strict["c_psi"].is_null() && number(&strict["c_q"]) > 0.0, "{strict}");
+    let with = &strict["with_longitudinal_damper"];
+    assert_eq!([number(&with["c_q"]), number(&with["c_psi"])], [0.0; 2]);
+    let damped = folder.json(&format!("{wheel} -s c_u={}", with["c_u"]));
+    assert_eq!([number(&damped["c_q"]), number(&damped["c_psi"])], [0.0; 2]);
+    assert!(damped.get("with_longitudinal_damper").is_none());
+    let table = folder.succeed(wheel).output;
+    assert!(table.contains("nothing damps it (c_u = 0)") && table.contains("no c_psi needed"), "{table}");
+    // Straight ahead it does not count, and here it changes nothing.
+    let wheel = "damper --up-to v=3 -s l=0.04 --small-motions";
+    for circle in ["-s r=inf", "-s r=1"] {
+        assert!(
+            folder.json(&format!("{wheel} {circle}")).get("with_longitudinal_damper").is_none(),
+            "{circle}"
+        );
+    }
+}
+
 #[test]
 fn ranges_that_make_no_sense() {
     fails("damper --up-to v=3 --radius 0:1", 2, &["r = 0", "allowed"]);

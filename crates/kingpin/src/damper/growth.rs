@@ -8,6 +8,7 @@ use super::condition::Condition;
 use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::plane::Axis;
+use crate::uniform_motion::UniformMotion;
 use crate::wheel::Wheel;
 use arclength::control::Control;
 use rayon::prelude::*;
@@ -16,6 +17,13 @@ use rayon::prelude::*;
 /// and several other intervals.
 const SPEEDS: [usize; 3] = [400, 120, 60];
 const VALUES: [usize; 3] = [0, 49, 13];
+/// Step of the difference quotients at a maximum, as a part of the interval, the number of Newton's steps in each coordinate, and the
+/// distance from an end within which a place is that end, as a part of the interval.
+const DIFFERENCE: f64 = 1e-3;
+const NEWTON_STEPS: usize = 8;
+const AT_END: f64 = 1e-9;
+/// Part of the size of an eigenvalue by which the growth rate has to rise: less is rounding.
+const RISE: f64 = 1e-14;
 /// Halvings of the steps of a compass search, from one cell of the grid on: an error of the maximum of 1e-12 of the change over a cell.
 const HALVINGS: usize = 20;
 
@@ -74,10 +82,13 @@ impl Conditions {
         Some(wheel)
     }
 
+    fn motion(&self, values: &[f64], (key, damping): (Key, f64)) -> Option<UniformMotion> {
+        self.at(values)?.with(key, damping).ok()?.uniform_motion().ok()
+    }
+
     /// The growth rate at some values; infinite where there is no uniform motion.
-    fn growth_rate(&self, values: &[f64], (key, damping): (Key, f64)) -> f64 {
-        let motion = self.at(values).and_then(|wheel| wheel.with(key, damping).ok()?.uniform_motion().ok());
-        motion.map_or(f64::INFINITY, |motion| motion.growth_rate())
+    fn growth_rate(&self, values: &[f64], damper: (Key, f64)) -> f64 {
+        self.motion(values, damper).map_or(f64::INFINITY, |motion| motion.growth_rate())
     }
 
     fn points(&self) -> usize {
@@ -137,12 +148,42 @@ impl Conditions {
         })
     }
 
+    /// The wheel at the maximum of the growth rate beside another one, where its slope vanishes: a maximum is flat, and a search that
+    /// compares heights finds its place to half of the digits only. Coordinates at the end of their interval stay.
+    pub(super) fn peak_beside(&self, wheel: &Wheel, damper: (Key, f64)) -> Option<Wheel> {
+        let mut best: Vec<f64> =
+            self.coordinates.iter().map(|coordinate| wheel.get(coordinate.key)).collect();
+        for _ in 0..NEWTON_STEPS {
+            for (index, Coordinate { values, is_interval, .. }) in self.coordinates.iter().enumerate() {
+                let (low, high) = (values[0], values[values.len() - 1]);
+                let to_end = (best[index] - low).min(high - best[index]);
+                if !is_interval || to_end < AT_END * (high - low) {
+                    continue;
+                }
+                let step = (DIFFERENCE * (high - low)).min(0.5 * to_end);
+                let [far_below, below, here, above, far_above] = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|steps| {
+                    let mut other = best.clone();
+                    other[index] += steps * step;
+                    self.growth_rate(&other, damper)
+                });
+                // Both quotients of fourth order.
+                let slope = (8.0 * (above - below) - (far_above - far_below)) / (12.0 * step);
+                let bend =
+                    (16.0 * (above + below) - (far_above + far_below) - 30.0 * here) / (12.0 * step * step);
+                let change = -slope / bend;
+                if bend < 0.0 && change.abs() < to_end {
+                    best[index] += change;
+                }
+            }
+        }
+        self.at(&best)
+    }
+
     /// A compass search for the maximum within the cells beside a point of the grid.
     fn climb(&self, indices: &[usize], start: f64, damper: (Key, f64)) -> Vec<f64> {
         let (mut best, mut highest) = (self.values(indices), start);
-        if highest == f64::INFINITY {
-            return best;
-        }
+        let Some(motion) = self.motion(&best, damper) else { return best };
+        let size = motion.eigenvalues_that_count().first().map_or(0.0, |eigenvalue| eigenvalue.norm());
         let cells: Vec<[f64; 2]> = self
             .coordinates
             .iter()
@@ -165,12 +206,12 @@ impl Conditions {
                             continue;
                         }
                         let rate = self.growth_rate(&other, damper);
-                        if rate > highest {
+                        if rate > highest + RISE * size {
                             (best, highest) = (other, rate);
                         }
                     }
                 }
-                if highest <= before || highest == f64::INFINITY {
+                if highest <= before || highest.is_infinite() {
                     break;
                 }
             }
@@ -180,7 +221,7 @@ impl Conditions {
 }
 
 /// Whether the motion is surely unstable with a damper, or there is none.
-fn is_unstable(wheel: &Wheel, (key, damping): (Key, f64)) -> bool {
+pub(super) fn is_unstable(wheel: &Wheel, (key, damping): (Key, f64)) -> bool {
     let damped = wheel.with(key, damping).and_then(|wheel| wheel.uniform_motion());
     damped.map_or(true, |motion| motion.is_stable() == Some(false))
 }

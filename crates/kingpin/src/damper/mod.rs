@@ -131,6 +131,13 @@ mod tests {
                 .map(|index| closed_forms(&wheel, up_to * f64::from(index) / 20_000.0)[1])
                 .fold(0.0, f64::max);
             prop_assert!((lateral.damping / expected - 1.0).abs() < 1e-6, "{lateral:?} {expected}");
+            let speed = lateral.speed.unwrap();
+            if speed < up_to {
+                let [below, here, above] =
+                    [1.0 - 1e-3, 1.0, 1.0 + 1e-3].map(|part| closed_forms(&wheel, part * speed)[1]);
+                let aside = 1e-3 * (above - below) / (2.0 * (2.0 * here - above - below));
+                prop_assert!(aside.abs() < 1e-7, "{lateral:?} {aside:e}");
+            }
         }
     }
 

@@ -6,7 +6,7 @@
 
 use super::condition::SmallestDamper;
 use super::critical_dampings::critical_dampings;
-use super::growth::Conditions;
+use super::growth::{Conditions, is_unstable};
 use crate::error::KingpinError;
 use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
@@ -14,6 +14,8 @@ use arclength::control::Control;
 
 /// A damper is tried this part above a critical damping.
 const ABOVE: f64 = 1e-9;
+/// Part by which the damper may change where its corner is placed more exactly.
+const SAME: f64 = 1e-6;
 /// Most times that wheels join: quadratic convergence takes about five.
 const ROUNDS: usize = 60;
 
@@ -38,7 +40,7 @@ pub(super) fn smallest(
     for _ in 0..ROUNDS {
         let unstable = conditions.unstable((key, found.damping * (1.0 + ABOVE)), control)?;
         if unstable.is_empty() {
-            return Ok(Some(found));
+            return Ok(Some(placed(found, key, conditions)));
         }
         for wheel in unstable {
             let critical = critical_dampings(&wheel, key, unit(&wheel, key));
@@ -52,7 +54,21 @@ pub(super) fn smallest(
     Ok(None)
 }
 
-/// The least damper beyond which all of the wheels are stable.
+/// The same damper with the place of its corner to all digits.
+fn placed(found: SmallestDamper, key: Key, conditions: &Conditions) -> SmallestDamper {
+    let Some(corner) = found.corner else { return found };
+    let place = || {
+        let peak = conditions.peak_beside(&corner, (key, found.damping))?;
+        let critical = critical_dampings(&peak, key, unit(&peak, key));
+        let distance = |damping: &f64| (damping / found.damping - 1.0).abs();
+        let damping = critical.into_iter().min_by(|one, other| distance(one).total_cmp(&distance(other)))?;
+        let corner = peak.with(key, damping).ok().filter(|_| distance(&damping) < SAME)?;
+        Some(SmallestDamper { damping, speed: Some(corner.get(Key::V)), corner: Some(corner) })
+    };
+    place().unwrap_or(found)
+}
+
+/// The least damper beyond which none of the wheels is surely unstable.
 fn least(key: Key, witnesses: &[Witness]) -> Result<Option<SmallestDamper>, KingpinError> {
     let of_one = |witness: &Witness| {
         witness.critical.iter().map(|damping| (*damping, witness.wheel)).collect::<Vec<_>>()
@@ -64,14 +80,7 @@ fn least(key: Key, witnesses: &[Witness]) -> Result<Option<SmallestDamper>, King
         if beyond > key.allowed().highest {
             break;
         }
-        let grows = |other: &Witness| -> Result<bool, KingpinError> {
-            Ok(other.wheel.with(key, beyond)?.uniform_motion()?.growth_rate() >= 0.0)
-        };
-        let mut is_enough = true;
-        for witness in witnesses {
-            is_enough = is_enough && !grows(witness)?;
-        }
-        if is_enough {
+        if !witnesses.iter().any(|other| is_unstable(&other.wheel, (key, beyond))) {
             let corner = wheel.with(key, damping)?;
             return Ok(Some(SmallestDamper {
                 damping,

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Along = str | tuple[str, float, float]
 #: A parameter and equidistant values of it: ``("v", 1, 8, 15)``, both ends included.
 Sampled = tuple[str, float, float, int]
+#: All values between two, or each of several: ``(1, inf)``, ``[1, 2, 5]``, or as text ``"1:inf"``, ``"1,2,5"``.
+Conditions = str | tuple[float, float] | list[float]
 #: Called with the part that is done (0 to 1) or ``None``, and with where the computation is, or ``None``; ``True`` is a bar of tqdm.
 Progress = Callable[[float | None, str | None], object] | Literal[True]
 
@@ -137,6 +139,22 @@ def sampled(field: str, given: Sampled | str) -> dict[str, Any]:
     if len(parts) != 4 or not isinstance(parts[0], str):
         raise _form(field, given, allowed)
     return {**interval(field, (parts[0], parts[1], parts[2])), "count": whole(field, parts[3])}
+
+
+def conditions(field: str, given: Conditions | None) -> dict[str, Any] | list[Any] | None:
+    """All values between two, ``(a, b)``, or each of a list; nothing where none are given."""
+    if given is None:
+        return None
+    allowed = '(a, b) for all values between, a list [a, b, c] for each, "a:b" or "a,b,c"'
+    if isinstance(given, str):
+        ends = given.split(":")
+        given = (ends[0], ends[1]) if len(ends) == 2 else given.split(",")
+    if isinstance(given, tuple):
+        if len(given) != 2:
+            raise _form(field, given, allowed)
+        start, end = sorted((number(field, value) for value in given), key=float)
+        return {"start": start, "end": end}
+    return numbers(field, given)
 
 
 def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] | None) -> list[dict[str, Any]]:

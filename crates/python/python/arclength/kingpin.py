@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from . import _native
 from ._requests import (
     Along,
+    Conditions,
     Progress,
     Sampled,
     assignments,
+    conditions,
     interval,
     named,
     number,
@@ -430,12 +432,22 @@ class Wheel:
         self,
         up_to: float,
         *,
+        radius: Conditions | None = None,
+        load: Conditions | None = None,
         small_motions: bool = False,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Result:
-        """The smallest dampers with which no shimmy is born up to a speed (m/s), and with which no large cycle is found either."""
-        request = {"up_to": {"key": "v", "value": text("up_to", up_to)}, "small_motions": bool(small_motions)}
+        """The smallest dampers with which no shimmy is born up to a speed (m/s), and with which no large cycle is found either.
+
+        They are enough on all circles of ``radius`` (m) and under all loads ``load`` (N, ``F_Az``), each all values between two, ``(1,
+        math.inf)``, or each of a list; without, at the wheel's own."""
+        request = {
+            "up_to": {"key": "v", "value": text("up_to", up_to)},
+            "radius": conditions("radius", radius),
+            "load": conditions("load", load),
+            "small_motions": bool(small_motions),
+        }
         result: Result = self._run("damper", request, threads, progress)
         return result
 
