@@ -8,6 +8,7 @@ mod hybrid;
 mod kinks;
 mod monitors;
 mod orbits;
+mod readme;
 mod restarts;
 mod sections;
 mod simulations;

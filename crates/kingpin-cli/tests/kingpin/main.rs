@@ -16,6 +16,7 @@ mod interruption;
 mod lateral;
 mod long_values;
 mod overlays;
+mod readme;
 mod shimmy;
 mod studies;
 mod tables;
