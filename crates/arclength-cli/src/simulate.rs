@@ -46,7 +46,8 @@ pub(crate) struct Simulate {
     tolerance: Option<f64>,
 
     /// Largest step. Switches on a state are located inside steps; a visit beyond one that is much shorter than a step, on a way that
-    /// touches it, may be missed. What switches on the time is always met
+    /// touches it, may be missed. What switches on the time is always met; a smooth stimulus much shorter than a step may be missed
+    /// [default: where the model depends on the time, five sampling times, of at least 1001 over the whole]
     #[arg(long, value_name = "T")]
     max_step: Option<f64>,
 

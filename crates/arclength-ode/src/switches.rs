@@ -109,16 +109,19 @@ impl TimeSwitches {
                 waiting.push((low, middle));
                 continue;
             }
-            // The switch may lie at the end of the interval, and rounding makes it as wide as several.
+            // Rounding may make the switch wider. How far is asked of single spacings of numbers only: over longer intervals those of
+            // several terms overlap without a switch.
             let mut after = high;
-            let mut width = high - low;
-            while after < until {
-                let end = (after + width).max(after.next_up()).min(until);
-                if !may_switch(after, end)? {
-                    break;
+            let mut step = 0.0;
+            while after < until && may_switch(after, after.next_up())? {
+                let end = (after + step).max(after.next_up()).min(until);
+                if may_switch(end, end.next_up())? {
+                    step = 2.0 * (end - after);
+                    after = end;
+                } else {
+                    step = 0.0;
+                    after = after.next_up();
                 }
-                after = end;
-                width *= 2.0;
             }
             return Ok(Some(Switch { before: low, after }));
         }

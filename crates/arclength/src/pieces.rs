@@ -117,13 +117,17 @@ impl<'a> Pieces<'a> {
         let mut next = region.to_vec();
         next[border.switch] = self.thresholds[border.switch].next(region[border.switch], border.upwards);
         let forced = next[border.switch];
+        let before = self.switches(region, state, parameters);
         let mut index = 0;
         // Others change only where what they depend on has jumped.
         let settled = self.settled(next, state, parameters, |threshold, cell, value| {
             let [lower, upper] = threshold.borders(cell);
+            let place = index % self.thresholds.len();
             let margin = ON_BORDER * value.abs().max(1.0);
-            let stays = index % self.thresholds.len() == border.switch
-                || (lower - margin..=upper + margin).contains(&value);
+            let jumps =
+                (value - before[place]).abs() > ON_BORDER * value.abs().max(before[place].abs()).max(1.0);
+            let stays =
+                place == border.switch || !jumps && (lower - margin..=upper + margin).contains(&value);
             index += 1;
             if stays { cell } else { threshold.cell(value) }
         });

@@ -151,7 +151,8 @@ impl<'a> Events<'a> {
             let condition = here.condition(event, time, state, sizes);
             let [side, course] = [condition.side(), condition.course()];
             self.sides[index] = if side != 0.0 {
-                side
+                // One that has happened where its condition jumps is beyond the jump already.
+                if has_happened[index] { here.side_ahead(event, time, state).unwrap_or(side) } else { side }
             } else if has_happened[index] && course != 0.0 {
                 course
             } else {

@@ -104,6 +104,15 @@ impl<'a> Flow<'a> {
         condition
     }
 
+    /// The side of zero on which the condition of an event is as soon as times are told apart; nothing where it is on none.
+    pub(super) fn side_ahead(&self, event: &Event, time: f64, state: &[f64]) -> Option<f64> {
+        let step = ROUNDING * time.abs();
+        let velocity = self.velocity(time, state);
+        let ahead: Vec<f64> = state.iter().zip(&velocity).map(|(value, rate)| value + step * rate).collect();
+        let value = self.condition_value(event, time + step, &ahead);
+        (value != 0.0 && !value.is_nan()).then(|| value.signum())
+    }
+
     /// Takes a state to that behind an event.
     pub(super) fn apply(&self, event: &Event, time: f64, state: &mut [f64]) -> Outcome {
         event.apply(self.clamped(time), state, &self.parameters)

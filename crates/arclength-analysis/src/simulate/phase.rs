@@ -8,6 +8,9 @@ use arclength_ode::Model;
 /// A value this close to a border, relative to its size or to one, is on it.
 const ON_BORDER: f64 = 1e-9;
 
+/// Part of the time within which two borders are passed at once.
+const AT_ONCE: f64 = 16.0 * f64::EPSILON;
+
 /// Corrections that draw a state to a switch; they double the digits.
 const CORRECTIONS: usize = 4;
 
@@ -77,10 +80,28 @@ impl<'a> Stage<'a> {
         Flow::new(self.model, self.parameters, cells, self.interval)
     }
 
-    /// The phase at a state: the region in which it lies, at a border the upper one.
+    /// The phase at a state: the region in which it lies, at a border the upper one unless the model itself has the field of the
+    /// lower one there.
     pub(super) fn phase_at(&self, time: f64, state: &[f64]) -> Phase {
         let cells = vec![1.0; self.thresholds.len()];
-        let cells = self.settled(cells, time, state, |_, threshold, _, value| threshold.cell(value));
+        let mut cells = self.settled(cells, time, state, |_, threshold, _, value| threshold.cell(value));
+        let values = self.within(&cells).switches(time, state, cells.len());
+        let written = Flow::new(self.model, self.parameters, &[], self.interval).velocity(time, state);
+        for (switch, value) in values.into_iter().enumerate() {
+            let threshold = self.thresholds[switch];
+            if value == threshold.borders(cells[switch])[0]
+                && self.within(&cells).velocity(time, state) != written
+            {
+                let mut below = cells.clone();
+                below[switch] = threshold.next(cells[switch], false);
+                let below = self.settled(below, time, state, |index, threshold, cell, value| {
+                    if index == switch { cell } else { threshold.cell(value) }
+                });
+                if self.within(&below).velocity(time, state) == written {
+                    cells = below;
+                }
+            }
+        }
         Phase::Within { cells, entry: None }
     }
 
@@ -270,7 +291,8 @@ impl<'a> Stage<'a> {
             let border = self.thresholds[switch].borders(cells[switch])[usize::from(is_upper)];
             // A border where the motion could not be followed to the far side is not quite reached.
             let excess = if is_upper { slope.value - border } else { border - slope.value };
-            Entry { switch, is_upper, margin: slope.noise(time, state).max(2.0 * excess) }
+            let short = if excess <= ON_BORDER * border.abs().max(1e-3) { 2.0 * excess } else { 0.0 };
+            Entry { switch, is_upper, margin: slope.noise(time, state).max(short) }
         });
         Phase::Within { cells, entry }
     }
@@ -318,19 +340,22 @@ impl<'a> Stage<'a> {
         let values = self.within(cells).switches(time, state, cells.len());
         let kept = phase.slide();
         let mut next = cells.to_vec();
+        next[switch] = self.thresholds[switch].next(cells[switch], upwards);
+        let ahead = self.within(&next).switches(time, state, cells.len());
+        let jumps = |index: usize, value: f64| {
+            let size = value.abs().max(values[index].abs()).max(1.0);
+            (value - values[index]).abs() > ON_BORDER * size
+        };
         let mut passed = vec![false; cells.len()];
         for (index, threshold) in self.thresholds.iter().enumerate() {
-            let [lower, upper] = threshold.borders(cells[index]);
-            let is_on = |border: f64| (values[index] - border).abs() <= ON_BORDER * border.abs().max(1e-3);
-            if index == switch {
-                next[index] = threshold.next(cells[index], upwards);
+            if index == switch || Some(index) == kept {
                 passed[index] = true;
-            } else if Some(index) == kept {
-                passed[index] = true;
-            } else if is_on(lower) || is_on(upper) {
-                // Others that are passed at the same time.
+            } else if !jumps(index, ahead[index]) {
+                // Others that are passed at the same time, as far as that is known.
                 let rate = self.within(cells).rates(time, state, index, [&velocity, &velocity]).below;
-                if is_on(upper) && rate > 0.0 || is_on(lower) && rate < 0.0 {
+                let border = threshold.borders(cells[index])[usize::from(rate > 0.0)];
+                let margin = (ON_BORDER * border.abs().max(1e-3)).max(AT_ONCE * (rate * time).abs());
+                if rate != 0.0 && border.is_finite() && (values[index] - border).abs() <= margin {
                     next[index] = threshold.next(cells[index], rate > 0.0);
                     passed[index] = true;
                 }
@@ -340,7 +365,8 @@ impl<'a> Stage<'a> {
         self.settled(next, time, state, |index, threshold, cell, value| {
             let [lower, upper] = threshold.borders(cell);
             let margin = ON_BORDER * value.abs().max(1.0);
-            let stays = passed[index] || (lower - margin..=upper + margin).contains(&value);
+            let stays =
+                passed[index] || !jumps(index, value) && (lower - margin..=upper + margin).contains(&value);
             if stays { cell } else { threshold.cell(value) }
         })
     }

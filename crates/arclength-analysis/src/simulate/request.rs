@@ -29,6 +29,9 @@ const ABSOLUTE: f64 = 0.01;
 const SMALL: f64 = 0.01;
 /// Most steps: some minutes.
 const MOST_STEPS: usize = 20_000_000;
+/// Sampling times in the largest step of a model that depends on the time, where nothing else is asked for: what is as wide as one of them
+/// is seen by a stage.
+const SAMPLES_IN_A_STEP: f64 = 5.0;
 /// How often a motion is followed again with the tolerances that the sizes of its states ask for.
 const REPETITIONS: usize = 3;
 /// How often samples are added where a curve that is drawn bends.
@@ -59,7 +62,8 @@ pub struct SimulateRequest {
     /// Relative tolerance, or the model's `toler` where that is smaller than 1e-10.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Largest step of the integrator.
+    /// Largest step of the integrator; where the model depends on the time, five sampling times (of at least 1001 over the whole) unless
+    /// something else is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_step: Option<f64>,
     /// Method of integration.
@@ -237,7 +241,8 @@ impl SimulateRequest {
             None
         });
         let first = transient.map_or(start, |time| time.max(start));
-        let points = self.points.or_else(|| file.points(end - first)).unwrap_or(Self::default_points());
+        let of_file = file.points(end - first);
+        let points = self.points.or(of_file).unwrap_or(Self::default_points());
         let last = (points - 1) as f64;
         let mut times: Vec<f64> =
             (0..points).map(|index| first + (end - first) * (index as f64 / last)).collect();
@@ -249,7 +254,11 @@ impl SimulateRequest {
         let relative =
             self.tolerance.unwrap_or_else(|| tighter("tol", TOLERANCE).max(*Self::TOLERANCES.start()));
         let absolute = tighter("atol", ABSOLUTE * relative);
-        let largest_step = self.max_step.unwrap_or(f64::INFINITY);
+        // What moves with the time alone no step knows of before it has seen it.
+        let finest = points.max(of_file.unwrap_or(0)).max(Self::default_points()) - 1;
+        let stimulus = SAMPLES_IN_A_STEP * (end - first).abs() / finest as f64;
+        let by_model = if chosen.model.is_autonomous() { f64::INFINITY } else { stimulus };
+        let largest_step = self.max_step.unwrap_or(by_model);
         let bound =
             self.bound.or_else(|| file.number("bound").filter(|bound| *bound > 0.0)).unwrap_or(f64::INFINITY);
         let states = chosen.model.states().len();

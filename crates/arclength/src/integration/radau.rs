@@ -6,6 +6,7 @@
 //! collocation polynomial is the dense output. Its order is 3, that of the error estimate, which is therefore held to the tolerances
 //! themselves: states between the steps are then as exact as asked for, and those at the steps more so.
 
+use super::system::difference_quotients;
 use super::{Integrator, System};
 use crate::linear::complex_lu::ComplexLu;
 use crate::linear::lu;
@@ -255,6 +256,10 @@ impl Radau {
 
     fn differentiate<S: System>(&mut self, system: &mut S, from: Origin<'_>) {
         system.jacobian(from.time, from.state, &mut self.jacobian);
+        if !self.jacobian.iter().all(|entry| entry.is_finite()) {
+            // Where a derivative is lost in an overflow, or infinite at a root of zero, an approximation does for Newton's method.
+            difference_quotients(system, from.time, from.state, &mut self.jacobian);
+        }
         self.has_jacobian = true;
         self.jacobian_is_current = true;
         self.factorized_step = f64::NAN;

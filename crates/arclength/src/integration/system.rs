@@ -16,16 +16,26 @@ pub trait System {
     /// Writes the derivatives of the right-hand side with respect to the state into `jacobian`, column by column; by default they are
     /// difference quotients. Implicit methods use them.
     fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
-        let n = state.len();
-        let (mut point, mut slope) = (state.to_vec(), vec![0.0; n]);
-        self.evaluate(time, state, &mut slope);
-        for (index, column) in jacobian.chunks_exact_mut(n.max(1)).enumerate() {
-            point[index] += f64::EPSILON.sqrt() * state[index].abs().max(SMALLEST_SIZE);
-            self.evaluate(time, &point, column);
-            let difference = point[index] - state[index];
-            column.iter_mut().zip(&slope).for_each(|(entry, slope)| *entry = (*entry - slope) / difference);
-            point[index] = state[index];
-        }
+        difference_quotients(self, time, state, jacobian);
+    }
+}
+
+/// Writes difference quotients of a right-hand side into a Jacobian, column by column.
+pub(super) fn difference_quotients<S: System + ?Sized>(
+    system: &mut S,
+    time: f64,
+    state: &[f64],
+    jacobian: &mut [f64],
+) {
+    let n = state.len();
+    let (mut point, mut slope) = (state.to_vec(), vec![0.0; n]);
+    system.evaluate(time, state, &mut slope);
+    for (index, column) in jacobian.chunks_exact_mut(n.max(1)).enumerate() {
+        point[index] += f64::EPSILON.sqrt() * state[index].abs().max(SMALLEST_SIZE);
+        system.evaluate(time, &point, column);
+        let difference = point[index] - state[index];
+        column.iter_mut().zip(&slope).for_each(|(entry, slope)| *entry = (*entry - slope) / difference);
+        point[index] = state[index];
     }
 }
 

@@ -4,3 +4,4 @@ mod borders;
 mod events;
 mod history;
 mod slides;
+mod switches;
