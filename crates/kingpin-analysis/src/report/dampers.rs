@@ -54,7 +54,7 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
             text.push_str(&format!(" That no large cycle is found either takes {}.", said.join(", or ")));
         }
     }
-    let check = "Boundaries of stability, followed in the damper at every speed; cycles followed from the Hopf points of weaker dampers along speed and \
+    let check = "The dampers with which the motion gains its stability, sought over all speeds; cycles followed from the Hopf points of weaker dampers along speed and \
                  damping, their folds in both, and strong random kicks with a hundredth more than the damper. What was searched is no proof \
                  that there is no other large cycle.";
     Finding::new(subject, text, check).undecided_if(dampers.c_q.is_none() && dampers.c_psi.is_none())
@@ -65,10 +65,11 @@ fn large_cycles(found: &WithoutCycles, key: &str, unit: &str) -> Option<String> 
     let damping = found.by_continuation?;
     let kicked = match &found.kicked {
         Some(kicked) if kicked.returned < kicked.kicks => match kicked.none_lost {
-            Some(damper) if !kicked.ends.is_empty() => {
-                format!(" ({kicked}; none does so with {})", significant(damper, 4))
+            _ if kicked.ends.is_empty() => format!(" ({kicked})"),
+            Some(damper) => {
+                format!(" ({kicked}, so that is not enough; none does so with {})", significant(damper, 4))
             }
-            _ => format!(" ({kicked})"),
+            None => format!(" ({kicked}, so that is not enough)"),
         },
         _ => String::new(),
     };

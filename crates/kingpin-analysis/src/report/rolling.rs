@@ -84,7 +84,7 @@ impl Motions {
                 format!("In uniform motion the wheel {}", said.collect::<Vec<_>>().join(" and "))
             }
         };
-        if reach < self.fastest {
+        if self.motions.len() < SPEEDS {
             text += &format!("; there is none beyond {} m/s", readable(reach));
         }
         let largest = self.motions.iter().map(|motion| motion.residual().abs()).fold(0.0, f64::max);

@@ -46,7 +46,12 @@ impl Speeds {
             let inside =
                 branch.motions.iter().filter(|motion| pair[0] < motion.value && motion.value < pair[1]);
             let mut words = inside.map(|motion| motion.stability.is_stable());
-            let first = words.next().unwrap_or(None);
+            // Where a step passes the whole part, its middle tells.
+            let middle = || {
+                let motion = wheel.with(Key::V, 0.5 * (pair[0] + pair[1])).ok()?.uniform_motion().ok()?;
+                motion.is_stable()
+            };
+            let first = words.next().unwrap_or_else(middle);
             let stable = if words.all(|word| word == first) { first } else { None };
             Part { from: pair[0], to: pair[1], stable }
         });

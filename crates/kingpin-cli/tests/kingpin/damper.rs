@@ -30,6 +30,10 @@ fn over_circles_and_loads() {
     let several = folder.json(&format!("{wheel} --radius 0.9,inf"));
     assert!(number(&several["c_q"]) <= number(&over["c_q"]) * (1.0 + 1e-9));
     assert_eq!(several["radius"], serde_json::json!([0.9, "inf"]));
+    // Straight as one of several, and as the only one.
+    let straight = |options: &str| number(&folder.json(&format!("{wheel} {options}"))["c_q"]);
+    let right = straight("-s r=inf");
+    assert!((straight("--radius inf") / right - 1.0).abs() < 1e-12 && straight("--radius 200,inf") >= right);
     let table = folder.succeed(&format!("{wheel} --radius 0.9:inf")).output;
     let heading = "up to v = 3 m/s, r from 0.9 to inf m at l = 0.04 m";
     for part in [heading, "lateral damper alone", ", r = ", " decides"] {

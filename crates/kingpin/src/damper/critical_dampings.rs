@@ -13,13 +13,20 @@ use arclength::linear::eigenvalues::eigenvalues;
 
 /// Roots with a smaller imaginary part than this, relative to the modulus, may be real but for rounding.
 const NEAR_REAL_AXIS: f64 = 1e-4;
-/// Relative distance within which the growth rate changes its sign beside a root.
-const NEAR: f64 = 1e-6;
+/// Relative distances within which, one after the other, the growth rate is looked at for a change of its sign beside a root, which may
+/// be ill-conditioned.
+const NEAR: [f64; 3] = [1e-6, 1e-4, 1e-2];
+
+/// Two that are found in both ways agree to this part.
+const SAME: f64 = 1e-9;
+/// Samples of the growth rate to both sides of the unit of damping, and in a decade.
+const SAMPLES: i32 = 60;
+const SAMPLES_PER_DECADE: f64 = 10.0;
 
 /// A polynomial by its coefficients, lowest power first.
 type Polynomial = Vec<f64>;
 
-/// The dampings of a key, not ordered, at which the growth rate of a wheel passes through zero. They are sought with polynomials at
+/// The dampings of a key, in ascending order, at which the growth rate of a wheel passes through zero. They are sought with polynomials at
 /// one and at two times a unit of damping that is neither far too weak nor far too strong.
 pub(super) fn critical_dampings(wheel: &Wheel, key: Key, unit: f64) -> Vec<f64> {
     let damped = |damping: f64| wheel.with(key, damping).ok()?.uniform_motion().ok();
@@ -34,13 +41,25 @@ pub(super) fn critical_dampings(wheel: &Wheel, key: Key, unit: f64) -> Vec<f64> 
     let start: Polynomial = once.iter().zip(&slope).map(|(once, slope)| once - slope).collect();
     let rate = |damping: f64| Some(damped(damping)?.growth_rate());
     let narrowed = |damping: f64| {
-        let (low, high) = (damping * (1.0 - NEAR), damping * (1.0 + NEAR));
-        let below = rate(low)?;
-        if (rate(high)? < 0.0) == (below < 0.0) { None } else { bisect(low, below, high, rate) }
+        NEAR.into_iter().find_map(|near| {
+            let (low, high) = (damping * (1.0 - near), damping * (1.0 + near));
+            let below = rate(low)?;
+            if (rate(high)? < 0.0) == (below < 0.0) { None } else { bisect(low, below, high, rate) }
+        })
     };
     let multiples = multiples_with_imaginary_roots(&start, &slope);
     let dampings = multiples.into_iter().map(|multiple| multiple * unit);
-    dampings.filter(|damping| *damping > 0.0 && damping.is_finite()).filter_map(narrowed).collect()
+    let roots = dampings.filter(|damping| *damping > 0.0 && damping.is_finite()).filter_map(narrowed);
+    // A root next to a motion that is nearly neutral for any damper may be lost in rounding: changes of the sign between samples are not.
+    let sample = |index: i32| unit * 10.0_f64.powf(f64::from(index) / SAMPLES_PER_DECADE);
+    let samples: Vec<(f64, f64)> =
+        (-SAMPLES..=SAMPLES).filter_map(|index| Some((sample(index), rate(sample(index))?))).collect();
+    let changes = samples.windows(2).filter(|pair| (pair[0].1 < 0.0) != (pair[1].1 < 0.0));
+    let found = changes.filter_map(|pair| bisect(pair[0].0, pair[0].1, pair[1].0, rate));
+    let mut dampings: Vec<f64> = roots.chain(found).collect();
+    dampings.sort_by(f64::total_cmp);
+    dampings.dedup_by(|next, before| *next - *before <= SAME * *next);
+    dampings
 }
 
 /// The numbers `c` with which `start + c slope` has a root on the imaginary axis.
@@ -114,8 +133,7 @@ mod tests {
                 if c_psi { (Key::CPsi, Key::CQ, 1e-3) } else { (Key::CQ, Key::CPsi, 1.0) };
             wheel = wheel.with(other, others[1] * if c_psi { 1.0 } else { 1e-3 }).unwrap();
             prop_assume!(wheel.uniform_motion().is_ok());
-            let mut critical = critical_dampings(&wheel, key, unit);
-            critical.sort_by(f64::total_cmp);
+            let critical = critical_dampings(&wheel, key, unit);
             let stable = |damping: f64| wheel.with(key, damping).unwrap().uniform_motion().unwrap().is_stable();
             let mut before: Option<(f64, bool)> = None;
             for index in 0..400 {

@@ -198,7 +198,9 @@ impl Conditions {
             // A step is taken again as long as it leads up: not for ever, for the cell is finite.
             loop {
                 let before = highest;
-                for (index, [low, high]) in cells.iter().copied().enumerate() {
+                for (index, [low, high]) in
+                    cells.iter().copied().enumerate().filter(|(_, [low, high])| low < high)
+                {
                     for step in [-part, part] {
                         let mut other = best.clone();
                         other[index] = (other[index] + step * (high - low)).clamp(low, high);

@@ -134,8 +134,8 @@ mod tests {
             let speed = lateral.speed.unwrap();
             if speed < up_to {
                 let [below, here, above] =
-                    [1.0 - 1e-3, 1.0, 1.0 + 1e-3].map(|part| closed_forms(&wheel, part * speed)[1]);
-                let aside = 1e-3 * (above - below) / (2.0 * (2.0 * here - above - below));
+                    [1.0 - 2e-4, 1.0, 1.0 + 2e-4].map(|part| closed_forms(&wheel, part * speed)[1]);
+                let aside = 2e-4 * (above - below) / (2.0 * (2.0 * here - above - below));
                 prop_assert!(aside.abs() < 1e-7, "{lateral:?} {aside:e}");
             }
         }
