@@ -273,3 +273,20 @@ fn two_torus_bifurcations_in_one_step() {
         assert!((number(&labelled(&cycles, label)["value"]) - value).abs() < 1e-10);
     }
 }
+
+/// Between them the torus is stable: one crosses the circle inwards, the other outwards, and the count is as before.
+#[test]
+fn two_torus_bifurcations_that_undo_each_other() {
+    for (first, gap) in [(0.3, 1e-4), (0.57, 5e-4), (0.1104, 2e-4)] {
+        let second = first + gap;
+        let folder = folder(&format!(
+            "par mu=-.1\ninit u=0,v=0,p=0,q=0\nr=u^2+v^2\ns=4*(mu-{first})*(mu-{second})-p^2-q^2\nu'=(mu-r)*u-5*v\n\
+             v'=(mu-r)*v+5*u\np'=s*p-0.25*q\nq'=s*q+0.25*p\ndone\n"
+        ));
+        folder.succeed("equilibria model.ode --along mu=-.2:1.2 -q -o equilibria.json");
+        let cycles = folder.json("cycles --from equilibria.json:HB1 --along mu=-.2:1.2");
+        for (label, value) in [("NS1", first), ("NS2", second)] {
+            assert!((number(&labelled(&cycles, label)["value"]) - value).abs() < 1e-8, "{first} {gap}");
+        }
+    }
+}

@@ -7,6 +7,13 @@ fn states(model: &str, along: &str, rest: &str) -> serde_json::Value {
     folder(model).json(&format!("equilibria model.ode --along {along} {rest}"))
 }
 
+/// The points of one kind.
+fn of_kind<'a>(result: &'a serde_json::Value, kind: &'a str) -> impl Iterator<Item = &'a serde_json::Value> {
+    points(result)
+        .iter()
+        .filter(move |point| point["label"].as_str().is_some_and(|label| label.starts_with(kind)))
+}
+
 #[test]
 fn a_stiff_equilibrium_is_no_branch_point() {
     let stiff = "par p=1,k=1e9\ninit x=1,y=1\nx'=k*(p-x)\ny'=x-y\ndone\n";
@@ -14,6 +21,55 @@ fn a_stiff_equilibrium_is_no_branch_point() {
         let found = states(stiff, "p=0.5:2", &format!("-s k={k}"));
         assert!(points(&found).iter().all(|point| point["stable"] == true), "k = {k}");
     }
+}
+
+/// A state that is zero all along the branch, driven by a product with the residual of another equation, has no size of its own.
+#[test]
+fn states_that_are_zero_but_for_rounding_are_no_degeneracy() {
+    for (f, starts) in
+        [("mu+x^2", ["x=-.5,z=0", "x=-.547723,z=1e-7"]), ("mu-x-x^3", ["x=-.3,z=0", "x=0,z=0"])]
+    {
+        let model = format!("par mu=-0.3\ninit x=0,z=0\nf={f}\nx'=f\nz'=-13*z+0.6*x*f\ndone\n");
+        for start in starts {
+            let found = states(&model, "mu=-1:1", &format!("--start {start}"));
+            let folds: Vec<f64> = of_kind(&found, "LP").map(|point| number(&point["value"])).collect();
+            assert_eq!(folds.len(), usize::from(f == "mu+x^2"), "{found}");
+        }
+    }
+    // Linear in a state that starts at rest: no line of equilibria.
+    let line = "par mu=0\ninit x=.001,y=0\nx'=mu-(x/10000+4*x/(1+x^2))\ny'=x-y\ndone\n";
+    let found = states(line, "mu=-3:3", "");
+    assert_eq!(of_kind(&found, "LP").count(), 4, "{found}");
+}
+
+/// Far from the start on one side, the other side is followed with the sizes of the start; and a branch that comes back from far away
+/// finds what it would find else.
+#[test]
+fn large_states_do_not_coarsen_what_is_small() {
+    let saturated = "par mu=0.1\ninit x=.02\nx'=mu-4*x/(1+x^2)\ndone\n";
+    let found = states(saturated, "mu=-3:3", "");
+    let folds: Vec<f64> = of_kind(&found, "LP").map(|point| number(&point["value"])).collect();
+    assert!(folds.len() == 2 && (folds[0] + 2.0).abs() < 1e-9 && (folds[1] - 2.0).abs() < 1e-9, "{folds:?}");
+    assert_eq!(of_kind(&found, "BP").count(), 0);
+    let wavy = "par mu=0.0\ninit x=.5,y=.5\ns=(1-x/sqrt(1+x^2))/2\n\
+                x'=mu-((x+sqrt(x^2+1))/1000+(sin(x)+x/40)*s)\ny'=-y+x\ndone\n";
+    let found = states(wavy, "mu=-2:2", "");
+    assert_eq!((of_kind(&found, "LP").count(), of_kind(&found, "BP").count()), (18, 0), "{found}");
+    // Every point is an equilibrium.
+    for point in found["points"].as_array().unwrap() {
+        let [mu, x] = [number(&point["value"]), number(&point["state"]["x"])];
+        let s = 0.5 * (1.0 - x / (1.0 + x * x).sqrt());
+        let residual = mu - ((x + (x * x + 1.0).sqrt()) / 1000.0 + (x.sin() + x / 40.0) * s);
+        assert!(residual.abs() < 1e-8, "{point}: {residual}");
+    }
+}
+
+#[test]
+fn fields_whose_derivatives_overflow_have_equilibria() {
+    let step = "par p=1\ninit x=1,y=0\nx'=p-x\ny'=-y+1/(1+exp((x+60)/.05))\ndone\n";
+    assert!(points(&states(step, "p=0:2", "")).iter().all(|point| point["stable"] == true));
+    let power = "par n=2,p=.2\ninit x=.2,y=0\nx'=-x+p\ny'=-y+y^n/(1+y^n)\ndone\n";
+    assert!(points(&states(power, "n=1.2:3", "")).iter().all(|point| point["stable"] == true));
 }
 
 #[test]

@@ -24,4 +24,4 @@ pub use newton::{Solved, solve_square};
 pub use problem::{AlgebraicEquations, AlgebraicProblem};
 pub(crate) use scaled_lu::ScaledLu;
 pub use system::DenseSystem;
-pub(crate) use system::{length, position};
+pub(crate) use system::{grown, length, position};

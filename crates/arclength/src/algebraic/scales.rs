@@ -15,6 +15,10 @@ const COUPLED_SHARE: f64 = 1e-2;
 const NONLINEAR_SHARE: f64 = 1e-3;
 /// and their sizes are this part of it.
 const AT_ZERO: f64 = 0.1;
+/// States smaller than this part of what drives them are zero but for rounding.
+const ROUNDED: f64 = 1e-10;
+/// Rates slower than this part of the fastest may be rounding of zero.
+const SLOWEST: f64 = 1e-8;
 /// A balanced influence of one state on another below this part of the fastest rate of their group is that of rounding (of which
 /// balancing leaves the square root) or next to none.
 const NO_INFLUENCE: f64 = 1e-6;
@@ -33,7 +37,7 @@ pub(crate) fn natural_scales(
     let (jacobian, lengths) = derivatives(field, state, parameters, speed);
     let (group, units) = groups_and_units(&jacobian, n);
     let nonlinear = nonlinear_lengths(&jacobian, &lengths, &units, n, speed);
-    (0..n)
+    let mut scales: Vec<f64> = (0..n)
         .map(|index| {
             let members = || (0..n).filter(|&other| group[other] == group[index]);
             let own = |k: usize| state[k].abs().min(nonlinear[k]);
@@ -58,7 +62,34 @@ pub(crate) fn natural_scales(
             let scale = own(index).max(share * common * units[index]);
             if scale.is_finite() && scale > 0.0 { scale } else { 1.0 }
         })
-        .collect()
+        .collect();
+    drive(&mut scales, &jacobian, &group);
+    scales
+}
+
+/// A state that is zero but for rounding, in a field that is linear in it, gets its size from the states of other groups that drive it.
+fn drive(scales: &mut [f64], jacobian: &[f64], group: &[usize]) {
+    let n = scales.len();
+    let fastest = (0..n).map(|index| jacobian[index * (n + 1)].abs()).fold(0.0, f64::max);
+    for _ in 0..n {
+        let mut changed = false;
+        for index in 0..n {
+            let entry = |other: usize| (jacobian[index + n * other] * scales[other]).abs();
+            let others = (0..n).filter(|&other| group[other] != group[index]);
+            let inflow = others.map(entry).fold(0.0, f64::max);
+            let members = (0..n).filter(|&other| group[other] == group[index]);
+            // At a fold a rate may be rounding itself.
+            let rate = members.map(entry).fold(0.0, f64::max) / scales[index];
+            let driven = inflow / if rate > SLOWEST * fastest { rate } else { fastest };
+            if driven.is_finite() && scales[index] < ROUNDED * driven {
+                scales[index] = AT_ZERO * driven;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
 }
 
 /// The Jacobian and its first and second derivatives with respect to every state, the moduli of the latter two by

@@ -13,6 +13,8 @@ pub struct DenseSystem<P> {
     pub scales: Vec<f64>,
     /// The Jacobian at the last factorisation, bordered below, column-major.
     pub matrix: Vec<f64>,
+    /// The sizes at the start.
+    first_scales: Vec<f64>,
     /// Smallest and largest value of every unknown so far.
     visited: Vec<[f64; 2]>,
     lu: ScaledLu,
@@ -25,6 +27,7 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
         let n = problem.unknowns();
         Self {
             problem,
+            first_scales: scales.clone(),
             scales,
             matrix: vec![0.0; n * n],
             visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
@@ -51,13 +54,20 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
         }
     }
 
-    /// The scales of the first `count` unknowns grow to the ranges that the curve has covered.
+    /// The scales of the first `count` unknowns grow to the ranges that the curve has covered. Beyond [`LARGEST_GROWTH`] they are no larger
+    /// than the unknown itself, so that a curve that comes back from far away is not followed with the steps and tolerances of there.
     pub fn grow_scales(&mut self, unknown: &[f64], count: usize) {
-        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.scales).take(count)
-        {
+        let sizes = self.scales.iter_mut().zip(&self.first_scales);
+        for ((value, range), (scale, first)) in unknown.iter().zip(&mut self.visited).zip(sizes).take(count) {
             *range = [range[0].min(*value), range[1].max(*value)];
-            *scale = scale.max(range[1] - range[0]);
+            *scale = grown(*first, *range, *value);
         }
+    }
+
+    /// Forgets how far the curve has gone: the next direction starts with the sizes of the start.
+    pub fn restart(&mut self) {
+        self.scales.copy_from_slice(&self.first_scales);
+        self.visited.fill([f64::INFINITY, f64::NEG_INFINITY]);
     }
 
     /// A tangent at `unknown`, a unit vector in the metric with either sign.
@@ -87,6 +97,15 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
         }
         Ok(tangent)
     }
+}
+
+/// Growth of a scale over that at the start up to which the range that was covered counts alone.
+const LARGEST_GROWTH: f64 = 100.0;
+
+/// The scale of an unknown: that at the start, or the range covered.
+pub(crate) fn grown(first: f64, range: [f64; 2], value: f64) -> f64 {
+    let covered = range[1] - range[0];
+    first.max(covered.min(value.abs().max(LARGEST_GROWTH * first)))
 }
 
 impl<P: AlgebraicEquations> Equations for DenseSystem<P> {

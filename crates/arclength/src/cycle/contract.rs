@@ -260,6 +260,11 @@ impl Curve for CycleCurve<'_> {
         matches!((argument(one), argument(other)), (Some(one), Some(other)) if (one - other).abs() > DISTINCT)
     }
 
+    fn changes_at(&self, point: &CycleInspection) -> Option<&'static [usize]> {
+        // A located torus bifurcation, whose complex pair is on the circle.
+        point.normal_form.iter().any(|(name, _)| *name == "argument").then_some(&[2])
+    }
+
     fn turns_at(&self, point: &CycleInspection) -> Option<bool> {
         let known = point.branching.as_ref()?.known.as_ref()?;
         Some(known.parameter == 0.0)

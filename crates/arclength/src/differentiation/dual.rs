@@ -217,7 +217,7 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     #[inline]
     fn exp(self) -> Self {
         let exponential = self.value.exp();
-        self.chain(exponential, exponential)
+        self.chain(exponential, bounded(exponential, exponential))
     }
     #[inline]
     fn ln(self) -> Self {
@@ -261,11 +261,13 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     }
     #[inline]
     fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(sine, bounded(sine, cosine))
     }
     #[inline]
     fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(cosine, bounded(cosine, sine))
     }
     #[inline]
     fn tanh(self) -> Self {
@@ -285,7 +287,8 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     #[inline]
     fn powf(self, exponent: Self) -> Self {
         let power = exponent.value.value();
-        let constant = exponent.is_constant();
+        // Zero to any positive power is zero.
+        let constant = exponent.is_constant() || (self.value.value() == 0.0 && power > 0.0);
         if constant && power.fract() == 0.0 && power.abs() <= f64::from(i32::MAX) {
             return self.powi(power as i32);
         }
@@ -303,9 +306,31 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     }
 }
 
+/// The rate of a function that grows exponentially; where that has overflowed, zero: what is finite then has it in a denominator, and
+/// does not depend on it.
+#[inline]
+fn bounded<T: Scalar>(value: T, rate: T) -> T {
+    if value.value().is_infinite() { T::zero() } else { rate }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn derivatives_beside_overflow_and_of_powers_of_zero() {
+        let x = Dual::<Dual<f64, 1>, 1>::variable(Dual::variable(1e4, 0), 0);
+        let one = Dual::one();
+        for quotient in [one / (one + x.exp()), x / x.cosh(), x.sinh().recip()] {
+            let slope = quotient.derivatives[0];
+            assert_eq!([quotient.value.value, slope.value, slope.derivatives[0]], [0.0; 3]);
+        }
+        let base = Dual::<f64, 2>::variable(0.0, 0);
+        for (power, slope) in [(2.5, 0.0), (1.0, 1.0), (3.0, 0.0)] {
+            let found = base.powf(Dual::variable(power, 1));
+            assert_eq!((found.value, found.derivatives), (0.0, [slope, 0.0]));
+        }
+    }
 
     #[test]
     fn the_value_is_that_of_the_plain_function_at_the_edge_of_its_domain_too() {

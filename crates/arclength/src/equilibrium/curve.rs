@@ -61,6 +61,7 @@ impl<'a> EquilibriumCurve<'a> {
     pub(super) fn restart(&mut self) {
         self.idle_way = 0.0;
         self.has_moved = false;
+        self.system.restart();
     }
 
     /// The value to which the parameter tends where its rate dies out along the curve: from the rates at two solutions.

@@ -2,7 +2,7 @@
 
 use super::codimension_two::CodimensionTwoPoint;
 use super::kind::{LocusKind, Monitor};
-use crate::algebraic::{DenseSystem, Differentiator};
+use crate::algebraic::{DenseSystem, Differentiator, grown};
 use crate::continuation::Settings;
 use crate::equilibrium::spectrum::Spectrum;
 use crate::error::Error;
@@ -23,6 +23,8 @@ pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
     pub settings: Settings,
     /// Sizes of the states.
     pub states: Vec<f64>,
+    /// Those at the start.
+    first_states: Vec<f64>,
     pub(super) ranges: [f64; 2],
     pub(super) visited: Vec<[f64; 2]>,
     pub(super) differentiator: Differentiator,
@@ -41,6 +43,7 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
             settings,
             ranges,
             visited: vec![[f64::INFINITY, f64::NEG_INFINITY]; n],
+            first_states: states.clone(),
             states,
             differentiator: Differentiator::default(),
             workspace: EigenvalueWorkspace::new(n),
@@ -48,6 +51,13 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
             residual: vec![0.0; n],
             lifetime: PhantomData,
         }
+    }
+
+    /// Forgets how far the curve has gone: the next direction starts with the sizes of the start.
+    pub(super) fn restart(&mut self) {
+        self.states.copy_from_slice(&self.first_states);
+        self.visited.fill([f64::INFINITY, f64::NEG_INFINITY]);
+        self.system.scales = self.system.problem.sizes(&self.states, self.ranges);
     }
 
     /// State and parameters out of the unknowns.
@@ -77,9 +87,10 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
         unknown: &mut [f64],
         vectors: &mut [&mut Vec<f64>],
     ) -> Result<(), Error> {
-        for ((value, range), scale) in unknown.iter().zip(&mut self.visited).zip(&mut self.states) {
+        let sizes = self.states.iter_mut().zip(&self.first_states);
+        for ((value, range), (scale, first)) in unknown.iter().zip(&mut self.visited).zip(sizes) {
             *range = [range[0].min(*value), range[1].max(*value)];
-            *scale = scale.max(range[1] - range[0]);
+            *scale = grown(*first, *range, *value);
         }
         let spectrum = self.spectrum(unknown)?;
         let largest = spectrum.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);

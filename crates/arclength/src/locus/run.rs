@@ -285,8 +285,9 @@ impl<'a> Run<'a> {
         point_forward(&mut tangent, ranges);
         let directions = both_ways(|sign| {
             if sign < 0.0 {
-                // The normalisations have moved on: back to those of the start.
+                // The normalisations and sizes have moved on: back to those of the start.
                 curve.system.problem = normalised.clone();
+                curve.restart();
                 curve.renormalize(&mut unknown, &mut [&mut tangent])?;
                 tangent.iter_mut().for_each(|entry| *entry = -*entry);
             }
