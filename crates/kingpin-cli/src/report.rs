@@ -18,7 +18,7 @@ const EXAMPLE: &str = "kingpin report --wheel trolley.toml --up-to v=3 --out rep
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct ReportCommand {
-    /// Largest speed that is looked at [default: twice that of the wheel]
+    /// Largest speed that is looked at [default: twice that of the wheel, or 1.2 times a critical speed that is not far]
     #[arg(long, value_name = "v=VALUE")]
     up_to: Option<Assignment>,
 
