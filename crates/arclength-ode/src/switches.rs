@@ -7,6 +7,7 @@
 use crate::compile::{Graph, NodeId, Operation};
 use crate::expression::{BinaryOperation, UnaryOperation};
 use crate::interval::Interval;
+use crate::tape::apply_binary;
 
 /// Most intervals that are looked at for one switch: then it is given up.
 const MOST_INTERVALS: usize = 100_000;
@@ -192,11 +193,19 @@ impl Trigger {
             }
             Self::Whole(a) => varying(value(a)) && holds_whole(value(a)),
             Self::WholeQuotient(a, b) => {
-                let quotient = value(a).binary(BinaryOperation::Divide, value(b));
-                varying(quotient) && holds_whole(quotient)
+                let (a, b) = (value(a), value(b));
+                let quotient = a.binary(BinaryOperation::Divide, b);
+                // A remainder is exact, and its quotient may pass a whole number where the rounded one stands at it.
+                let passes = || whole_quotient(a.low, b.low) != whole_quotient(a.high, b.high);
+                varying(quotient) && holds_whole(quotient) || (varying(a) || varying(b)) && passes()
             }
         }
     }
+}
+
+/// How often the second number goes into the first, as `mod` has it.
+fn whole_quotient(dividend: f64, divisor: f64) -> f64 {
+    ((dividend - apply_binary(BinaryOperation::Modulo, dividend, divisor)) / divisor).round()
 }
 
 /// Whether a whole number lies in the interval.

@@ -249,6 +249,16 @@ impl<'a> Stage<'a> {
             Phase::Sliding { switch: along, below, above } => {
                 let [below, above] =
                     [below, above].map(|cells| self.beyond(phase, cells, switch, upwards, time, state));
+                // What has jumped may have taken the switch along, away from the motion.
+                let value = self.within(&below).switches(time, state, below.len())[*along];
+                let border = self.thresholds[*along].borders(below[*along])[1];
+                if (value - border).abs() > ON_BORDER * value.abs().max(border.abs()).max(1.0) {
+                    let cells = if value > border { above } else { below };
+                    let cells = self.settled(cells, time, state, |index, threshold, cell, value| {
+                        if index == *along { threshold.cell(value) } else { cell }
+                    });
+                    return Phase::Within { cells, entry: None };
+                }
                 self.at_border(*along, below, above, true, time, state)
             }
         }

@@ -64,6 +64,32 @@ fn large_states_do_not_coarsen_what_is_small() {
     }
 }
 
+/// Each group of equations has its own time scale, and no other's.
+#[test]
+fn a_slow_state_beside_a_fast_one_has_its_fold() {
+    for (slow, fast) in [(1e-6, "-z"), (1e-10, "1-z"), (1e-8, "x-z")] {
+        let model = format!("par p=1\nx'={slow}*(p-x^2)\nz'={fast}\ninit x=1,z=1\ndone\n");
+        let found = states(&model, "p=-2:2", "");
+        let folds: Vec<f64> = of_kind(&found, "LP").map(|point| number(&point["value"])).collect();
+        assert!(folds.len() == 1 && folds[0].abs() < 1e-12 && of_kind(&found, "BP").count() == 0, "{found}");
+    }
+    let isola = "par p=0.2\nx'=1-p*p-((x-5e6)/5e6)^2\ny'=-y+(x-5e6)*p\ninit x=9.9e6,y=9.8e5\ndone\n";
+    let found = states(isola, "p=-2:2", "");
+    assert_eq!((of_kind(&found, "LP").count(), of_kind(&found, "BP").count()), (2, 0), "{found}");
+}
+
+/// A value that is asked for may be that of a fold or a branch point.
+#[test]
+fn values_of_special_points_may_be_asked_for() {
+    for (field, start, label) in [("p-x^2", "1", "LP1"), ("p*x-x^2", "0", "BP1"), ("p*x-x^3", "0", "BP1")] {
+        let p = if label == "LP1" { 1 } else { -1 };
+        let model = format!("par p={p}\nx'={field}\ninit x={start}\ndone\n");
+        let found = states(&model, "p=-1:1", "--at 0");
+        assert!(number(&labelled(&found, label)["value"]).abs() < 1e-12, "{found}");
+        assert_eq!(labelled(&found, "EP2")["value"], 1.0);
+    }
+}
+
 #[test]
 fn fields_whose_derivatives_overflow_have_equilibria() {
     let step = "par p=1\ninit x=1,y=0\nx'=p-x\ny'=-y+1/(1+exp((x+60)/.05))\ndone\n";

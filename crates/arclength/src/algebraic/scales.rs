@@ -36,7 +36,7 @@ pub(crate) fn natural_scales(
     let n = state.len();
     let (jacobian, lengths) = derivatives(field, state, parameters, speed);
     let (group, units) = groups_and_units(&jacobian, n);
-    let nonlinear = nonlinear_lengths(&jacobian, &lengths, &units, n, speed);
+    let nonlinear = nonlinear_lengths(&jacobian, &lengths, (&group, &units), state, speed);
     let mut scales: Vec<f64> = (0..n)
         .map(|index| {
             let members = || (0..n).filter(|&other| group[other] == group[index]);
@@ -134,39 +134,43 @@ fn derivatives(
     (jacobian, found)
 }
 
-/// For every state the distance over which the balanced Jacobian changes by its own size; infinite where the field is
-/// linear in it.
+/// For every state the distance over which the balanced Jacobian changes by its own size, all of it or that of the group of the state,
+/// which has its own time scale; infinite where the field is linear in it.
 fn nonlinear_lengths(
     jacobian: &[f64],
     derivatives: &Derivatives,
-    units: &[f64],
-    n: usize,
+    (group, units): (&[usize], &[f64]),
+    state: &[f64],
     speed: &[f64],
 ) -> Vec<f64> {
-    let balanced = |matrix: &[f64]| {
-        matrix
-            .iter()
-            .enumerate()
-            .map(|(entry, value)| (value * units[entry / n] / units[entry % n]).abs())
-            .filter(|value| value.is_finite())
-            .fold(0.0, f64::max)
+    let n = state.len();
+    let length = |index: usize, counts: &dyn Fn(usize) -> bool| {
+        let largest = |values: &mut dyn Iterator<Item = f64>| {
+            values.map(f64::abs).filter(|value| value.is_finite()).fold(0.0, f64::max)
+        };
+        let balanced = |matrix: &[f64]| {
+            let entries = matrix.iter().enumerate();
+            let inside = entries.filter(|(entry, _)| counts(entry % n) && counts(entry / n));
+            largest(&mut inside.map(|(entry, value)| value * units[entry / n] / units[entry % n]))
+        };
+        let linear = balanced(jacobian);
+        let driven = largest(&mut (0..n).filter(|&row| counts(row)).map(|row| speed[row] / units[row]));
+        let block = n * n * index..n * n * (index + 1);
+        let quadratic = balanced(&derivatives.first[block.clone()]) * units[index];
+        let cubic = balanced(&derivatives.second[block]) * units[index] * units[index];
+        let by_quadratic = (linear / quadratic).max((driven / quadratic).sqrt());
+        let by_cubic = (linear / cubic).sqrt().max((driven / cubic).cbrt());
+        let length = by_quadratic.min(by_cubic) * units[index];
+        if length > 0.0 { length } else { f64::INFINITY }
     };
-    let linear = balanced(jacobian);
-    let driven = speed
-        .iter()
-        .zip(units)
-        .map(|(value, unit)| (value / unit).abs())
-        .filter(|value| value.is_finite())
-        .fold(0.0, f64::max);
     (0..n)
-        .map(|state| {
-            let block = n * n * state..n * n * (state + 1);
-            let quadratic = balanced(&derivatives.first[block.clone()]) * units[state];
-            let cubic = balanced(&derivatives.second[block]) * units[state] * units[state];
-            let by_quadratic = (linear / quadratic).max((driven / quadratic).sqrt());
-            let by_cubic = (linear / cubic).sqrt().max((driven / cubic).cbrt());
-            let length = by_quadratic.min(by_cubic) * units[state];
-            if length > 0.0 { length } else { f64::INFINITY }
+        .map(|index| {
+            let all = length(index, &|_| true);
+            let own = length(index, &|other| group[other] == group[index]);
+            // That of the group counts where the state agrees with it: at a critical state of no size a rate is zero but for rounding.
+            let size = state[index].abs();
+            let agrees = size > NONLINEAR_SHARE * own && own > NONLINEAR_SHARE * size && size > ROUNDED * all;
+            if agrees { all.min(own) } else { all }
         })
         .collect()
 }

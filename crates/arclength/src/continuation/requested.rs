@@ -64,10 +64,11 @@ const TARGET_VALUE: f64 = 1e-11;
 /// Solutions between two neighbours, in order.
 pub(super) type Between<C> = Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
 
-/// Inserts a converged solution wherever the first bounded parameter passes a requested value.
+/// Inserts a converged solution wherever the first bounded parameter passes a requested value; none where a branch point has that value
+/// and none can be told from it.
 ///
 /// # Errors
-/// When the solution with that value cannot be computed.
+/// When eigenvalues of a solution cannot be computed.
 pub(super) fn insert_values<C: Curve>(
     curve: &mut C,
     current: &Solution<C::Point>,
@@ -81,8 +82,19 @@ pub(super) fn insert_values<C: Curve>(
         insert_passages(curve, current, between, advanced, test, |curve, left, right| {
             let found = fix(curve, left, right, bound.from_end, value, settings).or_else(|error| {
                 fix_closely(curve, left, right, bound.from_end, value, settings)?.ok_or(error)
-            })?;
-            Ok(Some((found, Origin::Requested)))
+            });
+            let found = match found {
+                // At a turning point or a branch point the value does not determine the solution: its place along the curve does.
+                Err(Error::NotFound { .. }) => {
+                    let tolerances = (TARGET_BRACKET, TARGET_VALUE * value.abs());
+                    match locate_value(curve, [left, right], &settings.for_locating(), tolerances, test) {
+                        Err(Error::NotFound { .. }) => None,
+                        found => found?,
+                    }
+                }
+                found => Some(found?),
+            };
+            Ok(found.map(|solution| (solution, Origin::Requested)))
         })?;
     }
     Ok(())

@@ -105,3 +105,27 @@ fn stiff_fields_whose_derivatives_overflow() {
     let text = "x'=-1e6*(x-sqrt(y)-sin(t))\ny'=0\ninit x=0,y=0\n";
     close(&History::of(text, 3.0, 2).end()[1..2], &[3.0_f64.sin() - 3.0_f64.cos() * 1e-6], 1e-8);
 }
+
+/// A motion that slides along a switch is left where that jumps away, and comes back to it later.
+#[test]
+fn a_slide_ends_where_its_switch_jumps_away() {
+    let at = |text: &str, duration: f64, state: usize| History::of(text, duration, 2).end()[state];
+    let step = "x'=1\nz'=if(z>heav(x))then(-1)else(1)\ninit x=-1,z=.3\n";
+    close(&[at(step, 1.5, 2), at(step, 3.0, 2)], &[0.5, 1.0], 1e-9);
+    // The surface falls from 1 to 0 and rises with the slope 1, the motion falls with the slope 3.
+    let saw = "x'=1\nz'=-sign(z-mod(x,1))*3\ninit x=-1.5,z=-.8\n";
+    close(&[at(saw, 2.75, 1), at(saw, 2.75, 2), at(saw, 2.6, 2)], &[1.25, 0.25, 0.7], 1e-9);
+    let stairs = "x'=1\nz'=heav(flr(x)-z)-heav(z-flr(x))\ninit x=-.5,z=.2\n";
+    close(&[at(stairs, 2.0, 2)], &[0.5], 1e-9);
+}
+
+/// A ramp against a state, as in a converter with pulse width modulation, with a period that is no binary fraction.
+#[test]
+fn ramps_of_any_period_against_a_state() {
+    for period in [0.4, 0.1, 0.7, 4e-4] {
+        let text = |ramp: &str| format!("x'=-x+heav({ramp}-x)\ninit x=.5\n");
+        let [by_remainder, by_quotient] = [format!("mod(t,{period})/{period}"), format!("mod(t/{period},1)")]
+            .map(|ramp| History::of(&text(&ramp), 100.0 * period, 2).end()[1]);
+        assert!((by_remainder - by_quotient).abs() < 1e-9, "{period}: {by_remainder} {by_quotient}");
+    }
+}
