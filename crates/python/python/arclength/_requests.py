@@ -146,15 +146,16 @@ def conditions(field: str, given: Conditions | None) -> dict[str, Any] | list[An
     if given is None:
         return None
     allowed = '(a, b) for all values between, a list [a, b, c] for each, "a:b" or "a,b,c"'
+    parts: Any = given
     if isinstance(given, str):
         ends = given.split(":")
-        given = (ends[0], ends[1]) if len(ends) == 2 else given.split(",")
-    if isinstance(given, tuple):
-        if len(given) != 2:
+        parts = (ends[0], ends[1]) if len(ends) == 2 else given.split(",")
+    if isinstance(parts, tuple):
+        if len(parts) != 2:
             raise _form(field, given, allowed)
-        start, end = sorted((number(field, value) for value in given), key=float)
+        start, end = sorted((number(field, value) for value in parts), key=float)
         return {"start": start, "end": end}
-    return numbers(field, given)
+    return numbers(field, parts)
 
 
 def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] | None) -> list[dict[str, Any]]:
