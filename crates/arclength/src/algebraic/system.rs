@@ -54,7 +54,7 @@ impl<P: AlgebraicEquations> DenseSystem<P> {
         }
     }
 
-    /// The scales of the first `count` unknowns grow to the ranges that the curve has covered. Beyond [`LARGEST_GROWTH`] they are no larger
+    /// The scales of the first `count` unknowns grow to the ranges that the curve has covered. Beyond a hundredfold of the first they are no larger
     /// than the unknown itself, so that a curve that comes back from far away is not followed with the steps and tolerances of there.
     pub fn grow_scales(&mut self, unknown: &[f64], count: usize) {
         let sizes = self.scales.iter_mut().zip(&self.first_scales);
