@@ -86,20 +86,28 @@ impl<'a> Stage<'a> {
         let cells = vec![1.0; self.thresholds.len()];
         let mut cells = self.settled(cells, time, state, |_, threshold, _, value| threshold.cell(value));
         let values = self.within(&cells).switches(time, state, cells.len());
-        let written = Flow::new(self.model, self.parameters, &[], self.interval).velocity(time, state);
         for (switch, value) in values.into_iter().enumerate() {
             let threshold = self.thresholds[switch];
-            if value == threshold.borders(cells[switch])[0]
-                && self.within(&cells).velocity(time, state) != written
-            {
-                let mut below = cells.clone();
-                below[switch] = threshold.next(cells[switch], false);
-                let below = self.settled(below, time, state, |index, threshold, cell, value| {
-                    if index == switch { cell } else { threshold.cell(value) }
-                });
-                if self.within(&below).velocity(time, state) == written {
-                    cells = below;
-                }
+            if value != threshold.borders(cells[switch])[0] {
+                continue;
+            }
+            let written = Flow::new(self.model, self.parameters, &[], self.interval).velocity(time, state);
+            if self.within(&cells).velocity(time, state) == written {
+                continue;
+            }
+            let mut below = cells.clone();
+            below[switch] = threshold.next(cells[switch], false);
+            let below =
+                self.settled(
+                    below,
+                    time,
+                    state,
+                    |index, threshold, cell, value| {
+                        if index == switch { cell } else { threshold.cell(value) }
+                    },
+                );
+            if self.within(&below).velocity(time, state) == written {
+                cells = below;
             }
         }
         Phase::Within { cells, entry: None }
