@@ -181,7 +181,7 @@ impl UniformMotion {
         let unstable = || eigenvalues.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count();
         match self.is_surely_stable() {
             Some(true) if growth_rate < 0.0 => Stability::Stable,
-            Some(false) if growth_rate > 0.0 => Stability::Unstable { dimension: unstable() },
+            Some(false) if growth_rate > 0.0 => Stability::Unstable { dimension: Some(unstable()) },
             _ => Stability::Undecided,
         }
     }

@@ -22,6 +22,10 @@ const SLOWEST: f64 = 1e-8;
 /// A balanced influence of one state on another below this part of the fastest rate of their group is that of rounding (of which
 /// balancing leaves the square root) or next to none.
 const NO_INFLUENCE: f64 = 1e-6;
+/// Part of a parameter's range that counts as next to a value,
+const NEXT_TO: f64 = 0.02;
+/// and part of a size below which the one there shows that it was an accident.
+const ACCIDENTAL: f64 = 0.01;
 /// Sweeps of balancing.
 const SWEEPS: usize = 30;
 
@@ -64,6 +68,34 @@ pub(crate) fn natural_scales(
         })
         .collect();
     drive(&mut scales, &jacobian, &group);
+    scales
+}
+
+/// Sizes of the states at an equilibrium from which a branch starts along the parameter `active`, which has a range of this width. Where
+/// the parameter is a factor of what is nonlinear, as in `mu (1 - x^2) y`, the field may be linear, but for rounding, at the very
+/// value of a Hopf point: the sizes are those next to it.
+pub(crate) fn natural_scales_along(
+    field: &ErasedField<'_>,
+    state: &[f64],
+    parameters: &[f64],
+    (active, width): (usize, f64),
+) -> Vec<f64> {
+    let standing = vec![0.0; state.len()];
+    let mut scales = natural_scales(field, state, parameters, &standing);
+    for side in [-NEXT_TO, NEXT_TO] {
+        let mut there = parameters.to_vec();
+        there[active] += side * width;
+        let mut value = vec![0.0; state.len()];
+        field.evaluate(state, &there, &mut value);
+        if value.iter().any(|entry| !entry.is_finite()) {
+            continue;
+        }
+        for (here, there) in scales.iter_mut().zip(natural_scales(field, state, &there, &standing)) {
+            if there < ACCIDENTAL * *here {
+                *here = there;
+            }
+        }
+    }
     scales
 }
 

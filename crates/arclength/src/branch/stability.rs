@@ -10,10 +10,11 @@ pub enum Stability {
     Stable,
     /// Perturbations grow in some directions.
     Unstable {
-        /// Number of unstable eigenvalues or multipliers, the dimension of the unstable manifold.
-        dimension: usize,
+        /// Number of unstable eigenvalues or multipliers, the dimension of the unstable manifold; `None` where further ones are
+        /// closer to the boundary of stability than they are accurate.
+        dimension: Option<usize>,
     },
-    /// An eigenvalue or multiplier is closer to the boundary of stability than it is accurate.
+    /// An eigenvalue or multiplier is closer to the boundary of stability than it is accurate, and none is surely beyond it.
     Undecided,
 }
 
@@ -27,11 +28,16 @@ impl Stability {
         }
     }
 
+    /// Whether every eigenvalue or multiplier is on a side of the boundary of stability that is certain.
+    pub(crate) fn is_decided(self) -> bool {
+        self.unstable_dimension().is_some()
+    }
+
     /// Number of unstable directions; `None` when undecided.
     pub fn unstable_dimension(self) -> Option<usize> {
         match self {
             Self::Stable => Some(0),
-            Self::Unstable { dimension } => Some(dimension),
+            Self::Unstable { dimension } => dimension,
             Self::Undecided => None,
         }
     }

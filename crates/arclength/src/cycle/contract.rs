@@ -194,9 +194,8 @@ impl Curve for CycleCurve<'_> {
     fn test(&self, kind: SpecialKind, solution: &Solution<CycleInspection>) -> Option<Reading> {
         let floquet = &solution.point.floquet;
         let reading = match kind {
-            SpecialKind::FoldOfCycles | SpecialKind::BranchPointOfCycles if self.follows_neutral_family => {
-                return None;
-            }
+            // The parameter stands still.
+            SpecialKind::FoldOfCycles if self.follows_neutral_family => return None,
             // On the explosion of a canard the parameter may vary by its rounding only.
             SpecialKind::FoldOfCycles => {
                 let turn = self.certain_turn(solution);

@@ -144,7 +144,7 @@ impl<'a> CycleCurve<'a> {
         if collocation.problem.has_borders() {
             collocation.set_mesh(collocation.mesh().to_vec(), start);
         }
-        let sizes = StateSizes::new(&collocation.problem, start);
+        let sizes = StateSizes::new(&collocation.problem, start, parameter_scale);
         let mut curve = Self {
             segments_error,
             resolution,

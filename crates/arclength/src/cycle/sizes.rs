@@ -3,7 +3,7 @@
 
 use super::extrema::Range;
 use super::limit_cycle::LimitCycle;
-use crate::algebraic::scales::natural_scales;
+use crate::algebraic::scales::natural_scales_along;
 use crate::collocation::problem::BoundaryValueEquations;
 
 /// Part of its mean below which the amplitude of a state does not count as its size.
@@ -51,8 +51,8 @@ pub(crate) struct StateSize {
 }
 
 impl StateSizes {
-    /// `start` holds the unknowns of the first cycle.
-    pub(crate) fn new(problem: &LimitCycle<'_>, start: &[f64]) -> Self {
+    /// `start` holds the unknowns of the first cycle, `range` is the width of the parameter's range.
+    pub(crate) fn new(problem: &LimitCycle<'_>, start: &[f64], range: f64) -> Self {
         let n = problem.dimension();
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = start[start.len() - 1];
@@ -70,7 +70,7 @@ impl StateSizes {
             .zip(&sizes)
             .map(|(value, size)| if *size < rounding { 0.0 } else { *value })
             .collect();
-        let natural = natural_scales(&problem.field, &state, &parameters, &vec![0.0; n]);
+        let natural = natural_scales_along(&problem.field, &state, &parameters, (problem.active, range));
         Self {
             largest: vec![0.0; n],
             visited: vec![Range { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],

@@ -321,6 +321,9 @@ fn newton(
 ) -> Result<Option<Located>, Error> {
     let settings = curve.settings;
     let sign = before.orientation;
+    let branch_point_test = |curve: &CycleCurve<'_>, solution: &Node| {
+        branch_point_test(solution, sign, curve.follows_neutral_family)
+    };
     let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
     let length = along(curve, before, &after.unknown);
     let unperturbed = (UNPERTURBED_PART * curve.resolution.tolerance).max(UNPERTURBED);
@@ -330,7 +333,7 @@ fn newton(
             Kind::Fold => Some(curve.certain_turn(solution)),
             Kind::Doubling => Some(point.doubling_test()),
             Kind::Torus => torus_test(point, rank),
-            Kind::BranchPoint => branch_point_test(solution, sign),
+            Kind::BranchPoint => branch_point_test(curve, solution),
             Kind::Cycle => None,
         }
     };
@@ -340,7 +343,7 @@ fn newton(
             Ok(Some(start)) => converge(curve, &direction, start, kind)?,
             // Next to a branch point the equations of the branch are singular, but its ends are good starts.
             Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {
-                let distance = |end: &Node| branch_point_test(end, sign).map_or(f64::INFINITY, f64::abs);
+                let distance = |end: &Node| branch_point_test(curve, end).map_or(f64::INFINITY, f64::abs);
                 let nearest = if distance(before) <= distance(after) { before } else { after };
                 converge(curve, &direction, nearest, kind)?
             }
@@ -444,8 +447,16 @@ fn error_name(name: &str) -> &'static str {
     }
 }
 
-/// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation.
-fn branch_point_test(solution: &Solution<CycleInspection>, sign: f64) -> Option<f64> {
+/// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation. Along a family of cycles for one value of
+/// the parameter a multiplier is one everywhere, and the orientation alone tells.
+fn branch_point_test(
+    solution: &Solution<CycleInspection>,
+    sign: f64,
+    is_along_family: bool,
+) -> Option<f64> {
+    if is_along_family {
+        return Some(-sign * solution.orientation);
+    }
     let multipliers = &solution.point.floquet.nontrivial;
     let positive = multipliers.iter().filter(|multiplier| multiplier.argument == 0.0);
     let nearest = positive.map(|multiplier| multiplier.log_modulus.abs()).fold(f64::INFINITY, f64::min);

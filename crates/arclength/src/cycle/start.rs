@@ -9,7 +9,7 @@ use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::switching::{Branching, Departure};
 use crate::algebraic::Differentiator;
-use crate::algebraic::scales::natural_scales;
+use crate::algebraic::scales::natural_scales_along;
 use crate::branch::{
     Branch, Continuation, Criticality, Label, Problem, SpecialKind, invalid, observer, request,
 };
@@ -339,8 +339,8 @@ impl<'a> Asked<'a> {
     ) -> Result<FollowedCycles, Error> {
         // Shorter steps asked for mean a shorter first one.
         let share = (self.settings.initial_step / Settings::default().initial_step).min(1.0);
-        let standing = vec![0.0; hopf.state.len()];
-        let scales = natural_scales(&self.field, hopf.state, &self.parameters, &standing);
+        let range = (self.active, self.bound.width());
+        let scales = natural_scales_along(&self.field, hopf.state, &self.parameters, range);
         let mut amplitude = share * hopf.first_amplitude(self.bound.width(), &scales);
         // A first cycle of another stability than the normal form gives lies behind a fold, or behind another bifurcation, and so does
         // one whose parameter is elsewhere.

@@ -89,8 +89,12 @@ impl EquilibriumPoint {
             state: state.to_vec(),
             // An eigenvalue on the axis, however its rounding comes out, decides nothing.
             stability: match special.as_deref() {
-                Some(SpecialPoint::Fold(_) | SpecialPoint::BranchPoint(_) | SpecialPoint::Hopf(_)) => {
-                    Stability::Undecided
+                Some(SpecialPoint::Fold(_) | SpecialPoint::BranchPoint(_)) => {
+                    spectrum.stability_beside(&[Complex64::ZERO])
+                }
+                Some(SpecialPoint::Hopf(hopf)) => {
+                    let critical = Complex64::new(0.0, hopf.frequency);
+                    spectrum.stability_beside(&[critical, critical.conj()])
                 }
                 _ => spectrum.stability,
             },

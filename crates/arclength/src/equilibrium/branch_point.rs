@@ -1,6 +1,6 @@
 //! Branch points of equilibria: the coefficients of the bifurcation equation and the other branch.
 
-use super::coefficient_error;
+use super::coefficient_error::{self, Place};
 use super::fold::null_vectors;
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
@@ -93,9 +93,14 @@ impl BranchPoint {
     /// The same with the errors of its coefficients.
     fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
         let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
-        let part = scales.last().map_or(0.0, |range| self.location_error / range);
-        let place = (&self.state[..], &self.parameters[..]);
-        let errors = coefficient_error::errors(known, place, scales, part, |state, parameters| {
+        let place = Place {
+            state: &self.state,
+            parameters: &self.parameters,
+            active: &problem.active,
+            scales,
+            location_error: scales.last().map_or(0.0, |range| self.location_error / range),
+        };
+        let errors = coefficient_error::errors(known, place, |state, parameters| {
             let moved = EquilibriumProblem::new(problem.field, parameters, &problem.active);
             let unknown = [state, &[parameters[self.active]]].concat();
             let near = Self::without_errors(&moved, &unknown, tangent, scales, 0.0).ok()??;

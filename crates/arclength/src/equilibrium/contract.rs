@@ -6,7 +6,7 @@ use super::locating;
 use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
 use crate::algebraic::DenseSystem;
-use crate::branch::{SpecialKind, Stability};
+use crate::branch::SpecialKind;
 use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
 use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop, distance, events};
 use crate::error::Error;
@@ -115,7 +115,7 @@ impl Curve for EquilibriumCurve<'_> {
     fn undecided(&self, solution: &Solution<Inspection>) -> usize {
         let spectrum = &solution.point.spectrum;
         spectrum.hopf_undecided
-            + usize::from(spectrum.stability == Stability::Undecided)
+            + usize::from(!spectrum.stability.is_decided())
             + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
     }
 

@@ -1,6 +1,6 @@
 //! Hopf points: frequency, speed of crossing and first Lyapunov coefficient.
 
-use super::coefficient_error;
+use super::coefficient_error::{self, Place};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu};
@@ -63,9 +63,14 @@ impl HopfPoint {
         let local = CriticalPair::at(problem.field, &state, &parameters, frequency, scales)?;
         let first = local.first_lyapunov();
         let first_lyapunov_error = first.and_then(|(value, _)| {
-            let place = (&state[..], &parameters[..]);
-            let part = location_error / scales[n];
-            let [error] = coefficient_error::errors([value], place, scales, part, |state, parameters| {
+            let place = Place {
+                state: &state,
+                parameters: &parameters,
+                active: &problem.active,
+                scales,
+                location_error: location_error / scales[n],
+            };
+            let [error] = coefficient_error::errors([value], place, |state, parameters| {
                 let near = CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()?;
                 near.first_lyapunov().map(|(value, _)| [value])
             })?;

@@ -44,14 +44,7 @@ impl Spectrum {
             .to_vec();
         let sizes = workspace.sizes().to_vec();
         let unstable = eigenvalues.iter().filter(|value| value.re > 0.0).count();
-        let mut sized = eigenvalues.iter().zip(&sizes);
-        let stability = if sized.any(|(value, size)| value.re.abs() <= UNDECIDED * size) {
-            Stability::Undecided
-        } else if unstable > 0 {
-            Stability::Unstable { dimension: unstable }
-        } else {
-            Stability::Stable
-        };
+        let stability = stability_of(&eigenvalues, &sizes);
         let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } =
             HopfTest::of(&eigenvalues, &sizes);
         let hopf_closest = closest.copysign(hopf_test);
@@ -67,9 +60,21 @@ impl Spectrum {
         events::Spectrum {
             exponents: self.eigenvalues.iter().zip(&self.sizes).map(beyond_rounding).collect(),
             unstable: self.unstable,
-            decided: self.stability != Stability::Undecided,
+            decided: self.stability.is_decided(),
             noise: 0.0,
             is_periodic: false,
+        }
+    }
+
+    /// What the eigenvalues other than the critical ones of a special point, zero or `+-i frequency`, say of its stability: it is
+    /// unstable where one of them surely is, and undecided otherwise.
+    pub(crate) fn stability_beside(&self, critical: &[Complex64]) -> Stability {
+        let others = without(&self.eigenvalues, critical);
+        let largest = self.sizes.iter().copied().fold(0.0, f64::max);
+        if others.iter().any(|value| value.re > PAIR_TOLERANCE * largest) {
+            Stability::Unstable { dimension: None }
+        } else {
+            Stability::Undecided
         }
     }
 
@@ -82,6 +87,24 @@ impl Spectrum {
             self.eigenvalues.iter().any(|value| (value - target).norm() <= PAIR_TOLERANCE * largest)
         };
         near(target) && near(-target)
+    }
+}
+
+/// Stability as far as the real parts are beyond their rounding errors.
+fn stability_of(eigenvalues: &[Complex64], sizes: &[f64]) -> Stability {
+    let mut unstable = 0;
+    let mut is_decided = true;
+    for (value, size) in eigenvalues.iter().zip(sizes) {
+        if value.re.abs() <= UNDECIDED * size {
+            is_decided = false;
+        } else if value.re > 0.0 {
+            unstable += 1;
+        }
+    }
+    match (unstable, is_decided) {
+        (0, true) => Stability::Stable,
+        (0, false) => Stability::Undecided,
+        _ => Stability::Unstable { dimension: is_decided.then_some(unstable) },
     }
 }
 

@@ -9,6 +9,7 @@ use super::normal_form;
 use crate::algebraic::{AlgebraicEquations, ScaledLu, Solved, length, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, correct, finish, locate};
+use crate::equilibrium::coefficient_error::Place;
 use crate::equilibrium::defining::{FoldSystem, HopfSystem};
 use crate::equilibrium::spectrum::{critical_pair, without};
 use crate::error::Error;
@@ -167,8 +168,15 @@ fn complete<'a, K: LocusKind<'a>>(
     let frequency = near.point.monitor.frequency;
     let part =
         location_error.iter().zip(curve.ranges).map(|(error, range)| error / range).fold(0.0, f64::max);
-    let place = (&unknown[..n], &parameters[..]);
-    let coefficients = normal_form::with_errors(place, &curve.states, part, |state, parameters| {
+    let scales = [&curve.states[..], &curve.ranges[..]].concat();
+    let place = Place {
+        state: &unknown[..n],
+        parameters: &parameters,
+        active: &active,
+        scales: &scales,
+        location_error: part,
+    };
+    let coefficients = normal_form::with_errors(place, |state, parameters| {
         normal_form::coefficients(kind, problem.field, state, parameters, &curve.states, frequency)
     });
     let point = CodimensionTwoPoint {

@@ -5,7 +5,7 @@
 
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::SpecialKind;
-use crate::equilibrium::coefficient_error;
+use crate::equilibrium::coefficient_error::{self, Place};
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
@@ -15,19 +15,16 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 
 /// Coefficients by name at a state with all parameters, behind each its error under its name with `_error`: how much it changes
-/// where the equilibrium moves by its own error, the part `location_error` of the sizes of the states.
+/// where the equilibrium moves by its own error.
 pub(super) fn with_errors(
-    (state, parameters): (&[f64], &[f64]),
-    scales: &[f64],
-    location_error: f64,
+    place: Place<'_>,
     coefficients: impl Fn(&[f64], &[f64]) -> Vec<(Cow<'static, str>, f64)>,
 ) -> Vec<(Cow<'static, str>, f64)> {
-    let known = coefficients(state, parameters);
+    let known = coefficients(place.state, place.parameters);
     let with_error = |index: usize| {
         let (name, value) = known[index].clone();
-        let place = (state, parameters);
         let there = |state: &[f64], parameters: &[f64]| Some([coefficients(state, parameters).get(index)?.1]);
-        let error = coefficient_error::errors([value], place, scales, location_error, there);
+        let error = coefficient_error::errors([value], place, there);
         let error = error.map(|[error]| (format!("{name}_error").into(), error));
         [Some((name, value)), error].into_iter().flatten()
     };

@@ -167,11 +167,7 @@ fn hopf_points_tell_the_stable_side_and_how_cycles_grow() {
             assert_eq!(hopf.birth.mode, mode, "{text} at {}", hopf.value);
             for (side, factor) in [(0, 1.0 - 1e-5), (1, 1.0 + 1e-5)] {
                 let beside = wheel.with(Key::V, hopf.value * factor).unwrap().uniform_motion().unwrap();
-                let unstable = match beside.stability() {
-                    arclength::branch::Stability::Stable => Some(0),
-                    arclength::branch::Stability::Unstable { dimension } => Some(dimension),
-                    arclength::branch::Stability::Undecided => None,
-                };
+                let unstable = beside.stability().unstable_dimension();
                 assert_eq!(hopf.birth.unstable[side], unstable, "{text} at {}", hopf.value);
             }
             let along = Along::new(Key::V, speeds.0, speeds.1).unwrap();

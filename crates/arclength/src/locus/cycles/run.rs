@@ -228,7 +228,7 @@ impl<'a> Asked<'a> {
             segments: None,
         };
         let collocation = Collocation::new(problem, orbit.mesh.clone(), orbit.degree);
-        let sizes = StateSizes::new(&collocation.problem, &cycle);
+        let sizes = StateSizes::new(&collocation.problem, &cycle, ranges[0]);
         let mut base = CycleCurve::new(collocation, self.resolution, ranges[0], &cycle).collocation;
         let least = sizes_of_resting(&sizes, &orbit.states);
         for (scale, least) in base.problem.scales.iter_mut().zip(&least) {

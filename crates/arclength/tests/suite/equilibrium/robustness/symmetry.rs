@@ -70,7 +70,7 @@ fn hopf_points_that_symmetry_makes_double_are_reported() {
     }
     assert!(matches!(found[1], SpecialPoint::Degenerate { location_error, .. } if *location_error < 1e-9));
     assert_eq!(branch.points[0].stability, Stability::Stable);
-    assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: 8 });
+    assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: Some(8) });
 }
 
 /// Three equal cells, each coupled with the others: eigenvalues `p` and twice `p - 3 k`.
@@ -102,6 +102,6 @@ fn two_real_eigenvalues_that_vanish_together_are_no_hopf_point() {
         let near =
             |value: f64| branch.special_points().filter(|point| (point.value() - value).abs() < 1e-9).count();
         assert_eq!((near(0.0), near(3.0 * coupling)), (1, 1), "{coupling}: {labels:?}");
-        assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: 3 });
+        assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: Some(3) });
     }
 }
