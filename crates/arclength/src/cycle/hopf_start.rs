@@ -22,11 +22,16 @@ impl HopfStart<'_> {
     pub(super) fn first_amplitude(&self, width: f64, scales: &[f64]) -> f64 {
         // In the normal form the squared amplitude at distance dp is |crossing speed dp / cubic coefficient|.
         let natural = (width * self.crossing_speed / self.cubic_coefficient).abs().sqrt();
-        let sizes = scales.iter().zip(self.eigenvector);
-        let limit = sizes
-            .map(|(scale, component)| LARGEST_FIRST_AMPLITUDE * scale / component.norm().max(1e-300))
-            .fold(0.0, f64::max);
+        let limits = scales
+            .iter()
+            .zip(self.eigenvector)
+            .map(|(scale, component)| LARGEST_FIRST_AMPLITUDE * scale / component.norm().max(1e-300));
         let natural_start = FIRST_AMPLITUDE * natural;
-        if natural_start.is_finite() && natural_start > 0.0 { natural_start.min(limit) } else { limit }
+        if natural_start.is_finite() && natural_start > 0.0 {
+            natural_start.min(limits.fold(0.0, f64::max))
+        } else {
+            // Only the sizes of the states tell, and some may take no part.
+            limits.fold(f64::INFINITY, f64::min)
+        }
     }
 }
