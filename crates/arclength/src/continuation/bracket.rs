@@ -4,13 +4,17 @@
 use super::corrector::{correct, finish, finish_measured};
 use super::curve::Curve;
 use super::events::Location;
-use super::metric::{along, metric_image};
+use super::metric::{along, distance, metric_image};
 use super::settings::Settings;
 use super::solution::{Solution, interpolate};
 use crate::error::Error;
 
 /// Most trial points.
 const MOST_TRIALS: usize = 60;
+/// Solutions at the ends of a narrow bracket that are this part of its first length apart, and this many times its length now, are not
+/// on one curve.
+const TORN: f64 = 1e-6;
+const STRAIGHT: f64 = 10.0;
 /// A trial point keeps this part of the bracket away from its ends.
 const DISTANCE_FROM_ENDS: f64 = 0.01;
 
@@ -68,6 +72,13 @@ impl<'a, P: Clone> Bracket<'a, P> {
             negligible: 0.0,
             is_smooth: false,
         })
+    }
+
+    /// Whether the two sides are solutions on different branches: they stay apart although the bracket is narrow.
+    pub(crate) fn is_torn<C: Curve<Point = P>>(&self, curve: &C) -> bool {
+        let gap = distance(curve, &self.left.solution.unknown, &self.right.solution.unknown);
+        gap > TORN * self.length
+            && gap > (self.right.fraction - self.left.fraction) * self.length * STRAIGHT
     }
 
     /// Narrows the bracket to a part `tolerance` of the distance between the ends. `test` is given the curve and a finished

@@ -23,29 +23,23 @@ const FAR: f64 = 2.0;
 
 /// The start of a curve, to which it may come back.
 pub(super) struct Closure {
-    bound: Bound,
-    parameter: f64,
-    /// The signature and the parameter.
+    bounds: Vec<Bound>,
+    /// The signature and the bounded parameters.
     signature: Vec<f64>,
 }
 
 impl Closure {
-    pub(super) fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bound: Bound) -> Self {
-        let parameter = start.unknown[start.unknown.len() - bound.from_end];
+    pub(super) fn at<C: Curve>(curve: &C, start: &Solution<C::Point>, bounds: &[Bound]) -> Self {
         let mut signature: Vec<f64> =
             curve.signature(&start.unknown).into_iter().map(|(value, _)| value).collect();
-        signature.push(parameter);
-        Self { bound, parameter, signature }
-    }
-
-    fn parameter<P>(&self, solution: &Solution<P>) -> f64 {
-        solution.unknown[solution.unknown.len() - self.bound.from_end]
+        signature.extend(bounds.iter().map(|bound| bound.value(&start.unknown)));
+        Self { bounds: bounds.to_vec(), signature }
     }
 
     /// The signature of a solution less that of the start, in parts of the sizes.
     fn beyond<C: Curve>(&self, curve: &C, solution: &Solution<C::Point>) -> Vec<f64> {
-        let parameter = (self.parameter(solution), self.bound.upper - self.bound.lower);
-        let signature = curve.signature(&solution.unknown).into_iter().chain([parameter]);
+        let parameters = self.bounds.iter().map(|bound| (bound.value(&solution.unknown), bound.width()));
+        let signature = curve.signature(&solution.unknown).into_iter().chain(parameters);
         signature.zip(&self.signature).map(|((here, size), start)| (here - start) / size).collect()
     }
 
@@ -57,10 +51,14 @@ impl Closure {
         advanced: &Solution<C::Point>,
         settings: &Settings,
     ) -> Option<Solution<C::Point>> {
-        // Signatures cost more than the parameter, which tells where a step cannot lead back.
-        let distance = [current, advanced].map(|solution| (self.parameter(solution) - self.parameter).abs());
-        let range = self.bound.upper - self.bound.lower;
-        if distance[0].min(distance[1]) > FAR * settings.largest_parameter_change * range {
+        // Signatures cost more than the parameters, which tell where a step cannot lead back.
+        let parameters = &self.signature[self.signature.len() - self.bounds.len()..];
+        let leads_elsewhere = self.bounds.iter().zip(parameters).any(|(bound, start)| {
+            let [here, there] =
+                [current, advanced].map(|solution| (bound.value(&solution.unknown) - start).abs());
+            here.min(there) > FAR * settings.largest_parameter_change * bound.width()
+        });
+        if leads_elsewhere {
             return None;
         }
         let [here, there] = [current, advanced].map(|solution| self.beyond(curve, solution));

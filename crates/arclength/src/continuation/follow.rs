@@ -80,7 +80,7 @@ pub fn follow<C: Curve>(
     observer: &mut Observer<'_, C::Point, C::Kind>,
 ) -> Result<FollowedCurve<C>, Error> {
     let start = exact_start(curve, start, tangent, request)?;
-    let closure = request.bounds.first().map(|bound| Closure::at(curve, &start, *bound));
+    let closure = Closure::at(curve, &start, &request.bounds);
     let search = EventSearch::new(&request.bounds);
     let mut run =
         Run { curve, request, observer, search, closure, solutions: Vec::new(), unlocated: Vec::new() };
@@ -112,7 +112,7 @@ struct Run<'r, 'o, C: Curve> {
     request: &'r Request<'r, C::Point>,
     observer: &'r mut Observer<'o, C::Point, C::Kind>,
     search: EventSearch,
-    closure: Option<Closure>,
+    closure: Closure,
     solutions: Between<C>,
     unlocated: Vec<Unlocated<C::Kind>>,
 }
@@ -239,7 +239,10 @@ impl<C: Curve> Run<'_, '_, C> {
             insert_values(self.curve, current, &mut between, advanced, (bound, values), settings)
                 .map_err(failed)?;
         }
-        insert_targets(self.curve, current, &mut between, advanced, targets, settings).map_err(failed)?;
+        let mut steps = self.solutions.iter().rev().filter(|(_, origin)| *origin == Origin::Step);
+        let earlier = steps.nth(1).map(|(solution, _)| solution);
+        insert_targets(self.curve, earlier, current, &mut between, advanced, targets, settings)
+            .map_err(failed)?;
         Ok((between, leaves))
     }
 
@@ -300,8 +303,10 @@ impl<C: Curve> Run<'_, '_, C> {
         current: &Solution<C::Point>,
         advanced: &Solution<C::Point>,
     ) -> Option<Solution<C::Point>> {
-        let closure = self.closure.as_ref().filter(|_| self.solutions.len() > 1)?;
-        closure.reached(self.curve, current, advanced, &self.request.settings)
+        if self.solutions.len() <= 1 {
+            return None;
+        }
+        self.closure.reached(self.curve, current, advanced, &self.request.settings)
     }
 
     /// Drops what follows the first target at which the run is to end.

@@ -1,7 +1,7 @@
 //! Solutions that were asked for: at values of the parameter, where a monitor has a value, at the ends of ranges.
 
 use super::bracket::{locate, locate_value};
-use super::corrector::{correct, finish_measured};
+use super::corrector::{between as solution_between, correct, finish_measured};
 use super::curve::Curve;
 use super::metric::along;
 use super::settings::Settings;
@@ -61,6 +61,12 @@ const CLOSE: f64 = 1e-3;
 const TARGET_BRACKET: f64 = 1e-13;
 const TARGET_VALUE: f64 = 1e-11;
 
+/// Parabolas that are tried for an extreme value of a monitor, the part of what one spans by which it may be wrong, and the difference of
+/// two places in a step that are the same.
+const MOST_PARABOLAS: usize = 8;
+const UNCERTAIN_PART: f64 = 0.1;
+const SAME_FRACTION: f64 = 1e-6;
+
 /// Solutions between two neighbours, in order.
 pub(super) type Between<C> = Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
 
@@ -100,12 +106,13 @@ pub(super) fn insert_values<C: Curve>(
     Ok(())
 }
 
-/// Inserts a solution wherever a monitor passes the value of a target.
+/// Inserts a solution wherever a monitor passes the value of a target; `earlier` is the solution before `current`, if there is one.
 ///
 /// # Errors
 /// When a solution between two others cannot be computed.
 pub(super) fn insert_targets<C: Curve>(
     curve: &mut C,
+    earlier: Option<&Solution<C::Point>>,
     current: &Solution<C::Point>,
     between: &mut Between<C>,
     advanced: &Solution<C::Point>,
@@ -117,15 +124,100 @@ pub(super) fn insert_targets<C: Curve>(
         let test =
             |_: &mut C, solution: &Solution<C::Point>| Some((target.function)(solution)? - target.value);
         let tolerances = (TARGET_BRACKET, TARGET_VALUE * target.value.abs());
-        insert_passages(curve, current, between, advanced, test, |curve, left, right| {
+        let find = |curve: &mut C, left: &Solution<C::Point>, right: &Solution<C::Point>| {
             let found = match locate_value(curve, [left, right], &settings, tolerances, test) {
                 Err(Error::NotFound { .. }) if target.purpose == Purpose::Mark => None,
                 found => found?,
             };
             Ok(found.map(|solution| (solution, Origin::Target(index))))
-        })?;
+        };
+        insert_passages(curve, current, between, advanced, test, find)?;
+        if let Some((place, beyond)) =
+            beyond_extreme(curve, earlier, current, between, advanced, test, &settings)
+        {
+            // Both passages, there and back.
+            let left = if place == 0 { current } else { &between[place - 1].0 };
+            let right = between.get(place).map_or(advanced, |(solution, _)| solution);
+            let pair = [find(curve, left, &beyond)?, find(curve, &beyond, right)?];
+            between.splice(place..place, pair.into_iter().flatten());
+        }
     }
     Ok(())
+}
+
+/// A solution at which a test has the other sign, where it has the same sign at all that are known of a step: it passes zero and comes
+/// back around an extreme value. With the place in the list before which it lies.
+///
+/// An extreme value is looked for where the test is no farther from zero than it changed in the step or in the one before: of a
+/// parabola that is resolved by the steps the extreme is no farther away.
+fn beyond_extreme<C: Curve>(
+    curve: &mut C,
+    earlier: Option<&Solution<C::Point>>,
+    current: &Solution<C::Point>,
+    between: &Between<C>,
+    advanced: &Solution<C::Point>,
+    test: impl Fn(&mut C, &Solution<C::Point>) -> Option<f64>,
+    settings: &Settings,
+) -> Option<(usize, Solution<C::Point>)> {
+    let known: Vec<&Solution<C::Point>> = std::iter::once(current)
+        .chain(between.iter().map(|(solution, _)| solution))
+        .chain([advanced])
+        .collect();
+    let values: Vec<f64> = known.iter().map(|solution| test(curve, solution)).collect::<Option<_>>()?;
+    let sign = values[0].signum();
+    let least = values.iter().map(|value| sign * value).fold(f64::INFINITY, f64::min);
+    if least <= 0.0 {
+        return None;
+    }
+    let before = earlier.and_then(|solution| test(curve, solution)).map(|value| (value - values[0]).abs());
+    let changes = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).chain(before);
+    if least > changes.fold(0.0, f64::max) && before.is_some() {
+        return None;
+    }
+    let sides: Vec<usize> = (0..known.len() - 1).collect();
+    sides.into_iter().find_map(|place| {
+        let ends = [known[place], known[place + 1]];
+        let values = [values[place], values[place + 1]].map(|value| sign * value);
+        let sought = |curve: &mut C, solution: &Solution<C::Point>| Some(sign * test(curve, solution)?);
+        Some((place, least_by_parabolas(curve, ends, values, sought, settings)?))
+    })
+}
+
+/// A solution between two others, at which a function has positive `values`, where it is not positive: sought at the least values of
+/// parabolas through three solutions. `None` where the least value is positive.
+fn least_by_parabolas<C: Curve>(
+    curve: &mut C,
+    ends: [&Solution<C::Point>; 2],
+    values: [f64; 2],
+    function: impl Fn(&mut C, &Solution<C::Point>) -> Option<f64>,
+    settings: &Settings,
+) -> Option<Solution<C::Point>> {
+    let mut known = vec![(0.0, values[0]), (1.0, values[1])];
+    let mut fraction = 0.5;
+    for _ in 0..MOST_PARABOLAS {
+        let trial = solution_between(curve, ends[0], ends[1], fraction, settings).ok()?;
+        let value = function(curve, &trial)?;
+        if value <= 0.0 {
+            return Some(trial);
+        }
+        let place = known.partition_point(|(other, _)| *other < fraction);
+        known.insert(place, (fraction, value));
+        let lowest = (0..known.len()).min_by(|&one, &other| known[one].1.total_cmp(&known[other].1))?;
+        let middle = lowest.clamp(1, known.len() - 2);
+        let [(a, at_a), (b, at_b), (c, at_c)] = [known[middle - 1], known[middle], known[middle + 1]];
+        let [first, second] = [(at_b - at_a) / (b - a), (at_c - at_b) / (c - b)];
+        let curvature = (second - first) / (c - a);
+        let vertex = 0.5 * (a + b) - 0.5 * first / curvature;
+        let least = at_a + (vertex - a) * (first + curvature * (vertex - b));
+        // The parabola is wrong by a part of what it spans.
+        let spread = at_a.max(at_c) - at_b.min(at_a).min(at_c);
+        let is_new = known.iter().all(|(other, _)| (vertex - other).abs() > SAME_FRACTION);
+        if curvature <= 0.0 || !(0.0..=1.0).contains(&vertex) || least > UNCERTAIN_PART * spread || !is_new {
+            return None;
+        }
+        fraction = vertex;
+    }
+    None
 }
 
 /// Inserts what `find` finds between neighbours at which a test has different signs.
@@ -135,7 +227,7 @@ fn insert_passages<C: Curve>(
     between: &mut Between<C>,
     advanced: &Solution<C::Point>,
     test: impl Fn(&mut C, &Solution<C::Point>) -> Option<f64>,
-    mut find: impl FnMut(
+    find: impl Fn(
         &mut C,
         &Solution<C::Point>,
         &Solution<C::Point>,

@@ -40,7 +40,8 @@ const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
     TestFunction::new(SpecialKind::BranchPointOfCycles)
         .changing(&[0, 1])
         .absorbing(&[SpecialKind::FoldOfCycles])
-        .of_spectrum(),
+        .of_spectrum()
+        .orienting(),
     TestFunction::new(SpecialKind::FoldOfCycles).changing(&[1]).turning(),
     TestFunction::new(SpecialKind::PeriodDoubling).changing(&[1]).of_spectrum(),
     TestFunction::new(SpecialKind::Torus).changing(&[0, 2]).of_spectrum(),

@@ -19,7 +19,8 @@ const TEST_FUNCTIONS: &[TestFunction<SpecialKind>] = &[
     TestFunction::new(SpecialKind::BranchPoint)
         .changing(&[0, 1])
         .absorbing(&[SpecialKind::Fold])
-        .of_spectrum(),
+        .of_spectrum()
+        .orienting(),
     TestFunction::new(SpecialKind::Fold).changing(&[1]).turning(),
     TestFunction::new(SpecialKind::Hopf).changing(&[0, 2]).of_spectrum(),
 ];

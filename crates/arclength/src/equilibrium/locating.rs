@@ -11,7 +11,7 @@ use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::events::Event;
-use crate::continuation::{Solution, distance, finish, locate};
+use crate::continuation::{Bracket, Solution, distance, finish, locate};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::linear::eigenvalues::eigenvalues;
@@ -70,6 +70,9 @@ fn location_error(solved: &Solved) -> f64 {
 }
 
 /// What is left when the defining system has no regular solution.
+///
+/// # Errors
+/// [`Error::OtherBranch`] if the ends are on different branches, so that there is nothing between them.
 fn degenerate(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
@@ -77,13 +80,28 @@ fn degenerate(
     distance: f64,
     of: SpecialKind,
     test: Test,
-) -> Node {
-    let mut node = near_zero(curve, before, after, LAST_BRACKET, test);
+) -> Result<Node, Error> {
+    let settings = curve.settings;
+    let sign = |curve: &mut EquilibriumCurve<'_>, solution: &Node| Some(test(curve, solution));
+    let mut narrowed = None;
+    if let Some(mut bracket) = Bracket::new(curve, before, after, sign) {
+        narrowed = bracket.narrow(curve, &settings, LAST_BRACKET, sign).ok().flatten().cloned();
+        if narrowed.is_some() && bracket.is_torn(curve) {
+            narrowed = None;
+        }
+    }
+    // Next to a branch point corrections fail, too: shorter steps tell.
+    if narrowed.is_none() && distance > settings.shortest_jump {
+        return Err(Error::OtherBranch);
+    }
+    let nearest =
+        || if test(curve, before).abs() < test(curve, after).abs() { before.clone() } else { after.clone() };
+    let mut node = narrowed.unwrap_or_else(nearest);
     let n = curve.dimension();
     let value = node.unknown[n];
     let location_error = LAST_BRACKET * distance * curve.system.scales[n];
     node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, value, location_error }));
-    node
+    Ok(node)
 }
 
 /// Completes a located point of the curve.
@@ -119,7 +137,7 @@ pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
             return complete(curve, before, unknown, SpecialPoint::Fold(point));
         }
     }
-    Ok(degenerate(curve, before, after, distance, SpecialKind::Fold, test))
+    degenerate(curve, before, after, distance, SpecialKind::Fold, test)
 }
 
 /// The Hopf point or neutral saddle between two solutions.
@@ -139,7 +157,7 @@ pub(super) fn hopf(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
             return Ok(node);
         }
     }
-    Ok(degenerate(curve, before, after, distance, SpecialKind::Hopf, test))
+    degenerate(curve, before, after, distance, SpecialKind::Hopf, test)
 }
 
 /// The Hopf point or neutral saddle to which Newton's method converges from a solution and the pair of its eigenvalues that
@@ -340,7 +358,7 @@ pub(super) fn branch_point(
     if perturbed && distance > curve.settings.shortest_jump {
         return Err(Error::OtherBranch);
     }
-    Ok(degenerate(curve, before, after, distance, SpecialKind::BranchPoint, test))
+    degenerate(curve, before, after, distance, SpecialKind::BranchPoint, test)
 }
 
 /// What crosses at one place, `near`, where the number of unstable eigenvalues changes by `change`: pairs of different

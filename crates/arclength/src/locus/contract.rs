@@ -89,9 +89,8 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
-        let states = unknown.iter().copied().zip(self.system.scales.iter().copied()).take(self.states.len());
-        let last = unknown.last().map(|value| (*value, self.ranges[1]));
-        states.chain(last).collect()
+        let states = unknown.iter().copied().zip(self.system.scales.iter().copied());
+        states.take(self.states.len()).collect()
     }
 
     fn ending(

@@ -59,6 +59,9 @@ impl EventSearch {
         let mut right = Node::new(curve, to.unwrap_or_else(|| after.clone()));
         left.recall(self.known.take(), curve);
         let events = search(curve, [&mut left, &mut right], &self.memory, &self.bounds, settings)?;
+        if reach > settings.shortest_jump && !is_oriented(curve, [&left, &right], &events) {
+            return Err(Error::OtherBranch);
+        }
         // A first step that led to another branch is made anew.
         if first_step {
             self.first = Some(left.solution.unknown);
@@ -67,4 +70,17 @@ impl EventSearch {
         self.known = right.into_known(curve);
         Ok(events)
     }
+}
+
+/// Whether the branch points between two solutions explain how the orientation changes (Keller, "Numerical solution of bifurcation and
+/// nonlinear eigenvalue problems" (1977)): next to a branch point a step may lead to the other branch through it.
+fn is_oriented<C: Curve>(curve: &C, [left, right]: [&Node<C>; 2], events: &Events<C>) -> bool {
+    let tests = curve.test_functions();
+    tests.iter().enumerate().filter(|(_, test)| test.is_orientation).all(|(index, test)| {
+        let (Some(here), Some(there)) = (left.readings[index], right.readings[index]) else { return true };
+        let points = events.found.iter().filter(|event| event.kind == test.kind);
+        let is_known = points.clone().all(|event| event.is_located)
+            && events.unlocated.iter().all(|change| change.kind.is_some_and(|kind| kind != test.kind));
+        !is_known || here.class != there.class || (points.count() % 2 == 1) == here.changes_to(there)
+    })
 }

@@ -15,12 +15,14 @@ pub struct TestFunction<K: 'static> {
     pub of_spectrum: bool,
     /// Whether it is the rate of change of the parameter along the curve.
     pub is_turn: bool,
+    /// Whether it is the orientation of the curve, which changes at every simple branch point and nowhere else.
+    pub is_orientation: bool,
 }
 
 impl<K: Copy> TestFunction<K> {
     /// A test function of which nothing but its sign is known.
     pub const fn new(kind: K) -> Self {
-        Self { kind, changes: &[], absorbs: &[], of_spectrum: false, is_turn: false }
+        Self { kind, changes: &[], absorbs: &[], of_spectrum: false, is_turn: false, is_orientation: false }
     }
 
     /// The same with the changes of the number of unstable directions that its points allow.
@@ -36,6 +38,11 @@ impl<K: Copy> TestFunction<K> {
     /// The same for a function of the growth exponents.
     pub const fn of_spectrum(self) -> Self {
         Self { of_spectrum: true, ..self }
+    }
+
+    /// The same for the orientation of the curve.
+    pub const fn orienting(self) -> Self {
+        Self { is_orientation: true, ..self }
     }
 
     /// The same for the rate of change of the first bounded parameter.

@@ -519,7 +519,7 @@ impl Curve for CycleLocusCurve<'_> {
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let (cycle, _) = split(unknown, self.states, self.kind());
         let end = cycle.len() - 3;
-        let mut signature = vec![(cycle[end].ln(), 1.0), (cycle[end + 2], self.system.parameter_scales[1])];
+        let mut signature = vec![(cycle[end].ln(), 1.0)];
         signature.extend(self.sizes.signature(&ranges(&self.base, &cycle[..end + 2], self.states)));
         signature
     }
