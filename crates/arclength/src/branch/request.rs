@@ -5,6 +5,7 @@ use crate::continuation::{Bound, Observer, Origin, Request, Settings, Solution, 
 use crate::erased::ErasedField;
 use crate::error::Error;
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::fmt;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::rc::Rc;
@@ -148,7 +149,7 @@ pub(crate) fn request<'r, Q, P>(
         .iter()
         .enumerate()
         .flat_map(|(index, monitor)| {
-            let last = Rc::new(RefCell::new(None));
+            let last = LastReadings::default();
             monitor.values().iter().map(move |&(value, purpose)| Target {
                 monitor: index,
                 value,
@@ -160,24 +161,27 @@ pub(crate) fn request<'r, Q, P>(
     Request { bounds: bounds.to_vec(), values: at.to_vec(), targets, settings }
 }
 
-/// Unknowns and tangent at which a monitor was evaluated last, and its value there.
-type LastReading = Rc<RefCell<Option<([Vec<f64>; 2], Option<f64>)>>>;
+/// Unknowns and tangents at which a monitor was evaluated last, and its values there.
+type LastReadings = Rc<RefCell<VecDeque<([Vec<f64>; 2], Option<f64>)>>>;
+/// That many are remembered: of both ends of a step, of the solution before and of one between.
+const REMEMBERED: usize = 4;
 
-/// A function of solutions that is not evaluated again at the solution of last time: a run asks at both ends of every step, for every
+/// A function of solutions that is not evaluated again at the solutions of last time: a run asks at both ends of every step, for every
 /// value of a monitor.
 fn remembering<Q>(
-    last: LastReading,
+    last: LastReadings,
     function: impl Fn(&Solution<Q>) -> Option<f64>,
 ) -> impl Fn(&Solution<Q>) -> Option<f64> {
     move |solution| {
-        if let Some(([unknown, tangent], value)) = &*last.borrow()
-            && *unknown == solution.unknown
-            && *tangent == solution.tangent
-        {
+        let is_here =
+            |[unknown, tangent]: &[Vec<f64>; 2]| *unknown == solution.unknown && *tangent == solution.tangent;
+        if let Some((_, value)) = last.borrow().iter().find(|(place, _)| is_here(place)) {
             return *value;
         }
         let value = function(solution);
-        *last.borrow_mut() = Some(([solution.unknown.clone(), solution.tangent.clone()], value));
+        let mut last = last.borrow_mut();
+        last.truncate(REMEMBERED - 1);
+        last.push_front(([solution.unknown.clone(), solution.tangent.clone()], value));
         value
     }
 }

@@ -77,8 +77,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
     /// Whether the two sides are solutions on different branches: they stay apart although the bracket is narrow.
     pub(crate) fn is_torn<C: Curve<Point = P>>(&self, curve: &C) -> bool {
         let gap = distance(curve, &self.left.solution.unknown, &self.right.solution.unknown);
-        gap > TORN * self.length
-            && gap > (self.right.fraction - self.left.fraction) * self.length * STRAIGHT
+        gap > TORN * self.length && gap > (self.right.fraction - self.left.fraction) * self.length * STRAIGHT
     }
 
     /// Narrows the bracket to a part `tolerance` of the distance between the ends. `test` is given the curve and a finished

@@ -54,6 +54,14 @@ impl<'a> Linearization<'a> {
             .collect()
     }
 
+    /// A covector function with every component multiplied by the square of its size: the inverse of [`dual`](Self::dual).
+    fn vector(&self, function: &[f64]) -> NodeFunction {
+        function
+            .chunks_exact(self.scales.len())
+            .flat_map(|state| state.iter().zip(self.scales).map(|(value, scale)| value * scale * scale))
+            .collect()
+    }
+
     /// `T f_x y` at every Gauss point; zero at left ends.
     pub(crate) fn image(&self, function: &[f64]) -> NodeFunction {
         let n = self.scales.len();
@@ -88,17 +96,24 @@ impl<'a> Linearization<'a> {
     /// Null function of a cycle with a nontrivial multiplier one: `v' = T f_x v + beta f`, orthogonal to the flow and of unit
     /// size, with `beta`.
     pub(crate) fn null_function(&self) -> Option<(NodeFunction, f64)> {
+        self.null_function_beside(None)
+    }
+
+    /// The same, orthogonal to another null function if there is one.
+    pub(crate) fn null_function_beside(&self, other: Option<&NodeFunction>) -> Option<(NodeFunction, f64)> {
         let n = self.scales.len();
-        let flow_row = self.dual(&self.flow);
+        let known: Vec<&[f64]> = std::iter::once(&self.flow).chain(other).map(|known| &known[..]).collect();
+        let duals: Vec<NodeFunction> = known.iter().map(|function| self.dual(function)).collect();
         let mut guess = self.generic();
         let mut found = None;
         for _ in 0..ITERATIONS {
             let row = self.dual(&guess);
-            let columns: [&[f64]; 2] = [&self.flow, &guess];
-            let mut problem =
-                LinearProblem::new(self.nodes, vec![1.0; n], &self.matrices, &columns, &[&flow_row, &row])?;
-            let zero = vec![0.0; guess.len()];
-            let (function, scalars) = problem.solve(&zero, &[0.0, 1.0])?;
+            let columns = [&known[..], &[&guess[..]]].concat();
+            let rows: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).chain([&row[..]]).collect();
+            let mut problem = LinearProblem::new(self.nodes, vec![1.0; n], &self.matrices, &columns, &rows)?;
+            let mut values = vec![0.0; rows.len()];
+            *values.last_mut()? = 1.0;
+            let (function, scalars) = problem.solve(&vec![0.0; guess.len()], &values)?;
             let size = self.nodes.product(&function, &self.dual(&function)).sqrt();
             guess = function.iter().map(|value| value / size).collect();
             found = Some(scalars[0] / size);
@@ -106,9 +121,10 @@ impl<'a> Linearization<'a> {
         found.map(|beta| (guess, beta))
     }
 
-    /// Covector function of a cycle with a nontrivial multiplier one: `psi' = -T f_x^T psi`, orthogonal to the flow and of
-    /// unit size. `null` is the null function.
-    pub(crate) fn adjoint_null_function(&self, null: &[f64]) -> Option<NodeFunction> {
+    /// Covector function of a cycle at a branch point: `psi' = -T f_x^T psi`, orthogonal to the flow and of unit size. Along a family of
+    /// cycles for one value of the parameter the gradient of what is conserved is such a function everywhere; that of a branch point is
+    /// the one that is orthogonal to the derivative in the parameter.
+    pub(crate) fn adjoint_null_function(&self, is_along_family: bool) -> Option<NodeFunction> {
         let n = self.scales.len();
         let mut adjoint = vec![0.0; self.matrices.len()];
         for (source, target) in self.matrices.chunks_exact(n * n).zip(adjoint.chunks_exact_mut(n * n)) {
@@ -120,20 +136,22 @@ impl<'a> Linearization<'a> {
         }
         // At kinks nothing jumps; where the field does, branch points are not located.
         let nodes = Nodes { jumps: &[], ..self.nodes };
-        let columns: [&[f64]; 2] = [&self.dual(&self.flow), &self.dual(null)];
-        let mut problem = LinearProblem::new(nodes, vec![1.0; n], &adjoint, &columns, &[&self.flow, null])?;
-        let zero = vec![0.0; null.len()];
-        let (mut function, _) = problem.solve(&zero, &[0.0, 1.0])?;
-        let square: f64 = self
-            .nodes
-            .gauss_points()
-            .map(|(_, node, weight)| {
-                let values = function[node * n..].iter().zip(self.scales);
-                weight * values.map(|(value, scale)| (value * scale).powi(2)).sum::<f64>()
-            })
-            .sum();
-        function.iter_mut().for_each(|value| *value /= square.sqrt());
-        Some(function)
+        let mut known = vec![&self.flow[..]];
+        known.extend(is_along_family.then_some(&self.parameter[..]));
+        let duals: Vec<NodeFunction> = known.iter().map(|function| self.dual(function)).collect();
+        let mut guess = self.dual(&self.generic());
+        for _ in 0..ITERATIONS {
+            let row = self.vector(&guess);
+            let columns: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).chain([&guess[..]]).collect();
+            let rows = [&known[..], &[&row[..]]].concat();
+            let mut problem = LinearProblem::new(nodes, vec![1.0; n], &adjoint, &columns, &rows)?;
+            let mut values = vec![0.0; rows.len()];
+            *values.last_mut()? = 1.0;
+            let (function, _) = problem.solve(&vec![0.0; guess.len()], &values)?;
+            let square = self.nodes.product(&function, &self.vector(&function));
+            guess = function.iter().map(|value| value / square.sqrt()).collect();
+        }
+        Some(guess)
     }
 }
 
@@ -145,10 +163,10 @@ pub(crate) type Eigenfunctions = (Vec<NodeFunction>, Vec<f64>);
 
 /// Start for the eigenfunctions of a defining system at a cycle close to a special one, with the kind's own scalars.
 ///
-/// `None` when the cycle has no multiplier of this kind.
+/// `is_along_family` says whether the parameter stands still along the branch. `None` when the cycle has no multiplier of this kind.
 pub(crate) fn critical(
     collocation: &mut Collocation<LimitCycle<'_>>,
-    unknown: &[f64],
+    (unknown, is_along_family): (&[f64], bool),
     multipliers: &[Complex64],
     kind: Kind,
 ) -> Result<Option<Eigenfunctions>, Error> {
@@ -170,10 +188,10 @@ pub(crate) fn critical(
             (vec![function.iter().map(|value| value * factor).collect()], vec![beta * factor])
         }),
         Kind::Cycle => Some((Vec::new(), Vec::new())),
-        Kind::BranchPoint => linearization
-            .null_function()
-            .and_then(|(null, _)| linearization.adjoint_null_function(&null))
-            .map(|adjoint| (vec![adjoint], vec![0.0, 0.0])),
+        Kind::BranchPoint => {
+            let adjoint = linearization.adjoint_null_function(is_along_family);
+            adjoint.map(|adjoint| (vec![adjoint], vec![0.0, 0.0]))
+        }
         Kind::Doubling => {
             let Some(critical) = nearest(&|multiplier| (multiplier + 1.0).norm()) else { return Ok(None) };
             // Next to a 1:2 resonance the multiplier may be complex: the real part of its function is a start, too.

@@ -141,7 +141,11 @@ impl Floquet {
                 }
                 let [a, b] = [one, other].map(|multiplier| multiplier.log_modulus.max(SMALLEST_LOGARITHM));
                 let sum = a + b;
-                if sum.abs() <= 2.0 * self.margin() {
+                // Beside one that is one, as all along a family of cycles, the sign is that of the other.
+                let is_one = |multiplier: &Multiplier| {
+                    multiplier.argument == 0.0 && multiplier.log_modulus.abs() <= self.margin()
+                };
+                if sum.abs() <= 2.0 * self.margin() || is_one(one) || is_one(other) {
                     undecided += 1;
                 } else {
                     product *= sum / sum.hypot(SATURATION);

@@ -146,7 +146,8 @@ pub(crate) fn converge(
     kind: Kind,
 ) -> Result<Option<Located>, Error> {
     let multipliers = start.point.floquet.multipliers();
-    let Some(eigenfunctions) = critical(&mut curve.collocation, &start.unknown, &multipliers, kind)? else {
+    let place = (&start.unknown[..], curve.follows_neutral_family);
+    let Some(eigenfunctions) = critical(&mut curve.collocation, place, &multipliers, kind)? else {
         return Ok(None);
     };
     let problem = &curve.collocation.problem;

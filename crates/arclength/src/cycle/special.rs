@@ -143,7 +143,8 @@ fn passing_one(curve: &mut CycleCurve<'_>, [before, after]: [&Node; 2]) -> Resul
     let error = curve.global_error.of(&mut curve.collocation, &solution.unknown);
     solution.point.parameter_error = error.last().map(|error| error.abs());
     let multipliers = solution.point.floquet.multipliers();
-    let eigenfunctions = critical(&mut curve.collocation, &solution.unknown, &multipliers, Kind::Fold)?;
+    let place = (&solution.unknown[..], false);
+    let eigenfunctions = critical(&mut curve.collocation, place, &multipliers, Kind::Fold)?;
     Ok(eigenfunctions.map(|eigenfunctions| Located { solution, eigenfunctions }))
 }
 
@@ -449,11 +450,7 @@ fn error_name(name: &str) -> &'static str {
 
 /// Logarithm of the modulus of the positive multiplier nearest to one, signed by the orientation. Along a family of cycles for one value of
 /// the parameter a multiplier is one everywhere, and the orientation alone tells.
-fn branch_point_test(
-    solution: &Solution<CycleInspection>,
-    sign: f64,
-    is_along_family: bool,
-) -> Option<f64> {
+fn branch_point_test(solution: &Solution<CycleInspection>, sign: f64, is_along_family: bool) -> Option<f64> {
     if is_along_family {
         return Some(-sign * solution.orientation);
     }

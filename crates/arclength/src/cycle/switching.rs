@@ -20,6 +20,8 @@ use std::f64::consts::PI;
 
 /// Mesh intervals of the first cycle next to a Hopf point.
 const FIRST_INTERVALS: usize = 8;
+/// Part of the derivative in the parameter that no change of the cycle answers, above which the parameter cannot move.
+const UNSOLVED: f64 = 1e-3;
 /// Below this part of the other coefficients of the branching equation a coefficient counts as zero.
 const NEGLIGIBLE: f64 = 1e-6;
 
@@ -131,7 +133,15 @@ pub(super) fn other_branch(
     // The parameter moves by its size, so that both vectors are of order one.
     let source: NodeFunction = linear.parameter.iter().map(|value| value * scale).collect();
     let (response, scalars) = problem.solve(&source, &[0.0, 0.0])?;
-    let vectors = [(null, beta, 0.0), (response, scalars[0], scale)];
+    // Where something is conserved the parameter cannot move, and there are two null functions.
+    let size = linear.nodes.product(&source, &linear.dual(&source)).sqrt();
+    let moving = if scalars[1].abs() <= UNSOLVED * size.max(NEGLIGIBLE) {
+        (response, scalars[0], scale)
+    } else {
+        let (second, beta) = linear.null_function_beside(Some(&null))?;
+        (second, beta, 0.0)
+    };
+    let vectors = [(null, beta, 0.0), moving];
     let second = |one: &(NodeFunction, f64, f64), other: &(NodeFunction, f64, f64)| -> f64 {
         let derivative = |node: usize, vector: &(NodeFunction, f64, f64)| {
             let mut direction = vector.0[node * n..(node + 1) * n].to_vec();

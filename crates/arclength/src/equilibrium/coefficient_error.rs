@@ -31,7 +31,8 @@ impl Place<'_> {
         let part = self.location_error.max(ROUNDING);
         let mut signed = |size: f64| size * if random.next_unit() < 0.5 { -1.0 } else { 1.0 };
         let (states, ranges) = self.scales.split_at(self.state.len());
-        let state = self.state.iter().zip(states).map(|(value, scale)| value + signed(part * scale)).collect();
+        let state =
+            self.state.iter().zip(states).map(|(value, scale)| value + signed(part * scale)).collect();
         let mut parameters: Vec<f64> =
             self.parameters.iter().map(|value| value + signed(f64::EPSILON * value.abs())).collect();
         // One that was solved for is known no better than its range allows, however small its value.

@@ -5,11 +5,30 @@ use num_complex::Complex64;
 
 /// A quantity that a cubic says shrinks to this part of the smaller of its end values is looked at.
 pub(super) const SUSPICIOUS: f64 = 0.3;
+/// Places to which slopes at both ends lead are one if they are no farther apart than this part of the step.
+const SAME_KINK: f64 = 0.3;
 /// A step is divided no closer to its ends than this part.
 const SMALLEST_FRACTION: f64 = 0.02;
 
+/// Why a step is to be looked at more closely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Suspicion {
+    /// The fraction of the step at which to look.
+    pub place: f64,
+    /// Whether a quantity seems to come to zero from both sides without passing it, as it does where a step leads over to another branch
+    /// through a branch point.
+    pub is_kink: bool,
+}
+
+impl Suspicion {
+    /// Something may hide near a fraction of a step.
+    pub(super) fn at(fraction: f64) -> Self {
+        Self { place: inside(fraction), is_kink: false }
+    }
+}
+
 /// A fraction of a step at which it may be divided.
-pub(super) fn inside(fraction: f64) -> f64 {
+fn inside(fraction: f64) -> f64 {
     fraction.clamp(SMALLEST_FRACTION, 1.0 - SMALLEST_FRACTION)
 }
 
@@ -54,19 +73,33 @@ impl Path {
         turns
     }
 
+    /// Where the quantity comes to zero by its slopes at both ends. It is zero there on both branches where a step leads over from one to
+    /// the other through a branch point, and grows again on the other.
+    fn kink(&self) -> Option<f64> {
+        let ([a, b], [u, v]) = (self.ends, self.slopes);
+        let [ahead, behind] = [-a / u, 1.0 - b / v];
+        let inside = |place: f64| place > 0.0 && place < 1.0;
+        let place = 0.5 * (ahead + behind);
+        (inside(ahead) && inside(behind) && (ahead - behind).abs() < SAME_KINK).then_some(place)
+    }
+
     /// Where the quantity may pass zero more often than the signs at the ends say; `None` where there is no doubt.
-    pub(super) fn suspicious(&self) -> Option<f64> {
+    pub(super) fn suspicious(&self) -> Option<Suspicion> {
         let [a, b] = self.ends;
         let least = a.abs().min(b.abs());
         let turns = self.turns();
+        let mut is_kink = false;
         let place = if (a > 0.0) == (b > 0.0) {
             let sign = a.signum();
             let nearest = turns
                 .into_iter()
                 .map(|s| (s, sign * self.cubic(s)))
                 .min_by(|one, other| one.1.total_cmp(&other.1));
+            let kink = self.kink();
+            is_kink = kink.is_some();
             match nearest {
                 Some((s, value)) if value < (SUSPICIOUS * least).max(self.doubt) => Some(s),
+                _ if is_kink => kink,
                 // The cubic does not come close, but it may be far off.
                 _ if self.doubt > least => Some(0.5),
                 _ => None,
@@ -84,7 +117,7 @@ impl Path {
                 _ => None,
             }
         };
-        place.map(inside)
+        place.map(|place| Suspicion { is_kink, ..Suspicion::at(place) })
     }
 }
 
@@ -142,12 +175,18 @@ mod tests {
     #[test]
     fn two_zeros_between_equal_signs_are_suspicious() {
         let hidden = path(|s| (s - 0.4) * (s - 0.5), |s| 2.0 * s - 0.9);
-        let place = hidden.suspicious().unwrap();
-        assert!((place - 0.45).abs() < 1e-12);
+        let hidden = hidden.suspicious().unwrap();
+        assert!(!hidden.is_kink && (hidden.place - 0.45).abs() < 1e-12);
         // Far from zero, monotone.
         assert!(path(|s| 5.0 + s, |_| 1.0).suspicious().is_none());
         // A minimum that stays away from zero.
         assert!(path(|s| 1.0 + (s - 0.5).powi(2), |s| 2.0 * (s - 0.5)).suspicious().is_none());
+    }
+
+    #[test]
+    fn a_quantity_that_comes_to_zero_and_turns_back_at_once_is_suspicious() {
+        let kink = path(|s| (s - 0.6_f64).abs(), |s| (s - 0.6_f64).signum()).suspicious().unwrap();
+        assert!(kink.is_kink && (kink.place - 0.6).abs() < 1e-12);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::crossings::crossings;
 use super::event::{Event, Unlocated};
 use super::memory::Memory;
 use super::node::Node;
+use super::path::Suspicion;
 use super::suspicion::suspicious;
 use super::test_function::Location;
 use crate::continuation::corrector::between;
@@ -17,6 +18,8 @@ use crate::error::Error;
 const ASIDE: [f64; 3] = [0.8, 0.9, 0.7];
 /// Part of a step below which it is not divided any further while two kinds that may be one point are not separated.
 const COINCIDENT_PART: f64 = 0.02;
+/// Part of a step in which a smooth quantity no longer looks as if it turned back at once.
+const RESOLVING: f64 = 1e-3;
 /// Smallest cosine of the angle between a part of a step and the tangents at its ends: shorter parts are straighter.
 const LEAST_COSINE: f64 = 0.5;
 /// Value of a test function at a point of another kind, relative to its values around, below which it vanishes there too: on
@@ -99,7 +102,7 @@ impl<'s, C: Curve> Scan<'s, C> {
     /// Special points in a part of the step.
     ///
     /// # Errors
-    /// [`Error::OtherBranch`] if the ends lie beside each other and not behind each other.
+    /// [`Error::OtherBranch`] if the ends lie beside each other and not behind each other, or the step led over to another branch.
     pub(super) fn part(&mut self, [before, after]: [&mut Node<C>; 2], share: f64) -> Result<(), Error> {
         let changed = Self::changed(before, after);
         let (one, other) = (&before.solution, &after.solution);
@@ -114,7 +117,7 @@ impl<'s, C: Curve> Scan<'s, C> {
             return Err(Error::OtherBranch);
         }
         let divide = if changed.len() > 1 || !self.is_explained(&changed, before, after) {
-            Some(0.5)
+            Some(Suspicion::at(0.5))
         } else {
             let tests = self.curve.test_functions();
             let largest = changed.iter().filter_map(|&index| tests[index].changes.iter().max());
@@ -124,10 +127,16 @@ impl<'s, C: Curve> Scan<'s, C> {
         };
         let smallest =
             if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
-        if let Some(fraction) = divide
-            && self.divide([before, after], share, (fraction, smallest))?
-        {
-            return Ok(());
+        if let Some(Suspicion { place, is_kink }) = divide {
+            let known = self.found.len() + self.unlocated.len();
+            let is_divided = self.divide([before, after], share, (place, smallest))?;
+            let is_unexplained = self.found.len() + self.unlocated.len() == known;
+            if is_kink && is_unexplained && self.leads_over(length, share) {
+                return Err(Error::OtherBranch);
+            }
+            if is_divided {
+                return Ok(());
+            }
         }
         if changed.is_empty() && !self.is_explained(&changed, before, after) {
             // Symmetry makes several exponents cross at once.
@@ -147,6 +156,13 @@ impl<'s, C: Curve> Scan<'s, C> {
             }
         }
         Ok(())
+    }
+
+    /// Whether a quantity that comes to zero and turns back at once, still in this `share` of a step, shows that the step led over to
+    /// another branch: the minimum of a smooth quantity is resolved by then.
+    fn leads_over(&self, length: f64, share: f64) -> bool {
+        let can_branch = self.curve.test_functions().iter().any(|test| test.is_orientation);
+        can_branch && share < RESOLVING && length > share * self.settings.shortest_jump && self.trials > 0
     }
 
     /// Searches both sides of a fraction of a part of the step, which is this `share` of the whole; whether it is large enough.

@@ -7,7 +7,7 @@
 
 use super::memory::Memory;
 use super::node::Node;
-use super::path::{Path, partners};
+use super::path::{Path, Suspicion, partners};
 use crate::continuation::{Curve, Settings};
 use num_complex::Complex64;
 
@@ -24,7 +24,7 @@ pub(super) fn suspicious<C: Curve>(
     length: f64,
     memory: &Memory,
     (most_crossings, settings): ([usize; 2], &Settings),
-) -> Option<f64> {
+) -> Option<Suspicion> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
         let own = !before.readings.is_empty()
@@ -65,7 +65,7 @@ fn exponents_hide<C: Curve>(
     after: &mut Node<C>,
     length: f64,
     (most_crossings, settings): ([usize; 2], &Settings),
-) -> Option<f64> {
+) -> Option<Suspicion> {
     let noise = before.spectrum.noise.max(after.spectrum.noise);
     let per_step =
         |rates: &[Complex64]| -> Vec<Complex64> { rates.iter().map(|rate| rate * length).collect() };
@@ -88,12 +88,12 @@ fn exponents_hide<C: Curve>(
             crossings[usize::from(!is_real[0])] += 1;
         }
         let path = Path::new([here.re, there.re], [ahead[index].re, behind[partner].re]);
-        if let Some(place) = path.suspicious() {
-            return Some(place);
+        if let Some(suspicion) = path.suspicious() {
+            return Some(suspicion);
         }
     }
     // Some cross in one direction and as many in the other.
-    (crossings[0] > most_crossings[0] || crossings[1] > most_crossings[1]).then_some(0.5)
+    (crossings[0] > most_crossings[0] || crossings[1] > most_crossings[1]).then(|| Suspicion::at(0.5))
 }
 
 fn tests_hide<C: Curve>(
@@ -102,7 +102,7 @@ fn tests_hide<C: Curve>(
     after: &mut Node<C>,
     length: f64,
     settings: &Settings,
-) -> Option<f64> {
+) -> Option<Suspicion> {
     let tests = curve.test_functions();
     let own: Vec<usize> =
         (0..tests.len()).filter(|&index| !tests[index].of_spectrum && !tests[index].is_turn).collect();
@@ -119,7 +119,7 @@ fn tests_hide<C: Curve>(
 }
 
 /// Where the parameter, a cubic of the arc length, may turn twice. Its rates at both ends are known.
-fn turns_twice<C: Curve>(curve: &C, before: &Node<C>, after: &Node<C>, length: f64) -> Option<f64> {
+fn turns_twice<C: Curve>(curve: &C, before: &Node<C>, after: &Node<C>, length: f64) -> Option<Suspicion> {
     let index = curve.test_functions().iter().position(|test| test.is_turn)?;
     let (here, there) = (before.readings[index]?, after.readings[index]?);
     if (here.value > 0.0) != (there.value > 0.0) {
@@ -134,5 +134,5 @@ fn turns_twice<C: Curve>(curve: &C, before: &Node<C>, after: &Node<C>, length: f
     let s = -0.5 * linear / quadratic;
     let extreme = one + s * (linear + s * quadratic);
     let near = extreme * one.signum() < super::path::SUSPICIOUS * one.abs().min(other.abs());
-    (s > 0.0 && s < 1.0 && near).then(|| super::path::inside(s))
+    (s > 0.0 && s < 1.0 && near).then(|| Suspicion::at(s))
 }

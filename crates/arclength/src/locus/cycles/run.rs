@@ -244,7 +244,7 @@ impl<'a> Asked<'a> {
             value: "a cycle without a critical multiplier".into(),
             allowed: "a special cycle".into(),
         };
-        let eigenfunctions = critical(&mut base, &cycle, &multipliers, kind)?.ok_or(none)?;
+        let eigenfunctions = critical(&mut base, (&cycle, false), &multipliers, kind)?.ok_or(none)?;
         let mut unknown = join(&cycle, orbit.dimension, &eigenfunctions);
         if let Some(last) = unknown.last_mut() {
             *last = parameters[active[1]];

@@ -1,5 +1,6 @@
 //! Families of cycles at one parameter value, as conserved quantities make them, against closed forms.
 
+use arclength::branch::{Criticality, SpecialKind};
 use arclength::continuation::Stop;
 use arclength::cycle::{CycleBranch, CycleEnd, CycleStart, Cycles};
 use arclength::equilibrium::Equilibria;
@@ -72,4 +73,95 @@ fn a_softening_spring_has_a_neutral_family_up_to_the_saddles() {
     assert!(matches!(end, Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. }))), "{end:?}");
     let last = branch.points.last().unwrap();
     assert!((last.max[0] - 1.0).abs() < 1e-3 && last.max[0] < 1.0);
+}
+
+/// `u'' = mu (1 - u^2) u' - u`: linear at its Hopf point, where the parameter is a factor of all that is not.
+struct VanDerPol;
+
+impl VectorField for VanDerPol {
+    fn state_names(&self) -> Vec<String> {
+        vec!["u".into(), "v".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["mu".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        d[0] = s[1];
+        d[1] = p[0] * (-(s[0] * s[0]) + 1.0) * s[1] - s[0];
+    }
+}
+
+#[test]
+fn a_field_that_is_linear_at_its_hopf_point_has_a_family_that_van_der_pols_cycles_cross() {
+    let equilibria = Equilibria::of(&VanDerPol).parameters(&[-1.0]).along("mu", -1.0..=1.0).run().unwrap();
+    let hopf = equilibria.hopf_points().next().unwrap();
+    assert_eq!(hopf.criticality, Criticality::Degenerate, "l1 = {:?}", hopf.first_lyapunov);
+    let family = Cycles::of(&VanDerPol, CycleStart::from(hopf))
+        .parameters(&[hopf.value])
+        .along("mu", -1.0..=1.0)
+        .run()
+        .unwrap();
+    assert!(family.points.iter().all(|point| point.neutral));
+    assert!(family.points[0].max[0] < 0.1, "{}", family.points[0].max[0]);
+    let [(kind, crossing)] = family.special().collect::<Vec<_>>()[..] else { panic!("one branch point") };
+    assert_eq!(kind, SpecialKind::BranchPointOfCycles);
+    // The amplitude for small mu (van der Pol (1926)).
+    assert!((crossing.max[0] - 2.0).abs() < 1e-8, "{}", crossing.max[0]);
+    let other = crossing.branching.clone().unwrap();
+    let cycles = Cycles::of(&VanDerPol, CycleStart::Branching(other))
+        .parameters(&[crossing.value])
+        .along("mu", -1.0..=1.0)
+        .run()
+        .unwrap();
+    let ends = [&cycles.points[0], cycles.points.last().unwrap()];
+    for end in ends {
+        // T(1) = 6.6632868593231 (Strogatz gives 6.66).
+        assert!((end.period - 6.663_286_859_32).abs() < 1e-8, "{}", end.period);
+    }
+    assert!(ends.iter().any(|end| end.value == 1.0 && end.stable == Some(true)));
+    assert!(ends.iter().any(|end| end.value == -1.0 && end.stable == Some(false)));
+}
+
+/// Two springs with a quartic coupling and a dummy damping of both: `u'' = -u - u^3 - c u w^2`, `w'' = -1.69 w - w^3/2 - c u^2 w`.
+struct CoupledSprings(f64);
+
+impl VectorField for CoupledSprings {
+    fn state_names(&self) -> Vec<String> {
+        ["u", "u_rate", "w", "w_rate"].map(String::from).to_vec()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["damping".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let [u, w] = [s[0], s[2]];
+        d[0] = s[1];
+        d[1] = -(u + u * u * u + u * w * w * self.0 + p[0] * s[1]);
+        d[2] = s[3];
+        d[3] = -(w * 1.69 + w * w * w * 0.5 + u * u * w * self.0 + p[0] * s[3]);
+    }
+}
+
+#[test]
+fn branch_points_along_a_family_of_a_conservative_system_are_those_of_hills_equation() {
+    // Amplitudes of w at which a multiplier of u'' = -(1 + c w^2) u is one: SciPy, DOP853, 1e-10.
+    let cases: [(f64, &[f64]); 3] =
+        [(1.2, &[1.147_481_56]), (2.0, &[0.782_518_92, 2.267_975_19]), (-0.2, &[3.303_827_26])];
+    for (coupling, amplitudes) in cases {
+        let springs = CoupledSprings(coupling);
+        let equilibria =
+            Equilibria::of(&springs).parameters(&[0.1]).along("damping", -0.5..=0.5).run().unwrap();
+        let hopf = equilibria.hopf_points().find(|hopf| hopf.frequency > 1.2).unwrap();
+        let family = Cycles::of(&springs, CycleStart::from(hopf))
+            .parameters(&[hopf.value])
+            .along("damping", -0.5..=0.5)
+            .run()
+            .unwrap();
+        assert!(family.points.iter().all(|point| point.neutral));
+        let found: Vec<f64> = family.special().map(|(_, point)| point.max[2]).collect();
+        assert_eq!(found.len(), amplitudes.len(), "c = {coupling}: {found:?}");
+        for (found, exact) in found.iter().zip(amplitudes) {
+            assert!((found / exact - 1.0).abs() < 1e-6, "c = {coupling}: {found}, {exact}");
+        }
+        assert!(family.unlocated.is_empty(), "{:?}", family.unlocated);
+    }
 }

@@ -1,6 +1,7 @@
 //! Branches of equilibria that are hard to follow: units, close special points, degenerate fields, symmetry, random fields.
 
 mod close_points;
+mod crossings;
 mod degenerate_fields;
 mod random_fields;
 mod requests;

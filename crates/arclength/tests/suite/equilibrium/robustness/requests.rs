@@ -1,8 +1,10 @@
 //! Starts that are far from an equilibrium, values that are asked for, and requests that make no sense.
 
 use approx::assert_relative_eq;
-use arclength::equilibrium::{Equilibria, find_equilibrium};
+use arclength::branch::Monitor;
+use arclength::equilibrium::{Equilibria, EquilibriumPoint, find_equilibrium};
 use arclength::{Error, Scalar, VectorField};
+use std::f64::consts::PI;
 
 field!(Explosion, ["x"], ["p"], |x, p, d| {
     d[0] = p[0] * p[0] + x[0] * x[0] + 1.0;
@@ -51,4 +53,32 @@ fn bad_requests_are_refused() {
     assert!(message(ask().along("p", 0.0..=2.0).at(&[3.0])).contains("0 to 2"));
     assert!(message(ask().along("p", 0.0..=2.0).start(&[1.0, 2.0])).contains("dimension"));
     assert!(message(ask().along("p", 0.0..=2.0).parameters(&[])).contains("number of parameters"));
+}
+
+field!(Wave, ["x"], ["p"], |x, p, d| {
+    d[0] = p[0].sin() - x[0];
+});
+
+#[test]
+fn a_monitor_passes_its_value_and_comes_back_within_a_step() {
+    for value in [0.999, 0.9999, 0.995, 0.999_99] {
+        let monitor = || Monitor::new("x", |point: &EquilibriumPoint| Some(point.state[0]));
+        let run = |monitor| {
+            Equilibria::of(&Wave)
+                .start(&[0.0])
+                .parameters(&[0.0])
+                .along("p", 0.0..=3.0)
+                .monitor(monitor)
+                .run()
+        };
+        let branch = run(monitor().at(&[value])).unwrap();
+        let found: Vec<f64> =
+            branch.points.iter().filter(|point| point.label.is_some()).map(|point| point.value).collect();
+        let [one, other] = found[..] else { panic!("{value}: {found:?}") };
+        assert_relative_eq!(one, value.asin(), epsilon = 1e-8);
+        assert_relative_eq!(other, PI - value.asin(), epsilon = 1e-8);
+        // What it never reaches is not found.
+        let beyond = run(monitor().at(&[1.000_01])).unwrap();
+        assert!(beyond.points.iter().all(|point| point.label.is_none()));
+    }
 }

@@ -102,6 +102,9 @@ fn two_real_eigenvalues_that_vanish_together_are_no_hopf_point() {
         let near =
             |value: f64| branch.special_points().filter(|point| (point.value() - value).abs() < 1e-9).count();
         assert_eq!((near(0.0), near(3.0 * coupling)), (1, 1), "{coupling}: {labels:?}");
-        assert_eq!(branch.points[branch.points.len() - 1].stability, Stability::Unstable { dimension: Some(3) });
+        assert_eq!(
+            branch.points[branch.points.len() - 1].stability,
+            Stability::Unstable { dimension: Some(3) }
+        );
     }
 }

@@ -76,3 +76,41 @@ fn curves_of_branch_points_have_their_points_of_codimension_two() {
         assert!(near, "{kind:?} among {found:?}");
     }
 }
+
+/// `x' = x (1 - p - q^2 - x)`: branch points on a parabola, all at `x = 0`.
+struct Parabola;
+
+impl VectorField for Parabola {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into(), "q".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        d[0] = s[0] * (-p[0] - p[1] * p[1] - s[0] + 1.0);
+    }
+}
+
+#[test]
+fn a_curve_on_which_only_one_parameter_comes_back_is_not_closed() {
+    let branch = Equilibria::of(&Parabola)
+        .start(&[0.0])
+        .parameters(&[0.5, -1.5])
+        .along("q", -1.5..=1.5)
+        .run()
+        .unwrap();
+    for point in branch.branch_points() {
+        let curve = EquilibriumLocus::of(&Parabola)
+            .from_branch_point(point)
+            .along("p", -2.0..=2.0)
+            .and("q", -2.0..=2.0)
+            .run()
+            .unwrap();
+        for stop in &curve.stops {
+            assert!(matches!(stop, Some(Stop::RangeEnd { bound: 0, value: -2.0 })), "{:?}", curve.stops);
+        }
+        let end = curve.points.last().unwrap();
+        assert!((end.values[1].abs() - 3.0_f64.sqrt()).abs() < 1e-9, "{:?}", end.values);
+    }
+}
