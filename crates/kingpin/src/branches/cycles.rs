@@ -1,7 +1,7 @@
 //! Limit cycles of the rolling wheel along a parameter.
 
 use super::{Along, FRICTION_MONITOR, HopfPoint};
-use crate::{KingpinError, Tyre, Wheel};
+use crate::{KingpinError, Wheel};
 use arclength::branch::{Monitor, SpecialKind, Unlocated};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
@@ -37,9 +37,16 @@ pub struct WheelCycles {
     pub rolling_limits: Vec<usize>,
 }
 
-/// Takes the label of a requested value off the cycles that were not asked for: the friction monitor has its value there. The others
-/// are numbered anew. Returns the indices of the former.
-fn take_rolling_limits(points: &mut [CyclePoint], asked: &[f64]) -> Vec<usize> {
+/// Takes the label of a requested value off the cycles that were not asked for, and numbers the others anew. A monitor has its value
+/// there: either one that ends the branch, which is an end as any other, or that of the friction. Returns the indices of the latter.
+fn take_rolling_limits(
+    points: &mut [CyclePoint],
+    stops: &[Option<Stop<CycleEnd>>; 2],
+    asked: &[f64],
+) -> Vec<usize> {
+    let [starts_at_monitor, ends_at_monitor] =
+        stops.each_ref().map(|stop| matches!(stop, Some(Stop::Monitor { .. })));
+    let last = points.len().saturating_sub(1);
     let mut rolling_limits = Vec::new();
     let mut number = 0;
     for (index, point) in points.iter_mut().enumerate() {
@@ -49,8 +56,10 @@ fn take_rolling_limits(points: &mut [CyclePoint], asked: &[f64]) -> Vec<usize> {
         if asked.contains(&point.value) {
             number += 1;
             label.number = number;
-        } else {
-            point.label = None;
+            continue;
+        }
+        point.label = None;
+        if !(index == 0 && starts_at_monitor || index == last && ends_at_monitor) {
             rolling_limits.push(index);
         }
     }
@@ -144,9 +153,8 @@ impl Wheel {
             }
             None => cycles,
         };
-        // Under the law of a brush the ground never has to supply more than there is.
-        let cycles = if self.tyre() == Tyre::Brush { cycles } else { cycles.monitor(used) };
         let mut branch = cycles
+            .monitor(used)
             .parameters(&[along.convert(value)])
             .along(key.name(), along.range())
             .at(&at)
@@ -160,7 +168,7 @@ impl Wheel {
             .run()?;
         branch.points.iter_mut().for_each(complete);
         let asked: Vec<f64> = options.at.iter().map(|&value| along.as_found(value)).collect();
-        let rolling_limits = take_rolling_limits(&mut branch.points, &asked);
+        let rolling_limits = take_rolling_limits(&mut branch.points, &branch.stops, &asked);
         for missed in &mut branch.unlocated {
             missed.between.iter_mut().flatten().for_each(|value| *value = along.convert(*value));
         }
