@@ -7,6 +7,13 @@ use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use std::ops::ControlFlow;
 
+/// A first cycle that already needs more friction than there is, while the uniform motion does not, is made smaller at most so often.
+const MOST_REDUCTIONS: usize = 4;
+/// By how much at most in all.
+const SMALLEST_SHARE: f64 = 1e-5;
+/// Part of the friction left that a smaller first cycle is to take.
+const TAKEN: f64 = 0.5;
+
 /// How a branch of cycles is computed.
 #[derive(Clone, Debug, Default)]
 pub struct CycleOptions {
@@ -35,6 +42,8 @@ pub struct WheelCycles {
     pub unlocated: Vec<Unlocated>,
     /// Indices of the cycles whose largest friction force is `mu_s N`: on one side of them the wheel rolls, on the other it cannot.
     pub rolling_limits: Vec<usize>,
+    /// Values of the key between which the largest friction force passes `mu_s N`, and no cycle could be located where it does.
+    pub missed_rolling_limits: Vec<[f64; 2]>,
 }
 
 /// Takes the label of a requested value off the cycles that were not asked for, and numbers the others anew. A monitor has its value
@@ -66,6 +75,24 @@ fn take_rolling_limits(
     rolling_limits
 }
 
+/// Neighbours of which one needs more friction than there is and the other does not, neither being a rolling limit.
+fn missed_rolling_limits(points: &[CyclePoint], rolling_limits: &[usize]) -> Vec<[f64; 2]> {
+    let known = |index: usize| rolling_limits.contains(&index) || rolling_limits.contains(&(index + 1));
+    let passes = |pair: &[CyclePoint]| is_passed([&pair[0], &pair[1]].map(friction_ratio));
+    let missed = points.windows(2).enumerate().filter(|(index, pair)| !known(*index) && passes(pair));
+    missed.map(|(_, pair)| [pair[0].value, pair[1].value]).collect()
+}
+
+/// The largest friction force over `mu_s N` on a cycle of a branch, whose last monitor it is; not a number where there is none.
+fn friction_ratio(point: &CyclePoint) -> f64 {
+    point.monitors.last().copied().unwrap_or(f64::NAN)
+}
+
+/// Whether one of two motions needs more friction than there is, and the other does not.
+fn is_passed([one, other]: [f64; 2]) -> bool {
+    (one < 1.0 && other > 1.0) || (one > 1.0 && other < 1.0)
+}
+
 impl HopfPoint {
     /// The branch of limit cycles that is born here, followed over the interval.
     ///
@@ -90,10 +117,40 @@ impl HopfPoint {
         &self,
         along: Along,
         options: &CycleOptions,
-        observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
+        mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         let width = along.range().end() - along.range().start();
-        self.wheel.cycles_from(self.start(width), along, options, observer)
+        let uniform = self.wheel.motion_in(&self.state).forces()?.friction_ratio_max().unwrap_or(f64::NAN);
+        let mut options = options.clone();
+        let (mut share, mut reductions) = (1.0, 0);
+        loop {
+            // Where the friction is used up between the Hopf point and the first cycle, a smaller one leaves that for the branch.
+            let mut first = None;
+            let may_reduce = reductions < MOST_REDUCTIONS && share > SMALLEST_SHARE;
+            let mut branch = self.wheel.cycles_from(self.start(width), along, &options, |point| {
+                let ratio = *first.get_or_insert_with(|| friction_ratio(point));
+                if may_reduce && is_passed([uniform, ratio]) {
+                    ControlFlow::Break(())
+                } else {
+                    observer(point)
+                }
+            })?;
+            match first.filter(|&ratio| is_passed([uniform, ratio])) {
+                Some(ratio) if may_reduce => {
+                    let reduction = TAKEN * ((1.0 - uniform) / (ratio - uniform)).min(1.0);
+                    share *= reduction;
+                    reductions += 1;
+                    // The first cycle is as much smaller as the first step is shorter than that of the engine.
+                    let step = &mut options.settings.initial_step;
+                    *step = reduction * step.min(Settings::default().initial_step);
+                }
+                Some(_) => {
+                    branch.missed_rolling_limits.insert(0, [self.value, branch.points[0].value]);
+                    return Ok(branch);
+                }
+                None => return Ok(branch),
+            }
+        }
     }
 }
 
@@ -172,6 +229,7 @@ impl Wheel {
         for missed in &mut branch.unlocated {
             missed.between.iter_mut().flatten().for_each(|value| *value = along.convert(*value));
         }
+        let missed_rolling_limits = missed_rolling_limits(&branch.points, &rolling_limits);
         Ok(WheelCycles {
             wheel: *self,
             along,
@@ -179,6 +237,7 @@ impl Wheel {
             stops: branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop))),
             unlocated: branch.unlocated,
             rolling_limits,
+            missed_rolling_limits,
         })
     }
 }

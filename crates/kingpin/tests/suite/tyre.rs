@@ -286,10 +286,10 @@ fn pram_wheel(tyre: Tyre) -> Wheel {
 }
 
 /// Under every law there is a cycle where the largest friction force passes `mu_s N`: the brush law bounds the lateral force alone, and what
-/// keeps the wheel at its speed comes on top.
+/// keeps the wheel at its speed comes on top. That of the rigid wheel lies next to the Hopf point.
 #[test]
 fn the_rolling_limit_lies_on_the_branch_under_every_law() {
-    for tyre in [Tyre::Linear, Tyre::Brush] {
+    for tyre in [Tyre::Rigid, Tyre::Linear, Tyre::Brush] {
         let along = Along::new(Key::V, 0.1, 3.0).unwrap();
         let hopf = pram_wheel(tyre).hopf_points(along, &Control::none()).unwrap().points.remove(0);
         let cycles = hopf.cycles(along, &CycleOptions::default(), |_| ControlFlow::Continue(())).unwrap();
