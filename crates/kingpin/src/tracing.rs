@@ -26,6 +26,10 @@ const CORRECTIONS: usize = 8;
 const HALVINGS: usize = 16;
 /// Half the distance of the points from which the gradient is taken.
 const DIFFERENCE: f64 = 1e-6;
+/// Nearer than this to the edge of the domain what is zero is not told from the edge itself.
+const AT_EDGE: f64 = 1e-4;
+/// Most consecutive points there: a curve that meets the edge has fewer before its steps are too short, one that has more runs along it.
+const MOST_AT_EDGE: usize = 64;
 /// A starting point nearer than this to a curve lies on it.
 const SAME_CURVE: f64 = 1e-3;
 /// More points than a curve has.
@@ -38,7 +42,8 @@ pub(crate) struct Traced {
     pub closed: bool,
 }
 
-/// The curves on which the function vanishes. Where it has no value the curves end.
+/// The curves on which the function vanishes. Where it has no value the curves end; that it tends to zero there, as a growth rate does where
+/// two motions meet, makes no curve of the edge of its domain.
 pub(crate) fn trace_zero_set(
     function: impl Fn(Point) -> Option<f64>,
     control: &Control<'_>,
@@ -46,8 +51,7 @@ pub(crate) fn trace_zero_set(
     let tracer = Tracer {
         control,
         function: |point: Point| {
-            let inside = point.iter().all(|coordinate| (0.0..=1.0).contains(coordinate));
-            if inside { function(point).filter(|value| value.is_finite()) } else { None }
+            if is_in_square(point) { function(point).filter(|value| value.is_finite()) } else { None }
         },
     };
     let mut curves: Vec<Traced> = Vec::new();
@@ -147,6 +151,13 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
         Some(gradient)
     }
 
+    /// Whether the domain of the function ends next to a point, other than with the square.
+    fn is_at_the_edge(&self, [x, y]: Point) -> bool {
+        [[x - AT_EDGE, y], [x + AT_EDGE, y], [x, y - AT_EDGE], [x, y + AT_EDGE]]
+            .into_iter()
+            .any(|beside| is_in_square(beside) && (self.function)(beside).is_none())
+    }
+
     /// Newton's method along the gradient: the zero and the unit tangent there.
     fn correct(&self, mut point: Point) -> Option<(Point, Point)> {
         let mut last = f64::INFINITY;
@@ -173,6 +184,9 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
     /// The curve through a starting point; `None` where Newton's method does not get back to it.
     fn trace(&self, start: Point) -> Result<Option<Traced>, Interrupted> {
         let Some((start, tangent)) = self.correct(start) else { return Ok(None) };
+        if self.is_at_the_edge(start) {
+            return Ok(None);
+        }
         let (mut forward, closed) = self.follow(start, tangent)?;
         if closed {
             forward.insert(0, start);
@@ -191,7 +205,8 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
         let mut points = Vec::new();
         let (mut point, mut step) = (start, LONGEST_STEP);
         let first_tangent = tangent;
-        while step > SHORTEST_STEP && points.len() < MOST_POINTS {
+        let mut at_edge = 0;
+        while step > SHORTEST_STEP && points.len() < MOST_POINTS && at_edge < MOST_AT_EDGE {
             self.control.check()?;
             let predicted = [point[0] + step * tangent[0], point[1] + step * tangent[1]];
             let accepted = self.correct(predicted).and_then(|(next, direction)| {
@@ -212,6 +227,7 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
             if points.len() > 2 && same_way && distance(start, &[point, next]) < 0.1 * step {
                 return Ok((points, true));
             }
+            at_edge = if self.is_at_the_edge(next) { at_edge + 1 } else { 0 };
             points.push(next);
             (point, tangent) = (next, direction);
             if cosine > (0.5 * LARGEST_TURN).cos() {
@@ -220,6 +236,10 @@ impl<F: Fn(Point) -> Option<f64>> Tracer<'_, F> {
         }
         Ok((points, false))
     }
+}
+
+fn is_in_square(point: Point) -> bool {
+    point.iter().all(|coordinate| (0.0..=1.0).contains(coordinate))
 }
 
 /// Distance of a point from a line segment.
@@ -261,6 +281,26 @@ mod tests {
         assert!(line.points.iter().all(|[_, y]| (y - 0.405).abs() < 1e-12));
         let [first, last] = [line.points[0][0], line.points[line.points.len() - 1][0]];
         assert!((last - first).abs() > 1.0 - 1e-6, "{first} {last}");
+    }
+
+    /// It vanishes as the square root of the distance from a circle behind which it has no value, as a growth rate does at a fold, and on a
+    /// line, which is the only curve.
+    #[test]
+    fn the_edge_of_the_domain_is_no_curve() {
+        let evaluations = std::cell::Cell::new(0);
+        let fold = |[x, y]: Point| {
+            evaluations.set(evaluations.get() + 1);
+            let inside = 0.49 - (x - 0.1).powi(2) - (y - 0.2).powi(2);
+            // Beyond the last bits of it the other motion is found.
+            let sign = if inside < 1e-15 { -1.0 } else { 1.0 };
+            (inside > 0.0).then(|| sign * inside.sqrt() * (x - 0.3 - 0.1 * y))
+        };
+        let curves = trace_zero_set(fold, &Control::none()).unwrap();
+        let [line] = &curves[..] else { panic!("{} curves", curves.len()) };
+        assert!(line.points.iter().all(|[x, y]| (x - 0.3 - 0.1 * y).abs() < 1e-9));
+        let [from, to] = [line.points[0][1], line.points[line.points.len() - 1][1]];
+        assert!((from.min(to)).abs() < 1e-8 && (from.max(to) - 0.84).abs() < 0.02, "{from} {to}");
+        assert!(evaluations.get() < 20_000, "{}", evaluations.get());
     }
 
     #[test]

@@ -22,6 +22,9 @@ const CASTER_ANGLE: usize = 2;
 /// Label of cycles whose largest friction force is mu_s N.
 pub(super) const ROLLING_LIMIT: &str = "RL";
 
+/// What such a cycle is.
+pub(super) const ROLLING_LIMIT_NAME: &str = "rolling limit";
+
 /// A cycle, or the Hopf point at which a branch starts or ends.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct CyclePointResult {

@@ -2,7 +2,7 @@
 
 use super::followed::FollowedBranch;
 use super::picture;
-use super::point::{CyclePointResult, ROLLING_LIMIT, at_cycle, at_hopf, cells};
+use super::point::{CyclePointResult, ROLLING_LIMIT, ROLLING_LIMIT_NAME, at_cycle, at_hopf, cells};
 use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
@@ -147,6 +147,10 @@ impl CyclesResult {
                 });
                 NamedNumbers(values.into_iter().flatten().collect())
             };
+            let missed = branch.cycles.missed_rolling_limits.into_iter();
+            let missed =
+                missed.map(|between| UnlocatedResult { test: ROLLING_LIMIT_NAME.to_owned(), between });
+            let unlocated = branch.cycles.unlocated.iter().map(UnlocatedResult::from).chain(missed).collect();
             let [first, second] = &branch.cycles.stops;
             let varying = std::slice::from_ref(&along);
             let border = branch.cycles.wheel.border_of_cycles();
@@ -172,7 +176,7 @@ impl CyclesResult {
                 ends: [0, 1].map(|index| ends[index].cause.clone()),
                 remedies: [0, 1].map(|index| ends[index].remedy.clone()),
                 last: ends.map(|end| end.last),
-                unlocated: branch.cycles.unlocated.iter().map(UnlocatedResult::from).collect(),
+                unlocated,
             });
             all.extend(points);
         }

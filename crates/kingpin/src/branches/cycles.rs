@@ -1,11 +1,18 @@
 //! Limit cycles of the rolling wheel along a parameter.
 
 use super::{Along, FRICTION_MONITOR, HopfPoint};
-use crate::{KingpinError, Tyre, Wheel};
+use crate::{KingpinError, Wheel};
 use arclength::branch::{Monitor, SpecialKind, Unlocated};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{CycleEnd, CyclePoint, CycleStart, Cycles, Orbit, Resolution};
 use std::ops::ControlFlow;
+
+/// A first cycle that already needs more friction than there is, while the uniform motion does not, is made smaller at most so often.
+const MOST_REDUCTIONS: usize = 4;
+/// By how much at most in all.
+const SMALLEST_SHARE: f64 = 1e-5;
+/// Part of the friction left that a smaller first cycle is to take.
+const TAKEN: f64 = 0.5;
 
 /// How a branch of cycles is computed.
 #[derive(Clone, Debug, Default)]
@@ -35,11 +42,20 @@ pub struct WheelCycles {
     pub unlocated: Vec<Unlocated>,
     /// Indices of the cycles whose largest friction force is `mu_s N`: on one side of them the wheel rolls, on the other it cannot.
     pub rolling_limits: Vec<usize>,
+    /// Values of the key between which the largest friction force passes `mu_s N`, and no cycle could be located where it does.
+    pub missed_rolling_limits: Vec<[f64; 2]>,
 }
 
-/// Takes the label of a requested value off the cycles that were not asked for: the friction monitor has its value there. The others
-/// are numbered anew. Returns the indices of the former.
-fn take_rolling_limits(points: &mut [CyclePoint], asked: &[f64]) -> Vec<usize> {
+/// Takes the label of a requested value off the cycles that were not asked for, and numbers the others anew. A monitor has its value
+/// there: either one that ends the branch, which is an end as any other, or that of the friction. Returns the indices of the latter.
+fn take_rolling_limits(
+    points: &mut [CyclePoint],
+    stops: &[Option<Stop<CycleEnd>>; 2],
+    asked: &[f64],
+) -> Vec<usize> {
+    let [starts_at_monitor, ends_at_monitor] =
+        stops.each_ref().map(|stop| matches!(stop, Some(Stop::Monitor { .. })));
+    let last = points.len().saturating_sub(1);
     let mut rolling_limits = Vec::new();
     let mut number = 0;
     for (index, point) in points.iter_mut().enumerate() {
@@ -49,12 +65,32 @@ fn take_rolling_limits(points: &mut [CyclePoint], asked: &[f64]) -> Vec<usize> {
         if asked.contains(&point.value) {
             number += 1;
             label.number = number;
-        } else {
-            point.label = None;
+            continue;
+        }
+        point.label = None;
+        if !(index == 0 && starts_at_monitor || index == last && ends_at_monitor) {
             rolling_limits.push(index);
         }
     }
     rolling_limits
+}
+
+/// Neighbours of which one needs more friction than there is and the other does not, neither being a rolling limit.
+fn missed_rolling_limits(points: &[CyclePoint], rolling_limits: &[usize]) -> Vec<[f64; 2]> {
+    let known = |index: usize| rolling_limits.contains(&index) || rolling_limits.contains(&(index + 1));
+    let passes = |pair: &[CyclePoint]| is_passed([&pair[0], &pair[1]].map(friction_ratio));
+    let missed = points.windows(2).enumerate().filter(|(index, pair)| !known(*index) && passes(pair));
+    missed.map(|(_, pair)| [pair[0].value, pair[1].value]).collect()
+}
+
+/// The largest friction force over `mu_s N` on a cycle of a branch, whose last monitor it is; not a number where there is none.
+fn friction_ratio(point: &CyclePoint) -> f64 {
+    point.monitors.last().copied().unwrap_or(f64::NAN)
+}
+
+/// Whether one of two motions needs more friction than there is, and the other does not.
+fn is_passed([one, other]: [f64; 2]) -> bool {
+    (one < 1.0 && other > 1.0) || (one > 1.0 && other < 1.0)
 }
 
 impl HopfPoint {
@@ -81,10 +117,40 @@ impl HopfPoint {
         &self,
         along: Along,
         options: &CycleOptions,
-        observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
+        mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         let width = along.range().end() - along.range().start();
-        self.wheel.cycles_from(self.start(width), along, options, observer)
+        let uniform = self.wheel.motion_in(&self.state).forces()?.friction_ratio_max().unwrap_or(f64::NAN);
+        let mut options = options.clone();
+        let (mut share, mut reductions) = (1.0, 0);
+        loop {
+            // Where the friction is used up between the Hopf point and the first cycle, a smaller one leaves that for the branch.
+            let mut first = None;
+            let may_reduce = reductions < MOST_REDUCTIONS && share > SMALLEST_SHARE;
+            let mut branch = self.wheel.cycles_from(self.start(width), along, &options, |point| {
+                let ratio = *first.get_or_insert_with(|| friction_ratio(point));
+                if may_reduce && is_passed([uniform, ratio]) {
+                    ControlFlow::Break(())
+                } else {
+                    observer(point)
+                }
+            })?;
+            match first.filter(|&ratio| is_passed([uniform, ratio])) {
+                Some(ratio) if may_reduce => {
+                    let reduction = TAKEN * ((1.0 - uniform) / (ratio - uniform)).min(1.0);
+                    share *= reduction;
+                    reductions += 1;
+                    // The first cycle is as much smaller as the first step is shorter than that of the engine.
+                    let step = &mut options.settings.initial_step;
+                    *step = reduction * step.min(Settings::default().initial_step);
+                }
+                Some(_) => {
+                    branch.missed_rolling_limits.insert(0, [self.value, branch.points[0].value]);
+                    return Ok(branch);
+                }
+                None => return Ok(branch),
+            }
+        }
     }
 }
 
@@ -144,9 +210,8 @@ impl Wheel {
             }
             None => cycles,
         };
-        // Under the law of a brush the ground never has to supply more than there is.
-        let cycles = if self.tyre() == Tyre::Brush { cycles } else { cycles.monitor(used) };
         let mut branch = cycles
+            .monitor(used)
             .parameters(&[along.convert(value)])
             .along(key.name(), along.range())
             .at(&at)
@@ -160,10 +225,11 @@ impl Wheel {
             .run()?;
         branch.points.iter_mut().for_each(complete);
         let asked: Vec<f64> = options.at.iter().map(|&value| along.as_found(value)).collect();
-        let rolling_limits = take_rolling_limits(&mut branch.points, &asked);
+        let rolling_limits = take_rolling_limits(&mut branch.points, &branch.stops, &asked);
         for missed in &mut branch.unlocated {
             missed.between.iter_mut().flatten().for_each(|value| *value = along.convert(*value));
         }
+        let missed_rolling_limits = missed_rolling_limits(&branch.points, &rolling_limits);
         Ok(WheelCycles {
             wheel: *self,
             along,
@@ -171,6 +237,7 @@ impl Wheel {
             stops: branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop))),
             unlocated: branch.unlocated,
             rolling_limits,
+            missed_rolling_limits,
         })
     }
 }

@@ -224,7 +224,8 @@ impl Wheel {
             if size < NEWTON_TOLERANCE || (size < NEWTON_TOLERANCE.sqrt() && size >= 0.5 * last) {
                 return Ok(free);
             }
-            if !size.is_finite() {
+            // From a near start every step is much shorter than the one before; where they grow there is nothing to find.
+            if !size.is_finite() || size > last {
                 break;
             }
             last = size;

@@ -254,6 +254,58 @@ fn branches_end_where_the_wheel_stops() {
     let last = cycles.points.last().unwrap();
     assert_relative_eq!(last.min[3] / last.value, SLOWEST_ON_CYCLES, max_relative = 1e-6);
     assert!(cycles.points.iter().all(|cycle| cycle.min[3] > 0.0));
+    // An end as any other, and not where the friction is used up.
+    assert_eq!(last.label, None);
+    assert!(!cycles.rolling_limits.contains(&(cycles.points.len() - 1)));
+}
+
+/// The front wheel of a pram in a curve, whose shimmy soon asks the ground for more than there is.
+fn pram_wheel(tyre: Tyre) -> Wheel {
+    wheel(
+        tyre,
+        &[
+            (Key::L, 0.07),
+            (Key::TurningRadius, 2.0),
+            (Key::MW, 0.6),
+            (Key::MC, 0.4),
+            (Key::JWxi, 2e-3),
+            (Key::JWzeta, 1.1e-3),
+            (Key::JCz, 6e-4),
+            (Key::LC, 0.03),
+            (Key::K, 2.5e4),
+            (Key::CQ, 5.0),
+            (Key::FAz, -60.0),
+            (Key::MuS, 0.7),
+            (Key::MuD, 0.55),
+            (Key::Sigma, 0.04),
+            (Key::HalfContactLength, 0.012),
+            (Key::CAlpha, 500.0),
+            (Key::Kappa, 0.02),
+        ],
+    )
+}
+
+/// Under every law there is a cycle where the largest friction force passes `mu_s N`: the brush law bounds the lateral force alone, and what
+/// keeps the wheel at its speed comes on top. That of the rigid wheel lies next to the Hopf point.
+#[test]
+fn the_rolling_limit_lies_on_the_branch_under_every_law() {
+    for tyre in [Tyre::Rigid, Tyre::Linear, Tyre::Brush] {
+        let along = Along::new(Key::V, 0.1, 3.0).unwrap();
+        let hopf = pram_wheel(tyre).hopf_points(along, &Control::none()).unwrap().points.remove(0);
+        let cycles = hopf.cycles(along, &CycleOptions::default(), |_| ControlFlow::Continue(())).unwrap();
+        let ratios: Vec<f64> = cycles
+            .points
+            .iter()
+            .map(|cycle| {
+                let wheel = cycles.wheel.with(Key::V, cycle.value).unwrap();
+                wheel.cycle_forces(&cycle.orbit).unwrap().friction_ratio_max().unwrap()
+            })
+            .collect();
+        let [limit] = cycles.rolling_limits[..] else { panic!("{tyre}: {:?}", cycles.rolling_limits) };
+        assert_relative_eq!(ratios[limit], 1.0, max_relative = 1e-9);
+        assert!(ratios[..limit].iter().all(|ratio| *ratio < 1.0), "{tyre}: {ratios:?}");
+        assert!(ratios[limit + 1..].iter().all(|ratio| *ratio > 1.0), "{tyre}: {ratios:?}");
+    }
 }
 
 /// A nose gear with seven states, whose cycles need ever finer meshes, under both laws: every branch is told to its end, and on no cycle
