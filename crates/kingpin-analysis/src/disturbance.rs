@@ -57,13 +57,23 @@ impl Edge {
     /// Whether this is no edge, but where the patience ends: the motions beyond did nothing that can be told, or it is not known of the
     /// smaller ones whether they return. Beyond an edge motions may swing irregularly to the end, or come to the end of the model.
     pub fn is_undecided(&self) -> bool {
-        let unknown_beyond = self.fate.is_some_and(|fate| fate.0 == Fate::Undecided);
-        !self.is_unstable() && (unknown_beyond || self.smaller_are_undecided)
+        !self.is_unstable() && (!self.is_found() || self.smaller_are_undecided)
     }
 
     /// Whether no disturbance was found to return, however small, though the uniform motion is stable.
     pub fn none_returns(&self) -> bool {
         self.returns == 0.0 && !self.is_unstable() && !self.smaller_are_undecided
+    }
+
+    /// Whether a motion was found beyond that ends elsewhere than in the uniform motion.
+    pub fn is_found(&self) -> bool {
+        self.fate.is_none_or(|fate| fate.0 != Fate::Undecided)
+    }
+
+    /// Whether none that was tried was found to end elsewhere, though none is known to return either: then there is no edge, and `fails` is the
+    /// largest that was tried.
+    pub fn is_open(&self) -> bool {
+        self.smaller_are_undecided && !self.is_found()
     }
 
     /// Whether nothing returns, since the uniform motion is unstable.
@@ -88,9 +98,17 @@ pub(crate) fn natural_period(wheel: &Wheel) -> f64 {
 /// How far magnitudes were tried in the directions of these edges: to the edge, or to the largest magnitude where there is none or where
 /// nothing returns.
 pub(crate) fn reached(edges: impl IntoIterator<Item = Option<Edge>>, largest: f64) -> f64 {
-    let tried =
-        |edge: Option<Edge>| edge.filter(|edge| !edge.is_unstable()).map_or(largest, |edge| edge.returns);
+    let tried = |edge: Option<Edge>| match edge {
+        Some(edge) if edge.smaller_are_undecided => edge.fails,
+        Some(edge) if !edge.is_unstable() => edge.returns,
+        _ => largest,
+    };
     edges.into_iter().map(|edge| tried(edge).abs()).fold(0.0, f64::max)
+}
+
+/// The edge that is nearest to the uniform motion.
+pub(crate) fn nearest(edges: impl IntoIterator<Item = Option<Edge>>) -> Option<Edge> {
+    edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()))
 }
 
 impl DisturbanceRequest {

@@ -33,14 +33,17 @@ impl NeglectedDryFriction {
         (moment > 0.0).then_some(Self { moment, critical_speed_with_friction: speed, is_told })
     }
 
+    /// That it was left out, in words.
+    pub(crate) fn in_words(&self) -> String {
+        let moment = readable(self.moment);
+        format!("this is the wheel without dry friction about the king pin: M_f = {moment} N m was left out")
+    }
+
     /// Tells of it, where there is any.
     pub(crate) fn tell(neglected: Option<&Self>, out: &mut dyn Write) -> io::Result<()> {
-        let Some(Self { moment, critical_speed_with_friction, is_told }) = neglected else { return Ok(()) };
-        writeln!(
-            out,
-            "\nthis is the wheel without dry friction about the king pin: M_f = {} N m was left out",
-            readable(*moment)
-        )?;
+        let Some(neglected) = neglected else { return Ok(()) };
+        writeln!(out, "\n{}", neglected.in_words())?;
+        let Self { critical_speed_with_friction, is_told, .. } = neglected;
         match critical_speed_with_friction {
             _ if !is_told => {
                 writeln!(out, "`simulate`, `basin`, `safe-kick` and `margin` take it into account")

@@ -28,6 +28,12 @@ fn remarks(wheel: &Wheel) -> Vec<String> {
             "`k` sets k_u and k_q, one of which is given too: {longitudinal}, {lateral} (in a file k_u and k_q win, else the last)"
         ));
     }
+    if wheel.radius_is_given_twice() {
+        let radius = quantity(Key::TurningRadius, wheel.get(Key::TurningRadius));
+        remarks.push(format!(
+            "`curvature` sets r, which is given too: {radius} (in a file r wins, else the last)"
+        ));
+    }
     remarks
 }
 

@@ -18,7 +18,7 @@ const EXAMPLE: &str = "kingpin fit decay.csv --wheel mine.toml -o fit.svg --writ
 /// caster was released or the wheel hit, while it swings. Parameters, and the states at the start of every record, are those with
 /// the smallest sum of squared residuals; intervals hold the truth 95 times in 100 if the noise is independent from sample to
 /// sample and normal. What is not estimated is as the wheel has it, and what is estimated starts from there. A line
-/// `# v = 1.5` of the file, or FILE.csv:v=1.5, says at which speed a record was taken. A caster that was held and released has
+/// `# v = 1.5` of the file (or `# v: 1.5 m/s, r: 2`), or FILE.csv:v=1.5, says at which speed a record was taken. A caster that was held and released has
 /// --start Omega=uniform: its rate is known.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]

@@ -2,6 +2,7 @@
 
 use crate::parameters::{Key, Tyre};
 use arclength::control::Interrupted;
+use arclength_numbers::{readable, significant};
 use std::fmt;
 use std::path::PathBuf;
 
@@ -44,8 +45,8 @@ pub enum NoUniformMotion {
     Standstill,
     /// The inertial force of the caster outgrows the lateral spring.
     #[error(
-        "m omega^2 < k l fails: {inertial} N is not below {elastic} N \
-         (m = m_c (l - l_c), omega = v/r, k = k_q); lower v or raise r, l or k_q"
+        "m omega^2 < k l fails: {} N is not below {} N (m = m_c (l - l_c), omega = v/r, k = k_q); lower v or raise r, l or k_q",
+        readable(*inertial), readable(*elastic)
     )]
     SpringTooSoft {
         /// `m omega^2` in N.
@@ -55,7 +56,8 @@ pub enum NoUniformMotion {
     },
     /// The motion of a wheel with a tyre was followed from the straight path to its circle and lost.
     #[error(
-        "it was followed from the straight path to 1/r = {curvature} 1/m and lost there (residual {residual:e}); lower v or raise r"
+        "it was followed from the straight path to 1/r = {} 1/m and lost there (residual {}); lower v or raise r",
+        readable(*curvature), significant(*residual, 2)
     )]
     LostOnTheCircle {
         /// The last curvature in 1/m at which the motion was found.
@@ -65,8 +67,9 @@ pub enum NoUniformMotion {
     },
     /// The caster cannot lie along the circle of the wheel.
     #[error(
-        "|l - a0| < r fails: {effective_length} m is not below {radius} m \
-         (a0 = m omega^2/k is the deflection of the spring along the caster); raise r or lower l"
+        "|l - a0| < r fails: {} m is not below {} m \
+         (a0 = m omega^2/k is the deflection of the spring along the caster); raise r or lower l",
+        readable(*effective_length), readable(*radius)
     )]
     CircleTooSmall {
         /// `|l - a0|` in m.
@@ -75,15 +78,15 @@ pub enum NoUniformMotion {
         radius: f64,
     },
     /// Newton's method did not find the caster angle of the wheel with lateral elasticity only.
-    #[error("Newton's method stopped with residual {residual:e}; lower k_psi")]
+    #[error("Newton's method stopped with residual {}; lower k_psi", significant(*residual, 2))]
     NotFound {
         /// What is left of the equation for `sin psi`.
         residual: f64,
     },
     /// Newton's method was led from the isotropic wheel towards the given one and stopped on the way.
     #[error(
-        "it was followed from k_u = k_q to k_u = {longitudinal_stiffness} N/m and lost there \
-         (residual {residual:e}); bring k_u nearer to k_q or lower k_psi"
+        "it was followed from k_u = k_q to k_u = {} N/m and lost there (residual {}); bring k_u nearer to k_q or lower k_psi",
+        readable(*longitudinal_stiffness), significant(*residual, 2)
     )]
     LostOnTheWay {
         /// The last `k_u` in N/m at which the motion was found.
@@ -102,7 +105,7 @@ pub enum KingpinError {
     UnknownKey {
         /// What was given.
         given: String,
-        /// The known keys that may be meant, the likeliest first.
+        /// The known keys that may be meant, the likeliest first; none where none is near.
         suggestions: Vec<Key>,
         /// Where in a file.
         position: Option<Position>,
@@ -328,7 +331,7 @@ pub enum KingpinError {
     #[error(transparent)]
     Interrupted(#[from] Interrupted),
     /// There is no uniform motion.
-    #[error("no uniform motion at v = {v} m/s, l = {l} m, r = {r} m: {reason}")]
+    #[error("no uniform motion at v = {} m/s, l = {} m, {}: {reason}", readable(*v), readable(*l), radius(*r))]
     NoUniformMotion {
         /// Towing speed in m/s.
         v: f64,
@@ -363,9 +366,15 @@ fn told(given: &str, suggestions: &[Key]) -> String {
     let tyre = is_tyre.then(|| format!("`{}` (law of the tyre: rigid, linear, brush)", Tyre::KEY));
     let keys = suggestions.iter().map(|key| format!("`{key}` ({}, {})", key.meaning(), key.unit()));
     match tyre.into_iter().chain(keys).collect::<Vec<_>>().as_slice() {
+        [] => format!("the keys are {}", Key::ALL.map(Key::name).join(", ")),
         [nearest] => format!("the nearest known key is {nearest}"),
         several => format!("it may be {}", several.join(", or ")),
     }
+}
+
+/// The radius of the path.
+fn radius(r: f64) -> String {
+    if r.is_infinite() { "r = inf".to_owned() } else { format!("r = {} m", readable(r)) }
 }
 
 fn prefix(position: &Option<Position>) -> String {

@@ -26,7 +26,7 @@ const OTHER_WORDS: [(&str, &str); 13] = [
 const SUGGESTED: usize = 4;
 
 impl Key {
-    /// The keys that may be meant by what was given, the likeliest first, at most four and at least one.
+    /// The keys that may be meant by what was given, the likeliest first, at most four; none where none is near.
     ///
     /// That is the key whose name is nearest: fewest edits when case and underscores are disregarded, then fewest edits with them. Where
     /// that is another name altogether, it is those whose meaning has most of the words given.
@@ -43,8 +43,7 @@ impl Key {
         if is_near && !Self::ALL.into_iter().any(|key| key.words_of_meaning().any(|word| word == given)) {
             return vec![nearest];
         }
-        let by_meaning = Self::by_meaning(given);
-        if by_meaning.is_empty() { vec![nearest] } else { by_meaning }
+        Self::by_meaning(given)
     }
 
     /// The words of the meaning of the key, without what is said of special values.
@@ -194,6 +193,9 @@ mod tests {
             ("cornering_stiffness", vec![Key::CAlpha]),
         ] {
             assert_eq!(Key::suggestions(given), meant, "{given}");
+        }
+        for given in ["foo", "w", "x", "temperature"] {
+            assert_eq!(Key::suggestions(given), [], "{given}");
         }
         assert_eq!(edit_distance("kitten", "sitting"), 3);
     }

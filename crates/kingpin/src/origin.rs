@@ -35,6 +35,8 @@ pub(crate) struct Origin {
     changed: KeySet,
     /// Whether `k` and a stiffness that it sets were given in the same place.
     stiffness_given_twice: bool,
+    /// Whether the radius and its curvature were given in the same place.
+    radius_given_twice: bool,
 }
 
 impl Origin {
@@ -49,6 +51,14 @@ impl Origin {
         }
         let one = self.given.contains(Key::KU) || self.given.contains(Key::KQ);
         self.stiffness_given_twice |= self.given.contains(Key::K) && one;
+        self.radius_given_twice |=
+            self.given.contains(Key::TurningRadius) && self.given.contains(Key::Curvature);
+    }
+
+    /// The same, where what was noted since another one was varied and not given.
+    pub(crate) fn varied_from(self, before: Self) -> Self {
+        let Self { given, stiffness_given_twice, radius_given_twice, .. } = before;
+        Self { given, stiffness_given_twice, radius_given_twice, ..self }
     }
 
     /// That all so far is from a file.
@@ -74,6 +84,11 @@ impl Origin {
     /// Whether the value of a stored key was changed since the file was read.
     pub(crate) fn is_changed(&self, key: Key) -> bool {
         self.changed.contains(key)
+    }
+
+    /// Whether the radius and its curvature were given in the same place.
+    pub(crate) fn radius_is_given_twice(&self) -> bool {
+        self.radius_given_twice
     }
 
     /// Whether `k` and a stiffness that it sets were given in the same place.

@@ -134,7 +134,9 @@ impl Wheel {
     /// # Errors
     /// [`OutOfRange`](KingpinError::OutOfRange).
     pub fn with(mut self, key: Key, value: f64) -> Result<Self, KingpinError> {
+        let before = self.origin;
         self.set_value(key, value)?;
+        self.origin = self.origin.varied_from(before);
         Ok(self)
     }
 
@@ -298,6 +300,11 @@ impl Wheel {
     /// Whether `k` was set, and `k_u` or `k_q` too, both in a file or both after it.
     pub fn stiffness_is_given_twice(&self) -> bool {
         self.origin.stiffness_is_given_twice()
+    }
+
+    /// Whether `r` and `curvature` were set, both in a file or both after it.
+    pub fn radius_is_given_twice(&self) -> bool {
+        self.origin.radius_is_given_twice()
     }
 
     /// The wheel as TOML, which [`from_toml`](Self::from_toml) reads back; what follows from other parameters is left to follow.

@@ -56,7 +56,9 @@ impl DamperRequest {
     /// # Errors
     /// What is wrong with the wheel, the speed, the radii or the loads; an interruption.
     pub fn run(&self, control: &Control<'_>) -> Result<DamperResult, Error> {
-        let mut wheel = self.wheel.read()?.with(Key::CQ, 0.0)?.with(Key::CPsi, 0.0)?;
+        let given = self.wheel.read()?;
+        let own_dampers = [Key::CQ, Key::CPsi].map(|key| given.get(key));
+        let mut wheel = given.with(Key::CQ, 0.0)?.with(Key::CPsi, 0.0)?;
         let up_to = up_to::speed(&wheel, &self.up_to)?;
         let mut conditions = Vec::new();
         let given: [(_, _, &'static [&'static str]); 2] =
@@ -70,11 +72,13 @@ impl DamperRequest {
                 conditions.push(condition);
             }
         }
-        let sizing = Sizing { wheel, up_to, conditions };
+        // The kicks, too, are those of the wheel that small motions and cycles are of.
+        let sizing = Sizing { wheel: wheel.with(Key::MF, 0.0)?, up_to, conditions };
+        let sized = sizing.wheel;
         let part = if self.small_motions { 1.0 } else { PART_OF_SMALL_MOTIONS };
         let small = &control.part(0.0..part);
-        let lateral = sizing.alone(&wheel, Key::CQ, &small.part(0.0..0.1))?;
-        let rotational = sizing.alone(&wheel, Key::CPsi, &small.part(0.1..0.2))?;
+        let lateral = sizing.alone(&sized, Key::CQ, &small.part(0.0..0.1))?;
+        let rotational = sizing.alone(&sized, Key::CPsi, &small.part(0.1..0.2))?;
         let with_longitudinal_damper =
             sizing.with_longitudinal_damper([lateral, rotational], &small.part(0.2..0.3))?;
         let front = sizing.front(lateral, &small.part(0.3..1.0))?;
@@ -93,6 +97,7 @@ impl DamperRequest {
         let speed = |damper: Option<SmallestDamper>| damper.and_then(|damper| damper.speed);
         Ok(DamperResult {
             requirement: REQUIREMENT,
+            own_dampers,
             up_to,
             c_q,
             c_psi,

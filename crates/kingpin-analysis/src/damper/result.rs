@@ -18,6 +18,9 @@ pub struct DamperResult {
     /// The wheel without its dampers.
     #[serde(skip)]
     pub wheel: Wheel,
+    /// The wheel's own dampers `c_q` and `c_psi`, in whose place those that were found are.
+    #[serde(skip)]
+    pub own_dampers: [f64; 2],
     /// What the dampers are for.
     pub requirement: &'static str,
     /// The speed in m/s up to which the uniform motion is to be stable.
@@ -314,6 +317,14 @@ impl DamperResult {
         Ranges([(Key::TurningRadius, self.radius.clone()), (Key::FAz, self.load.clone())])
     }
 
+    /// The wheel's own dampers, which the ones that were found replace, in words; nothing where it has none.
+    pub(crate) fn replaced_dampers(&self) -> Option<String> {
+        let own =
+            [Key::CQ, Key::CPsi].into_iter().zip(self.own_dampers).filter(|(_, damping)| *damping != 0.0);
+        let own: Vec<String> = own.map(|(key, damping)| description::quantity(key, damping)).collect();
+        (!own.is_empty()).then(|| own.join(" and "))
+    }
+
     /// Keys of which the wheel's own values do not count.
     fn replaced(&self) -> Vec<Key> {
         let given = self.ranges().0.into_iter().filter(|(_, range)| range.is_some()).map(|(key, _)| key);
@@ -335,6 +346,9 @@ impl Report for DamperResult {
         let wheel = description::of(&self.wheel, &self.replaced());
         let up_to = readable(self.up_to);
         writeln!(out, "dampers for stability up to v = {up_to} m/s{} at {wheel}\n", ranges.in_words())?;
+        if let Some(own) = self.replaced_dampers() {
+            writeln!(out, "in place of the wheel's own, {own}, which are left out\n")?;
+        }
         for (key, name, damping, speed, at) in [
             (Key::CQ, "lateral damper", self.c_q, self.corner.c_q, self.corner.c_q_at),
             (Key::CPsi, "damper about the king pin", self.c_psi, self.corner.c_psi, self.corner.c_psi_at),

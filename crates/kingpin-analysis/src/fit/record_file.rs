@@ -1,7 +1,8 @@
 //! A record from a file of comma-separated values.
 //!
 //! The first line has the names of the columns: `t` and states, in any order, with or without their units in brackets; other columns
-//! are passed over. Lines that begin with `#` are comments; one of the form `# v = 1.5` says at which value of a parameter the record was taken.
+//! are passed over. Lines that begin with `#` are comments; one of the form `# v = 1.5`, or `# v: 1.5 m/s, r: 2`, says at which values of
+//! parameters the record was taken.
 
 use crate::error::Error;
 use arclength_analysis::Assignment;
@@ -25,6 +26,8 @@ pub(super) struct RecordFile {
     pub settings: Vec<Assignment>,
     /// Names of columns that were passed over.
     pub passed_over: Vec<String>,
+    /// Remarks that look like values of parameters and are none, with their lines and why.
+    pub not_understood: Vec<(u64, String)>,
 }
 
 /// The unit of a column in which a file may have it.
@@ -85,6 +88,13 @@ pub(super) fn read(path: &Path, states: &[&str], wanted: &[String]) -> Result<Re
                 failure(last, Some(name), problem)
             })
         };
+        if let Some(text) = row.iter().skip(header.len()).find(|text| !text.is_empty()) {
+            let problem = format!(
+                "`{text}` stands under no name; allowed: {} values, with decimal points, separated by commas",
+                header.len()
+            );
+            return Err(failure(last, None, problem));
+        }
         let time = number(TIME, places.time)?;
         if let Some(before) = times.last().filter(|before| time <= **before) {
             let problem = format!(
@@ -105,11 +115,19 @@ pub(super) fn read(path: &Path, states: &[&str], wanted: &[String]) -> Result<Re
         return Err(failure(last, None, problem));
     }
     let columns = places.states.into_iter().zip(values).map(|((state, _), values)| Column { state, values });
+    let (mut settings, mut not_understood) = (Vec::new(), Vec::new());
+    for remark in comments.iter().flat_map(|(line, comment)| remarks(*line, comment)) {
+        match remark {
+            Remark::Setting(setting) => settings.push(setting),
+            Remark::NotUnderstood(line, problem) => not_understood.push((line, problem)),
+        }
+    }
     Ok(RecordFile {
         columns: columns.collect(),
         times,
-        settings: settings(comments.iter().map(|(_, line)| *line)),
+        settings,
         passed_over: places.passed_over,
+        not_understood,
     })
 }
 
@@ -175,16 +193,59 @@ fn places(
     Ok(Places { time, states: found, passed_over })
 }
 
-/// The parameters in comments `# key = value`.
-fn settings<'a>(comments: impl Iterator<Item = &'a str>) -> Vec<Assignment> {
-    let comments = comments.filter_map(|line| line.trim_start().strip_prefix('#'));
-    let settings = comments.filter_map(|comment| {
-        let (key, value) = comment.split_once('=')?;
-        let (key, value) = (key.trim(), value.trim());
-        let is_parameter = key == Tyre::KEY || key.parse::<Key>().is_ok();
-        is_parameter.then(|| Assignment { key: key.to_owned(), value: value.to_owned() })
-    });
-    settings.collect()
+/// What a comment says of a parameter.
+enum Remark {
+    /// At which value the record was taken.
+    Setting(Assignment),
+    /// A line with something that looks like a value, and why it is none.
+    NotUnderstood(u64, String),
+}
+
+/// The values in a comment, `# v = 1.5` or `# by hand, v: 1.5 m/s; r: 2`. Other words are passed over.
+fn remarks(line: u64, comment: &str) -> Vec<Remark> {
+    let comment = comment.trim_start().trim_start_matches('#');
+    parts(comment).into_iter().filter_map(|part| remark(line, part)).collect()
+}
+
+/// The parts of a comment between semicolons and commas that are no decimal commas.
+fn parts(comment: &str) -> Vec<&str> {
+    let mut parts = Vec::new();
+    let mut start = 0;
+    for (place, _) in comment.match_indices([';', ',']) {
+        let rest = &comment[place + 1..];
+        if !rest.starts_with(|letter: char| letter.is_ascii_digit()) {
+            parts.push(&comment[start..place]);
+            start = place + 1;
+        }
+    }
+    parts.push(&comment[start..]);
+    parts
+}
+
+/// What a part of a comment says.
+fn remark(line: u64, part: &str) -> Option<Remark> {
+    let separator = part.find(['=', ':'])?;
+    let (name, value) = (part[..separator].trim(), part[separator + 1..].trim());
+    let first = value.split_whitespace().next().unwrap_or_default();
+    // Between digits a colon is that of a time of day.
+    let is_time =
+        part[separator..].starts_with(':') && name.ends_with(|letter: char| letter.is_ascii_digit());
+    let is_number = !is_time && first.parse::<f64>().is_ok();
+    // A colon stands in many a sentence.
+    let is_assigned = part[separator..].starts_with('=') || is_number || first.parse::<Tyre>().is_ok();
+    let setting =
+        |value: &str| Some(Remark::Setting(Assignment { key: name.to_owned(), value: value.to_owned() }));
+    match name.parse::<Key>() {
+        Ok(key) if is_assigned => {
+            let unit = value.strip_prefix(first).unwrap_or_default().trim();
+            setting(if unit == key.unit() { first } else { value })
+        }
+        _ if name == Tyre::KEY && is_assigned => setting(value),
+        Err(error) if is_number && name.starts_with(char::is_alphabetic) => {
+            Some(Remark::NotUnderstood(line, format!("`{}` is not understood: {error}", part.trim())))
+        }
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -213,6 +274,39 @@ mod tests {
         let settings: Vec<String> =
             found.settings.iter().map(|set| format!("{}={}", set.key, set.value)).collect();
         assert_eq!(settings, ["v=1.5", "k=7"]);
+    }
+
+    #[test]
+    fn remarks_are_read_or_told_of() {
+        const ROWS: &str = "t,psi\n0,0\n1,1\n2,0\n3,1\n4,0\n";
+        for (remark, expected) in [
+            ("# v = 0.5", "v=0.5"),
+            ("#v=0.5", "v=0.5"),
+            ("## v: 0.5", "v=0.5"),
+            ("# v = 0.5 m/s", "v=0.5"),
+            ("# psi in rad, v = 0.5", "v=0.5"),
+            ("# v: 0.5, r: 2; l=0.1", "v=0.5 r=2 l=0.1"),
+            ("# v=0.5,r=inf", "v=0.5 r=inf"),
+            ("# tyre: brush", "tyre=brush"),
+            // What is no value is refused where it is set.
+            ("# v = 0,5", "v=0,5"),
+            ("# v = 0.5 km/h", "v=0.5 km/h"),
+        ] {
+            let found = of(&format!("{remark}\n{ROWS}"), &[]).unwrap();
+            let settings: Vec<String> =
+                found.settings.iter().map(|set| format!("{}={}", set.key, set.value)).collect();
+            assert_eq!((settings.join(" ").as_str(), found.not_understood.len()), (expected, 0), "{remark}");
+        }
+        for remark in ["# V = 0.5", "# speed: 0.5", "# taken at v = 0.5", "# by hand; velocity = 0.5 m/s"] {
+            let found = of(&format!("# first\n{remark}\n{ROWS}"), &[]).unwrap();
+            assert!(found.settings.is_empty(), "{remark}");
+            let [(line, problem)] = found.not_understood.as_slice() else { panic!("{remark}") };
+            assert!(*line == 2 && problem.contains("is not understood: unknown key"), "{problem}");
+        }
+        for remark in ["# taken at 10:30", "# date: 2026-05-01", "# v: by hand", "# note: all is well"] {
+            let found = of(&format!("{remark}\n{ROWS}"), &[]).unwrap();
+            assert!(found.settings.is_empty() && found.not_understood.is_empty(), "{remark}");
+        }
     }
 
     #[test]
@@ -246,6 +340,11 @@ mod tests {
             ("t,psi\n0,1\n".to_owned(), &[], "line 2: the file ends after 1 samples; allowed: at least 5"),
             ("t;psi\n0;1\n".to_owned(), &[], "line 1: the columns are not separated by commas"),
             (String::new(), &[], "column t: there is no such column"),
+            (
+                "t,psi\n0,0.3\n0.003,0.30,7\n".to_owned(),
+                &[],
+                "line 3: `7` stands under no name; allowed: 2 values, with decimal points",
+            ),
         ] {
             let message = of(&text, wanted).unwrap_err();
             assert!(message.contains(expected), "{message}\n{expected}");

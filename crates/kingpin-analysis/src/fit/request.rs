@@ -98,7 +98,7 @@ impl FitRequest {
         keys: &[Key],
     ) -> Result<(Record, Vec<String>), Error> {
         let file = &request.file;
-        let RecordFile { times, columns, settings, passed_over } =
+        let RecordFile { times, columns, settings, passed_over, not_understood } =
             record_file::read(file, wheel.free_states(), &self.states)?;
         let mut of_record = *wheel;
         for Assignment { key, value } in settings.iter().chain(&request.set) {
@@ -112,7 +112,8 @@ impl FitRequest {
                 )));
             }
         }
-        let mut warnings = Vec::new();
+        let told = |(line, problem): &(u64, String)| format!("{}: line {line}: {problem}", file.display());
+        let mut warnings: Vec<String> = not_understood.iter().map(told).collect();
         let dependent: Vec<&str> = passed_over
             .iter()
             .map(String::as_str)

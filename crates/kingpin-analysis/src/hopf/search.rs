@@ -5,8 +5,8 @@ use crate::error::{Error, unless_stopped};
 use arclength::continuation::Settings;
 use arclength::equilibrium::EquilibriumPoint;
 use arclength_analysis::Control;
-use kingpin::Wheel;
 use kingpin::branches::{Along, MotionBranch};
+use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
 /// Relative distance of parameter values within which two Hopf points are the same.
@@ -62,8 +62,27 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
             message += &format!("; beyond {} it could not be followed{why}", readable(reached));
         }
     }
-    message += "; try a wider interval, or see with `kingpin chart` where the stability changes";
+    message += &if does_not_act(wheel, along.key(), [low, high]) {
+        format!(
+            "; {} does not act on the stability of this wheel: the eigenvalues stay the same",
+            along.key()
+        )
+    } else {
+        "; try a wider interval, or see with `kingpin chart` where the stability changes".to_owned()
+    };
     message
+}
+
+/// Whether the eigenvalues are the same, to the last digit, at both ends of an interval of a key and in its middle.
+fn does_not_act(wheel: &Wheel, key: Key, [low, high]: [f64; 2]) -> bool {
+    let eigenvalues = |value: f64| {
+        let motion = wheel.with(key, value).ok()?.uniform_motion().ok()?;
+        Some(motion.eigenvalues())
+    };
+    let first = eigenvalues(low);
+    low != high
+        && first.is_some()
+        && [0.5 * (low + high), high].into_iter().all(|value| eigenvalues(value) == first)
 }
 
 /// Label of the Hopf point with an index.

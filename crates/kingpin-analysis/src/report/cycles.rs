@@ -2,6 +2,7 @@
 
 use super::finding::Finding;
 use super::illustration::Illustration;
+use crate::classification::{Contact, contact_in_words};
 use crate::cycles::{CyclesRequest, CyclesResult};
 use crate::error::Error;
 use crate::forces::ForcesResult;
@@ -31,20 +32,22 @@ pub(super) fn follow(
     }
 }
 
+/// What is said where no Hopf point is up to a speed, and of large cycles that are born of none.
+pub(super) fn none_is_born(subject: String, fastest: f64, large_cycles: &str) -> Finding {
+    let text = format!(
+        "No Hopf point up to {} m/s, so no limit cycle is born of the uniform motion; large ones beside it {large_cycles}.",
+        readable(fastest)
+    );
+    Finding::new(subject, text, "")
+}
+
 /// What is said of them; `stable_motion` is whether the uniform motion is stable at the wheel's own speed.
 pub(super) fn finding(
     subject: String,
-    cycles: Option<&CyclesResult>,
-    [speed, fastest]: [f64; 2],
+    cycles: &CyclesResult,
+    speed: f64,
     stable_motion: Option<bool>,
 ) -> Finding {
-    let Some(cycles) = cycles else {
-        let text = format!(
-            "No Hopf point up to {} m/s, so no limit cycle is born of the uniform motion; large ones beside it were not sought.",
-            readable(fastest)
-        );
-        return Finding::new(subject, text, "");
-    };
     let mut said = Vec::new();
     for branch in &cycles.branches {
         let points = || cycles.points.iter().filter(|point| point.branch == branch.branch);
@@ -52,11 +55,12 @@ pub(super) fn finding(
         let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
         let reach = points().map(|point| point.psi_max.abs().max(point.psi_min.abs())).fold(0.0, f64::max);
         said.push(format!(
-            "A branch of limit cycles {}; it lies between {} and {} m/s, with caster angles up to {} rad",
+            "A branch of limit cycles {}; it lies between {} and {} m/s, with caster angles up to {} rad as far as it was followed ({})",
             branch.ends[0],
             significant(low, 4),
             significant(high, 4),
-            significant(reach, 4)
+            significant(reach, 4),
+            branch.ends[1]
         ));
     }
     let here = cycles.points.iter().filter(|point| {
@@ -109,9 +113,10 @@ fn friction(forces: &ForcesResult) -> String {
 /// The picture cannot be drawn.
 pub(super) fn illustration(cycles: &CyclesResult, radius: f64) -> Result<Option<Illustration>, Error> {
     let caption = format!(
-        "Largest and smallest caster angle of the limit cycles over the speed at <i>r</i> = {} m, with ideal rolling; solid where stable, \
+        "Largest and smallest caster angle of the limit cycles over the speed at <i>r</i> = {}, {}; solid where stable, \
          dashed where unstable, dotted where the wheel cannot roll like this.",
-        if radius.is_infinite() { "∞".to_owned() } else { readable(radius) }
+        if radius.is_infinite() { "∞".to_owned() } else { format!("{} m", readable(radius)) },
+        contact_in_words(&cycles.wheel, Contact::Rolling.model().name())
     );
     Illustration::of(cycles, caption)
 }

@@ -54,6 +54,10 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
             text.push_str(&format!(" That no large cycle is found either takes {}.", said.join(", or ")));
         }
     }
+    // Beside its own a wheel takes less.
+    if let Some(own) = dampers.replaced_dampers() {
+        text.push_str(&format!(" All this is without the wheel's own dampers ({own})."));
+    }
     let check = "The dampers with which the motion gains its stability, sought over all speeds; cycles followed from the Hopf points of weaker dampers along speed and \
                  damping, their folds in both, and strong random kicks with a hundredth more than the damper. What was searched is no proof \
                  that there is no other large cycle.";

@@ -27,6 +27,11 @@ impl Finding {
         Self { undecided, ..self }
     }
 
+    /// The same, with what is to be added.
+    pub(super) fn and(self, sentence: &str) -> Self {
+        Self { text: format!("{} {sentence}", self.text), ..self }
+    }
+
     /// That it could not be computed, and why.
     pub(super) fn not_computed(subject: impl Into<String>, error: &Error) -> Self {
         let text = format!("Not computed: {error}.");

@@ -8,15 +8,17 @@ use super::rolling::Motions;
 use super::speeds::Speeds;
 use super::{blow, cycles, dampers, limits};
 use crate::chart::ChartRequest;
-use crate::classification::Contact;
+use crate::classification::{Contact, may_slide};
+use crate::damper::DamperResult;
 use crate::error::{Error, unless_stopped};
 use crate::folder;
-use crate::page::PageFigure;
+use crate::neglected_dry_friction::NeglectedDryFriction;
+use crate::page::{PageFigure, prose};
 use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control, SampledInterval};
-use kingpin::{Key, Wheel};
-use kingpin_report::numbers::readable;
+use kingpin::{Key, Tyre, Wheel};
+use kingpin_report::numbers::{readable, significant};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -102,6 +104,12 @@ fn rounded(value: f64) -> f64 {
     (value / unit).round() * unit
 }
 
+/// Words as a sentence.
+fn sentence(words: &str) -> String {
+    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
+    format!("{}{rest}.", first.to_uppercase())
+}
+
 /// What was found so far.
 #[derive(Default)]
 struct Found {
@@ -125,6 +133,18 @@ impl Found {
 }
 
 impl ReportAnalysis {
+    /// What was found of the wheel without its dry friction about the king pin, which says so.
+    fn without_dry_friction(&self, found: Found) -> Found {
+        let Some(neglected) = NeglectedDryFriction::of(&self.wheel, &[Key::V]) else { return found };
+        let sentence = sentence(&neglected.in_words());
+        let findings = found.findings.into_iter().map(|finding| finding.and(&sentence));
+        let illustrations = found.illustrations.into_iter().map(|illustration| Illustration {
+            caption: format!("{} {}", illustration.caption, prose(&sentence)),
+            ..illustration
+        });
+        Found { findings: findings.collect(), illustrations: illustrations.collect() }
+    }
+
     /// Computes everything and writes nothing.
     ///
     /// # Errors
@@ -183,26 +203,37 @@ impl ReportAnalysis {
                 findings: vec![speeds.finding(format!("stability, {subject}"))],
                 illustrations: Vec::new(),
             });
-            found.take(&format!("stability, {subject}"), speeds)?;
+            found.take(
+                &format!("stability, {subject}"),
+                speeds.map(|speeds| self.without_dry_friction(speeds)),
+            )?;
         }
-        found.findings.extend(self.with_dry_friction()?);
+        let dry = self
+            .with_dry_friction(own)
+            .map(|finding| Found { findings: finding.into_iter().collect(), illustrations: Vec::new() });
+        found.take("dry friction", dry)?;
         let subject = format!("rolling, {circle}");
         let rolling = self.with_radius(radius).and_then(|wheel| Motions::compute(&wheel, self.fastest));
         let rolling = rolling.map(|motions| Found {
             findings: vec![motions.finding(subject.clone())],
             illustrations: vec![motions.illustration()],
         });
-        found.take(&subject, rolling)?;
-        found.take("chart", self.chart(own_radius, &control.part(CHARTED)))?;
+        found.take(&subject, rolling.map(|rolling| self.without_dry_friction(rolling)))?;
+        let chart = self.chart(own_radius, &control.part(CHARTED));
+        found.take("chart", chart.map(|chart| self.without_dry_friction(chart)))?;
         let subject = "dampers, straight";
         let damped = dampers::seek(&self.request_at(f64::INFINITY), self.fastest, &control.part(DAMPED));
-        let damped = damped.map(|dampers| Found {
-            findings: vec![dampers::finding(subject.to_owned(), &dampers)],
-            illustrations: dampers::illustration(&dampers).into_iter().collect(),
+        let large_cycles = self.search_for_large_cycles(damped.as_ref().ok(), stable_here);
+        let damped = damped.map(|dampers| {
+            self.without_dry_friction(Found {
+                findings: vec![dampers::finding(subject.to_owned(), &dampers)],
+                illustrations: dampers::illustration(&dampers).into_iter().collect(),
+            })
         });
         found.take(subject, damped)?;
         let subject = format!("limit cycles, {own}");
-        found.take(&subject, self.cycles(&subject, stable_here, &control.part(FOLLOWED)))?;
+        let followed = self.cycles(&subject, stable_here, large_cycles, &control.part(FOLLOWED));
+        found.take(&subject, followed.map(|cycles| self.without_dry_friction(cycles)))?;
         unless_stopped(control)?;
         let subject = format!("blow, {own}");
         found.take(&subject, self.blow(&subject, stable_here, &control.part(STRUCK)))?;
@@ -222,8 +253,12 @@ impl ReportAnalysis {
         request
     }
 
-    /// What dry friction about the king pin, however little, makes of it: the closed form is for straight towing.
-    fn with_dry_friction(&self) -> Result<Option<Finding>, Error> {
+    /// What dry friction about the king pin makes of small motions: without a tyre however little, and in straight towing, for which there is
+    /// a closed form; with one that of the wheel.
+    fn with_dry_friction(&self, own: &str) -> Result<Option<Finding>, Error> {
+        if self.wheel.tyre() != Tyre::Rigid {
+            return self.resting_with_tyre(own);
+        }
         let wheel = self.with_radius(f64::INFINITY)?;
         let Some(factor) = wheel.swing_factor() else { return Ok(None) };
         let text = match wheel.critical_speed_with_friction() {
@@ -244,6 +279,22 @@ impl ReportAnalysis {
             readable(factor)
         );
         Ok(Some(Finding::new("dry friction, straight", text, check)))
+    }
+
+    /// Where the wheel with a tyre rests with its dry friction about the king pin; nothing where it has none.
+    fn resting_with_tyre(&self, own: &str) -> Result<Option<Finding>, Error> {
+        let moment = readable(self.wheel.get(Key::MF));
+        let finding = self.wheel.resting_angles()?.map(|[low, high]| {
+            let text = format!(
+                "With its dry friction about the king pin, M_f = {moment} N m, the wheel rests at caster angles from {} to {} rad, and \
+                 motions near those inside return to rest.",
+                significant(low, 4),
+                significant(high, 4)
+            );
+            let check = "The balance of moments at rest.";
+            Finding::new(format!("dry friction, {own}"), text, check)
+        });
+        Ok(finding)
     }
 
     /// The stability chart on axes that fit the wheel.
@@ -270,20 +321,48 @@ impl ReportAnalysis {
         Ok(Found { findings: Vec::new(), illustrations })
     }
 
-    fn cycles(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
+    /// Whether large cycles that are born of no Hopf point are sought elsewhere in the report, in words.
+    fn search_for_large_cycles(&self, dampers: Option<&DamperResult>, stable: Option<bool>) -> &'static str {
+        let isola_free = dampers.and_then(|dampers| dampers.isola_free.as_ref());
+        let found = isola_free.into_iter().flat_map(|isola_free| [&isola_free.c_q, &isola_free.c_psi]);
+        let is_kicked = found.flatten().any(|found| found.kicked.is_some())
+            && self.wheel.get(Key::TurningRadius).is_infinite();
+        match (is_kicked, self.strikes(stable)) {
+            (true, true) => "were sought only by the blows below and, with the dampers above, by kicks",
+            (true, false) => "were sought only, with the dampers above, by kicks",
+            (false, true) => "were sought only by the blows below",
+            (false, false) => "were not sought",
+        }
+    }
+
+    fn cycles(
+        &self,
+        subject: &str,
+        stable: Option<bool>,
+        large_cycles: &str,
+        control: &Control<'_>,
+    ) -> Result<Found, Error> {
         let speeds = [self.wheel.get(Key::V), self.fastest];
         let cycles = cycles::follow(&self.request.wheel, speeds, control)?;
         let illustration = match &cycles {
             Some(cycles) => cycles::illustration(cycles, self.wheel.get(Key::TurningRadius))?,
             None => None,
         };
-        let finding = cycles::finding(subject.to_owned(), cycles.as_ref(), speeds, stable);
+        let finding = match &cycles {
+            Some(cycles) => cycles::finding(subject.to_owned(), cycles, speeds[0], stable),
+            None => cycles::none_is_born(subject.to_owned(), self.fastest, large_cycles),
+        };
         Ok(Found { findings: vec![finding], illustrations: illustration.into_iter().collect() })
+    }
+
+    /// Whether there may be blows from which the wheel returns.
+    fn strikes(&self, stable: Option<bool>) -> bool {
+        stable != Some(false) || self.wheel.get(Key::MF) > 0.0
     }
 
     fn blow(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
         let speed = self.wheel.get(Key::V);
-        if stable == Some(false) && self.wheel.get(Key::MF) == 0.0 {
+        if !self.strikes(stable) {
             let text = format!(
                 "At {} m/s the uniform motion is unstable: without friction about the king pin no blow is small enough.",
                 readable(speed)
@@ -291,9 +370,18 @@ impl ReportAnalysis {
             return Ok(Found { findings: vec![Finding::new(subject, text, "")], illustrations: Vec::new() });
         }
         let mut found = Found::default();
-        for contact in [Contact::Sliding, Contact::Rolling] {
-            let part = if contact == Contact::Sliding { 0.0..0.7 } else { 0.7..1.0 };
-            let subject = format!("{subject}, {}", contact.model().name());
+        let slides = may_slide(&self.wheel);
+        let contacts: &[Contact] =
+            if slides { &[Contact::Sliding, Contact::Rolling] } else { &[Contact::Rolling] };
+        for &contact in contacts {
+            let part = match contact {
+                Contact::Sliding => 0.0..0.7,
+                Contact::Rolling if slides => 0.7..1.0,
+                Contact::Rolling => 0.0..1.0,
+            };
+            // Where there is one contact it needs no name.
+            let name = if slides { format!(", {}", contact.model().name()) } else { String::new() };
+            let subject = format!("{subject}{name}");
             let result = blow::seek(&self.request.wheel, contact, &control.part(part)).and_then(|result| {
                 let illustrations = blow::illustration(&result)?.into_iter().collect();
                 Ok(Found { findings: vec![blow::finding(subject.clone(), &result, speed)], illustrations })
@@ -307,5 +395,69 @@ impl ReportAnalysis {
     fn name(&self) -> String {
         let file = self.request.wheel.wheel.as_ref().and_then(|file| file.file_stem());
         file.map_or_else(|| "The paper's wheel".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::damper::DamperRequest;
+
+    const WHEELS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+
+    fn trolley(set: &[(&str, &str)]) -> ReportAnalysis {
+        let set = set.iter().map(|(key, value)| Assignment { key: (*key).into(), value: (*value).into() });
+        let wheel = WheelRequest { wheel: Some(format!("{WHEELS}/trolley.toml").into()), set: set.collect() };
+        ReportRequest { wheel, ..ReportRequest::default() }.validate().unwrap()
+    }
+
+    const TYRE: [(&str, &str); 4] =
+        [("tyre", "linear"), ("sigma", "0.05"), ("a", "0.02"), ("C_alpha", "900")];
+
+    #[test]
+    fn what_leaves_dry_friction_out_says_so() {
+        let found = || Found {
+            findings: vec![Finding::new("stability", "It is stable.".to_owned(), "")],
+            illustrations: Vec::new(),
+        };
+        let said = |analysis: ReportAnalysis| analysis.without_dry_friction(found()).findings.remove(0).text;
+        assert_eq!(said(trolley(&[])), "It is stable.");
+        let sentence =
+            "This is the wheel without dry friction about the king pin: M_f = 0.3 N m was left out.";
+        assert_eq!(said(trolley(&[("M_f", "0.3")])), format!("It is stable. {sentence}"));
+    }
+
+    #[test]
+    fn rests_with_a_tyre_are_told() {
+        assert!(trolley(&TYRE).with_dry_friction("straight").unwrap().is_none());
+        let dry = [&TYRE[..], &[("M_f", "0.3")]].concat();
+        let finding = trolley(&dry).with_dry_friction("straight").unwrap().unwrap();
+        assert_eq!(finding.subject, "dry friction, straight");
+        assert!(
+            finding.text.contains("M_f = 0.3 N m, the wheel rests at caster angles from -0.00"),
+            "{}",
+            finding.text
+        );
+    }
+
+    #[test]
+    fn dampers_are_told_without_the_wheels_own() {
+        let up_to = Assignment { key: "v".to_owned(), value: "2".to_owned() };
+        for (own, told) in
+            [("0", None), ("3", Some("All this is without the wheel's own dampers (c_q = 3 N s/m)."))]
+        {
+            let request = trolley(&[("c_q", own)]).request.wheel;
+            let request = DamperRequest { small_motions: true, ..DamperRequest::new(request, up_to.clone()) };
+            let text = dampers::finding(String::new(), &request.run(&Control::none()).unwrap()).text;
+            assert_eq!(text.contains("wheel's own"), told.is_some(), "{text}");
+            assert!(told.is_none_or(|told| text.ends_with(told)), "{text}");
+        }
+    }
+
+    #[test]
+    fn where_large_cycles_are_sought_is_told() {
+        let straight = trolley(&[]);
+        assert_eq!(straight.search_for_large_cycles(None, Some(false)), "were not sought");
+        assert_eq!(straight.search_for_large_cycles(None, Some(true)), "were sought only by the blows below");
     }
 }

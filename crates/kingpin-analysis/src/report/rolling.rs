@@ -89,7 +89,7 @@ impl Motions {
         }
         let largest = self.motions.iter().map(|motion| motion.residual().abs()).fold(0.0, f64::max);
         let check = format!(
-            "The friction in closed form, compared with mu_s N at {} speeds and halved between; the equations of motion are left with {} \
+            "The friction of the motion, compared with mu_s N at {} speeds and halved between; the equations of motion are left with {} \
              at most.",
             self.motions.len(),
             significant(largest, 2)

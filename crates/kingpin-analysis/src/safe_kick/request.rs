@@ -2,7 +2,7 @@
 
 use super::result::{SafeKickResult, Search};
 use crate::classification::{Classification, Contact, may_slide};
-use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge, natural_period};
+use crate::disturbance::{DisturbanceKind, DisturbanceRequest, Edge, natural_period, nearest};
 use crate::error::Error;
 use crate::margin::Found;
 use crate::wheel_request::WheelRequest;
@@ -98,10 +98,9 @@ impl SafeKickAnalysis {
             }
             false => None,
         };
-        let smallest = edges.iter().copied().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
-        // Where nothing returns there are no two sides.
-        let smallest = smallest.filter(|edge| !edge.is_unstable());
-        let motions = match smallest {
+        // Where nothing returns, and where nothing was found beyond, there are no two sides.
+        let sided = |edge: &Edge| !edge.is_unstable() && !edge.is_open();
+        let motions = match nearest(edges).filter(sided) {
             Some(edge) => Some(self.motions(&edge, self.settings.duration, control)?),
             None => None,
         };

@@ -2,12 +2,12 @@
 
 use crate::classification::{contact_in_words, end_of_the_model};
 use crate::description;
-use crate::disturbance::{Edge, reached};
+use crate::disturbance::{Edge, nearest, reached};
 use crate::margin::Found;
 use crate::parameters::parameters_of;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, Fate, SafeKick};
 use kingpin::{Key, Tyre, Wheel};
-use kingpin_figure::{Axis, Figure, FigureError, Legend, Line, Panel, palette};
+use kingpin_figure::{Axis, Color, Figure, FigureError, Legend, Line, Panel, palette};
 use kingpin_report::history::drawn;
 use kingpin_report::numbers::{readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
@@ -107,11 +107,11 @@ pub struct SafeKickResult {
     /// The same of a wheel that may slide under its own weight, where neither the contact nor the load was said.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sliding: Option<Found>,
-    /// Options of `simulate` that replay the smallest disturbance that did not return.
+    /// Options of `simulate` that replay the smallest disturbance that did not return; nothing where that is undecided.
     pub replay: Option<String>,
-    /// The motion after the largest disturbance that returned.
+    /// The motion after the largest disturbance that returned; nothing where none is known to.
     pub returns: Option<DisturbedMotionResult>,
-    /// The motion after the smallest that did not.
+    /// The motion after the smallest that did not, or of which that is undecided.
     pub fails: Option<DisturbedMotionResult>,
 }
 
@@ -137,20 +137,23 @@ impl SafeKickResult {
     ) -> Self {
         let edges = [positive, negative];
         let reached = reached(edges.into_iter().take(kind.directions()), largest);
-        let smallest = edges.into_iter().flatten().min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
+        let smallest = nearest(edges);
         let replayed = motions.as_ref().map_or(settings.duration, |[_, fails]| {
             let last = fails.times.last().copied().unwrap_or(settings.duration);
             // Samples end before the model does.
             fails.model_ends_at.map_or(last, |end| last.max(BEYOND_END * end))
         });
         let (returns, fails) = match (smallest, motions) {
-            (Some(edge), Some([returns, fails])) => (
-                Some(DisturbedMotionResult::new(edge.returns, returns, model, wheel.tyre())),
-                Some(DisturbedMotionResult::new(edge.fails, fails, model, wheel.tyre())),
-            ),
+            (Some(edge), Some([returns, fails])) => {
+                let result =
+                    |magnitude, motion| DisturbedMotionResult::new(magnitude, motion, model, wheel.tyre());
+                // The undisturbed motion is none that returned.
+                let returns = (edge.returns != 0.0).then(|| result(edge.returns, returns));
+                (returns, Some(result(edge.fails, fails)))
+            }
             _ => (None, None),
         };
-        let replay = smallest.filter(|edge| !edge.is_unstable()).and_then(|edge| {
+        let replay = smallest.filter(|edge| !edge.is_unstable() && edge.is_found()).and_then(|edge| {
             let disturbance = match kind {
                 Disturbance::Impulse => format!("--blow {}", edge.fails),
                 Disturbance::ReleaseAngle => format!("--perturb psi={}", edge.fails),
@@ -183,6 +186,21 @@ impl SafeKickResult {
         if self.kind == Disturbance::StepSteer.name() { &[Key::TurningRadius] } else { &[] }
     }
 
+    /// The edge that is nearest to the uniform motion.
+    pub(crate) fn nearest(&self) -> Option<Edge> {
+        nearest([self.positive, self.negative])
+    }
+
+    /// After which disturbances the motions are shown, in words.
+    pub(crate) fn shown(&self) -> String {
+        let kind = self.kind;
+        match (&self.returns, self.nearest().is_some_and(|edge| edge.is_found())) {
+            (Some(_), true) => format!("the largest {kind} that returns and the smallest that does not"),
+            (Some(_), false) => format!("the largest {kind} that returns and one of which that is undecided"),
+            (None, _) => format!("the smallest {kind} that was found not to return"),
+        }
+    }
+
     fn description(&self) -> String {
         let how = contact_in_words(&self.wheel, self.contact);
         format!("{how} at {}", description::of(&self.wheel, self.replaced()))
@@ -208,10 +226,10 @@ impl SafeKickResult {
                 Some(edge) => table.row([
                     direction.into(),
                     if edge.smaller_are_undecided { "undecided".into() } else { edge.returns.into() },
-                    if edge.is_undecided() && !edge.smaller_are_undecided {
-                        "undecided".into()
-                    } else {
+                    if edge.is_unstable() || edge.is_found() {
                         edge.fails.into()
+                    } else {
+                        "undecided".into()
                     },
                     edge.ending().into(),
                 ]),
@@ -255,13 +273,23 @@ impl Report for SafeKickResult {
             writeln!(out, "\nsmall disturbances grow: none is safe")?;
             return Ok(());
         }
-        writeln!(
-            out,
-            "\nbelow what does not return magnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may \
-             lie there",
-            readable(self.resolution),
-            readable(self.resolution_beside_edge)
-        )?;
+        let edges = || [self.positive, self.negative].into_iter().flatten();
+        match self.nearest().filter(|edge| !edge.is_open()) {
+            None => writeln!(
+                out,
+                "\nmagnitudes were tried {} {unit} apart: failures in a narrower range may lie between",
+                readable(self.resolution)
+            )?,
+            // However small, none returned: there is nothing below.
+            Some(_) if self.resolution == 0.0 => {}
+            Some(_) => writeln!(
+                out,
+                "\nbelow what does not return magnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may \
+                 lie there",
+                readable(self.resolution),
+                readable(self.resolution_beside_edge)
+            )?,
+        }
         match &self.sliding {
             Some(Found { problem: Some(problem), .. }) => {
                 writeln!(
@@ -281,7 +309,6 @@ impl Report for SafeKickResult {
                 "\nthe smallest that does not return, for the same wheel: kingpin simulate {replay}"
             )?;
         }
-        let edges = || [self.positive, self.negative].into_iter().flatten();
         if edges().any(|edge| edge.none_returns()) {
             writeln!(
                 out,
@@ -304,11 +331,17 @@ impl Report for SafeKickResult {
             )?;
         }
         if edges().any(|edge| edge.smaller_are_undecided) {
+            let ends_elsewhere = edges().filter(Edge::is_found).map(|edge| edge.fails.abs()).reduce(f64::min);
+            let found = match ends_elsewhere {
+                Some(smallest) => {
+                    format!("from {} {unit} on a motion was found that ends elsewhere", readable(smallest))
+                }
+                None => "of those that were tried none was found that ends elsewhere".to_owned(),
+            };
             writeln!(
                 out,
                 "\nundecided: on a circle at this speed it is not known whether small motions, which grow without M_f, die out with it; \
-                 from {} {unit} on a motion was found that ends elsewhere",
-                readable(edges().map(|edge| edge.fails.abs()).fold(f64::INFINITY, f64::min))
+                 {found}"
             )?;
         } else if edges().any(|edge| edge.is_undecided()) {
             writeln!(
@@ -368,9 +401,17 @@ impl Report for SafeKickResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let (Some(returns), Some(fails)) = (&self.returns, &self.fails) else { return Ok(None) };
-        let end = returns.t.last().copied().unwrap_or(0.0).max(fails.t.last().copied().unwrap_or(0.0));
-        let reach = fails.psi.iter().chain(&returns.psi).fold(0.0_f64, |reach, angle| reach.max(angle.abs()));
+        let Some(edge) = self.nearest().filter(|_| self.fails.is_some()) else { return Ok(None) };
+        let beyond = if edge.is_found() { "does not return" } else { "undecided" };
+        let motions: Vec<(&DisturbedMotionResult, &str, Color)> =
+            [(&self.fails, beyond, palette::VERMILION), (&self.returns, "returns", palette::BLUE)]
+                .into_iter()
+                .filter_map(|(motion, how, color)| Some((motion.as_ref()?, how, color)))
+                .collect();
+        let times = motions.iter().flat_map(|(motion, ..)| &motion.t);
+        let end = times.copied().fold(0.0, f64::max);
+        let angles = motions.iter().flat_map(|(motion, ..)| &motion.psi);
+        let reach = angles.fold(0.0_f64, |reach, angle| reach.max(angle.abs()));
         let reach = (1.1 * reach).min(PI);
         let mut panel = Panel::new(
             Axis::new("$t$ (s)").limits(0.0, end),
@@ -380,17 +421,11 @@ impl Report for SafeKickResult {
         let text = |motion: &DisturbedMotionResult, how: &str| {
             format!("{} {}: {how}", readable(motion.magnitude), self.unit)
         };
-        for (motion, how, color) in
-            [(fails, "does not return", palette::VERMILION), (returns, "returns", palette::BLUE)]
-        {
+        for (motion, how, color) in motions {
             let line = Line::new(drawn(&motion.t, &motion.psi)).color(color).width(0.6);
             panel = panel.curve(line.legend(text(motion, how)));
         }
-        let description = format!(
-            "Caster angle over time after the largest {} that returns and the smallest that does not: {}",
-            self.kind,
-            self.description()
-        );
+        let description = format!("Caster angle over time after {}: {}", self.shown(), self.description());
         Ok(Some(Figure::single_column().description(description).panel(panel)))
     }
 }

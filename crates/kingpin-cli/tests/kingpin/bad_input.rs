@@ -52,6 +52,7 @@ fn every_parameter_outside_its_range() {
 fn a_typo_in_a_key() {
     fails("steady -s kq=100", 2, &["--set kq=100", "unknown key `kq`", "`k_q`", "N/m"]);
     fails("chart --x vv=1:2:3", 2, &["unknown key `vv`", "`v`"]);
+    fails("steady -s foo=1", 2, &["unknown key `foo`; the keys are v, l, r, "]);
     fails("simulate --duration 1 --perturb phi=0.1", 2, &["`phi`", "u, q, psi, V, Omega"]);
     fails("steady -s v", 2, &["'v'", "KEY=VALUE"]);
 }
@@ -124,8 +125,21 @@ fn no_uniform_motion() {
     fails("damper --up-to l=3", 2, &["--up-to", "v=VALUE"]);
     fails("damper --up-to v=0", 2, &["a speed above 0"]);
     fails("steady -s v=0", 1, &["v = 0", "set v above 0"]);
+    fails("steady -s v=0 -s r=inf", 1, &["l = 0.08 m, r = inf: at v = 0"]);
     fails("steady -s v=200", 1, &["m omega^2 < k l fails", "lower v"]);
     fails("simulate --duration 1 -s v=0", 1, &["v = 0"]);
+}
+
+#[test]
+fn what_is_given_twice_is_told() {
+    let folder = Folder::new();
+    for (given, word) in
+        [("-s k=10 -s k_u=20", "`k` sets"), ("-s curvature=0.5 -s r=3", "`curvature` sets r")]
+    {
+        let messages = folder.succeed(&format!("steady {given}")).messages;
+        assert!(messages.contains(word), "{given}: {messages}");
+    }
+    assert_eq!(folder.succeed("steady -s r=3").messages, "");
 }
 
 #[test]
@@ -179,6 +193,10 @@ fn no_hopf_point_on_the_way() {
         &["no Hopf point", "r = inf", "stable at v = 1 m/s", "stable at v = 5 m/s"],
     );
     fails("hopf --along l=2:5", 1, &["no uniform motion", "|l - a0| < r"]);
+    // No interval is wide enough for what stability does not depend on.
+    for along in ["mu_s=0.5:1", "g=5:15", "F_Az=-100:-10"] {
+        fails(&format!("hopf --along {along}"), 1, &["does not act on the stability of this wheel"]);
+    }
 }
 
 #[test]

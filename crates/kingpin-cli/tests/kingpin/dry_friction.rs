@@ -71,6 +71,23 @@ fn what_takes_no_account_of_it_says_so() {
     assert_eq!(speed(&hopf["dry_friction"]), speed(&stability));
 }
 
+/// On a circle on which small motions grow without it, nothing is known to return.
+#[test]
+fn what_is_not_known_to_return_is_not_told_as_returning() {
+    let folder = Folder::new();
+    let kick = "safe-kick TROLLEY -s r=3 -s M_f=0.3 --kind release-angle --contact rolling --duration 1 -q --largest";
+    let small = folder.succeed(&trolley(&format!("{kick} 1e-3"))).output;
+    assert!(small.contains("none was found that ends elsewhere") && !small.contains("return\n"), "{small}");
+    assert!(small.contains("tried 1.5625e-5 rad apart") && !small.contains("replay"), "{small}");
+    let large = folder.json(&trolley(&format!("{kick} 0.6")));
+    assert!(large["returns"].is_null() && large["fails"]["magnitude"].is_number());
+    // As far as the smallest that ends elsewhere.
+    let resolution = large["resolution"].as_f64().unwrap();
+    assert!((0.33..0.35).contains(&(64.0 * resolution)), "{resolution}");
+    let returning = folder.succeed("safe-kick --kind release-angle --largest 1e-3 --duration 1 -q").output;
+    assert!(!returning.contains("below what does not return"), "{returning}");
+}
+
 #[test]
 fn what_cannot_be_asked_for_is_refused() {
     let folder = Folder::new();

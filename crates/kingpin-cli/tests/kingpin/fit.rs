@@ -107,6 +107,15 @@ fn several_records_have_speeds_of_their_own() {
 }
 
 #[test]
+fn remarks_that_are_not_understood_are_told_of() {
+    let folder = with_record();
+    std::fs::write(folder.path("remark.csv"), format!("# by hand\n# V = 1\n{RECORD}")).unwrap();
+    let run = folder.succeed(&format!("fit remark.csv {KNOWN} -s M_f=0.015 --estimate c_psi --no-blow"));
+    let told = "remark.csv: line 2: `V = 1` is not understood: unknown key `V`; the nearest known key is `v`";
+    assert!(run.messages.contains(told), "{}", run.messages);
+}
+
+#[test]
 fn what_is_wrong_with_a_record_is_told_with_its_place() {
     let folder = with_record();
     for (name, text) in [
@@ -116,6 +125,8 @@ fn what_is_wrong_with_a_record_is_told_with_its_place() {
         ("few.csv", "t,psi\n0,0.3\n0.1,0.2\n"),
         ("still.csv", "t,psi\n0,0.3\n0.1,0.3\n0.2,0.3\n0.3,0.3\n0.4,0.3\n0.5,0.3\n0.6,0.3\n"),
         ("nothing.csv", "t,angle\n0,0.3\n"),
+        ("wide.csv", "t,psi\n0,0.3\n0.003,0.30,7\n"),
+        ("tyre.toml", "tyre = \"linear\"\nsigma = 0.05\na = 0.02\nC_alpha = 500\nr = inf\n"),
     ] {
         std::fs::write(folder.path(name), text).unwrap();
     }
@@ -146,6 +157,15 @@ fn what_is_wrong_with_a_record_is_told_with_its_place() {
             "decay.csv -s k_u=inf --estimate M_f",
             "M_f cannot be estimated: with k_u = inf there is no model of dry friction",
         ),
+        (
+            "decay.csv --wheel tyre.toml --estimate M_f",
+            "M_f cannot be estimated: a fit of a wheel with a tyre takes no",
+        ),
+        (
+            "decay.csv --wheel tyre.toml -s M_f=0.02 --estimate c_psi",
+            "M_f = 0.02 N m: a fit of a wheel with a tyre with dry friction about the king pin is not computed; set M_f = 0",
+        ),
+        ("wide.csv", "wide.csv: line 3: `7` stands under no name; allowed: 2 values"),
     ] {
         let run = folder.run(&format!("fit {arguments} -q"));
         assert_eq!(run.exit_code, 2, "{arguments}: {}", run.messages);

@@ -241,7 +241,8 @@ pub struct SafeKick {
     /// followed: then this is only where the patience ends and no edge. `None` where there is no uniform motion (that rolls)
     /// to return to after a step of the curvature.
     pub fate: Option<Fate>,
-    /// Whether it is not known of smaller magnitudes whether they return: see [`Destinations::attracts`].
+    /// Whether it is not known of smaller magnitudes whether they return: see [`Destinations::attracts`]. Where none was found that ends
+    /// elsewhere, `fails` is the largest that was tried and the fate is [`Fate::Undecided`].
     pub smaller_are_undecided: bool,
     /// The wheel after the disturbance that fails: at the edge its motion lingers where the basin ends.
     pub wheel: Wheel,
@@ -357,7 +358,21 @@ impl SafeKick {
         };
         let [scanned, narrowed] = PARTS;
         let magnitudes = (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
-        let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else { return Ok(None) };
+        let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else {
+            if attracts.is_some() {
+                return Ok(None);
+            }
+            // None was found that ends elsewhere, which is not to say that they return.
+            let (wheel, state) = disturbance.apply(wheel, model, largest)?;
+            return Ok(Some(Self {
+                returns: 0.0,
+                fails: largest,
+                fate: Some(Fate::Undecided),
+                smaller_are_undecided: true,
+                wheel,
+                state,
+            }));
+        };
         let (mut returns, mut fails, mut beyond) = narrow(first, &control.part(scanned..narrowed))?;
         let finer = control.part(narrowed..1.0);
         // Each turn goes down by one of the closest steps at least.

@@ -171,14 +171,9 @@ impl Identification {
             // Keys that cannot vary, or not together, are told by the fields.
             let smooth: Vec<Key> = self.keys.iter().copied().filter(|key| *key != Key::MF).collect();
             record.wheel.rolling_model(&smooth)?;
-            let is_dry = self.keys.contains(&Key::MF) || record.wheel.get(Key::MF) > 0.0;
-            if is_dry && record.wheel.has_lateral_elasticity_only() {
-                let problem = "with k_u = inf there is no model of dry friction; set a finite k_u";
-                return Err(IdentificationError::NotEstimated { key: Key::MF, problem });
-            }
-            if is_dry && record.wheel.tyre() != Tyre::Rigid {
-                let problem = "with a tyre there is no model of dry friction; set tyre = rigid";
-                return Err(IdentificationError::NotEstimated { key: Key::MF, problem });
+            let has_tyre = record.wheel.tyre() != Tyre::Rigid;
+            if has_tyre || record.wheel.has_lateral_elasticity_only() {
+                self.check_without_dry_friction(&record.wheel, has_tyre)?;
             }
         }
         if let Some(&key) = self.keys.iter().find(|key| NOT_IN_THE_MOTION.contains(key)) {
@@ -186,6 +181,25 @@ impl Identification {
             return Err(IdentificationError::NotEstimated { key, problem });
         }
         Ok(())
+    }
+
+    /// That dry friction about the king pin is neither there nor estimated: the derivatives of its motions are those of the rigid wheel with
+    /// two springs.
+    fn check_without_dry_friction(&self, wheel: &Wheel, has_tyre: bool) -> Result<(), IdentificationError> {
+        if self.keys.contains(&Key::MF) {
+            let problem = match has_tyre {
+                true => {
+                    "a fit of a wheel with a tyre takes no dry friction; leave M_f out, or set tyre = rigid"
+                }
+                false => "with k_u = inf there is no model of dry friction; set a finite k_u",
+            };
+            return Err(IdentificationError::NotEstimated { key: Key::MF, problem });
+        }
+        let (what, remedy) = match has_tyre {
+            true => ("a fit of a wheel with a tyre", "set M_f = 0, or tyre = rigid"),
+            false => ("a fit with k_u = inf", "set M_f = 0, or a finite k_u"),
+        };
+        wheel.check_without_dry_friction(what, remedy).map_err(IdentificationError::Wheel)
     }
 
     /// That every record is more than noise, where there are samples enough to tell.

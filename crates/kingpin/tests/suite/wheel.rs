@@ -26,6 +26,21 @@ fn infinity_is_written_both_ways() {
 }
 
 #[test]
+fn what_is_given_twice_is_known() {
+    for (text, stiffness, radius) in [
+        ("k = 10\nk_u = 20", true, false),
+        ("r = 3\ncurvature = 0.5", false, true),
+        ("r = 3\nk = 10", false, false),
+    ] {
+        let wheel = Wheel::from_toml(text).unwrap();
+        assert_eq!((wheel.stiffness_is_given_twice(), wheel.radius_is_given_twice()), (stiffness, radius));
+        // What an analysis varies is not given.
+        let varied = Wheel::from_toml("r = 3").unwrap().with(Key::Curvature, 0.5).unwrap();
+        assert!(!varied.radius_is_given_twice());
+    }
+}
+
+#[test]
 fn bad_files_say_where_and_what_is_allowed() {
     for (text, message) in [
         (
