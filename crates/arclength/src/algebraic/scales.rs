@@ -25,7 +25,7 @@ const NO_INFLUENCE: f64 = 1e-6;
 /// Part of a parameter's range that counts as next to a value,
 const NEXT_TO: f64 = 0.02;
 /// and part of a size below which the one there shows that it was an accident.
-const ACCIDENTAL: f64 = 0.01;
+const ACCIDENTAL: f64 = 1e-5;
 /// Sweeps of balancing.
 const SWEEPS: usize = 30;
 

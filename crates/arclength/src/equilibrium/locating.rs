@@ -24,8 +24,10 @@ const BRACKETS: [f64; 2] = [1e-2, 1e-6];
 const LAST_BRACKET: f64 = 1e-10;
 /// Pairs of eigenvalues that are tried for a Hopf point.
 const CANDIDATES: usize = 3;
-/// Derivative in the parameter, beside the curvature at a fold, both in sizes of states and parameter, that is rounding.
+/// Derivative in the parameter, beside the curvature at a fold, both in sizes of states and parameter, that is rounding, or this many
+/// times the last update: Newton's method converges slowly to a branch point, at which the equations of a fold are singular.
 const NO_UNFOLDING: f64 = 1e-8;
+const UNCERTAIN: f64 = 1e3;
 /// A located point may lie this part of the bracket outside it.
 const MARGIN: f64 = 1e-6;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
@@ -136,7 +138,8 @@ pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
         let unknown = [&solved.unknown[..n], &solved.unknown[2 * n..]].concat();
         if inside(&scales, before, distance, &unknown) {
             let point = FoldPoint::at(&curve.system.problem, &unknown, &scales, location_error(&solved))?;
-            if !moves_the_parameter(&point, &scales) {
+            let update = length(&solved.last_update, &sizes);
+            if !moves_the_parameter(&point, &scales, NO_UNFOLDING.max(UNCERTAIN * update)) {
                 break;
             }
             return complete(curve, before, unknown, SpecialPoint::Fold(point));
@@ -147,12 +150,12 @@ pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
 
 /// Whether the branch through a point that satisfies the equations of a fold turns there as a parabola does. At a branch point, which
 /// satisfies them too, the derivative in the parameter is nothing but rounding.
-fn moves_the_parameter(point: &FoldPoint, scales: &[f64]) -> bool {
+fn moves_the_parameter(point: &FoldPoint, scales: &[f64], rounding: f64) -> bool {
     let n = point.state.len();
     let size = length(&point.null_vector, &scales[..n]).recip();
     match (point.unfolding, point.quadratic) {
         (Some(unfolding), Some(quadratic)) => {
-            unfolding.abs() * scales[n] > NO_UNFOLDING * quadratic.abs() * size * size
+            unfolding.abs() * scales[n] > rounding * quadratic.abs() * size * size
         }
         _ => true,
     }

@@ -328,8 +328,8 @@ impl ReportAnalysis {
         let is_kicked = found.flatten().any(|found| found.kicked.is_some())
             && self.wheel.get(Key::TurningRadius).is_infinite();
         match (is_kicked, self.strikes(stable)) {
-            (true, true) => "were sought only by the blows below and, with the dampers above, by kicks",
-            (true, false) => "were sought only, with the dampers above, by kicks",
+            (true, true) => "were sought only by the blows below and the kicks of the dampers above",
+            (true, false) => "were sought only by the kicks of the dampers above",
             (false, true) => "were sought only by the blows below",
             (false, false) => "were not sought",
         }
