@@ -31,7 +31,10 @@ fn of_a_wheel_file() {
             format!("l = \"{digits}x\"\n"),
             &["line 1", "left out", "not a number; allowed: 1e-6 to 1000 m"][..],
         ),
-        (format!("{} = 1\n", "k".repeat(LONG)), &["line 1", "unknown key `kkk", "left out", "the keys are v, l, r"]),
+        (
+            format!("{} = 1\n", "k".repeat(LONG)),
+            &["line 1", "unknown key `kkk", "left out", "the keys are v, l, r"],
+        ),
         (format!("l = = {digits}\n"), &["line 1", "left out", "TOML"]),
         (format!("l = = {}\n", "9 ".repeat(LONG / 20)), &["line 1", "left out", "TOML"]),
         (format!("l = \"\"\"{}\"\"\"\n", "9\n".repeat(LONG)), &["lines left out", "not a number"]),
