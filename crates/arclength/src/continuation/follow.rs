@@ -3,7 +3,7 @@
 use super::advance::{STEP_REDUCTION, advance, converge, keep, return_to, stopped};
 use super::closure::Closure;
 use super::corrector::between;
-use super::curve::{Curve, Ending};
+use super::curve::{Curve, Ending, EventOf};
 use super::events::{EventSearch, Events, Unlocated};
 use super::metric::along;
 use super::requested::{Between, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values};
@@ -231,8 +231,11 @@ impl<C: Curve> Run<'_, '_, C> {
                 error => failed(error),
             })?;
         self.note(unlocated);
-        let mut between: Between<C> =
-            found.into_iter().map(|event| (event.solution, Origin::Special(event.kind))).collect();
+        let mut between: Between<C> = found
+            .into_iter()
+            .filter(|event| !self.is_known(event))
+            .map(|event| (event.solution, Origin::Special(event.kind)))
+            .collect();
         let passed = between.iter().map(|(solution, _)| solution);
         let leaves = passed.chain([advanced]).find_map(|solution| first_exit(&solution.unknown, bounds));
         if let Some(&bound) = bounds.first() {
@@ -244,6 +247,17 @@ impl<C: Curve> Run<'_, '_, C> {
         insert_targets(self.curve, earlier, current, &mut between, advanced, targets, settings)
             .map_err(failed)?;
         Ok((between, leaves))
+    }
+
+    /// Whether a special point is one of the step before, found once more: next to it signs are rounding.
+    fn is_known(&self, event: &EventOf<C>) -> bool {
+        let mut steps = 0;
+        let last_step = self.solutions.iter().rev().take_while(|(_, origin)| {
+            steps += usize::from(*origin == Origin::Step);
+            steps < 2
+        });
+        let mut same = last_step.filter(|(_, origin)| *origin == Origin::Special(event.kind));
+        same.any(|(solution, _)| self.curve.are_same(&solution.point, &event.solution.point))
     }
 
     /// Keeps what could not be located; changes that follow each other are one.

@@ -174,8 +174,7 @@ fn beyond_extreme<C: Curve>(
     if least > changes.fold(0.0, f64::max) && before.is_some() {
         return None;
     }
-    let sides: Vec<usize> = (0..known.len() - 1).collect();
-    sides.into_iter().find_map(|place| {
+    (0..known.len() - 1).find_map(|place| {
         let ends = [known[place], known[place + 1]];
         let values = [values[place], values[place + 1]].map(|value| sign * value);
         let sought = |curve: &mut C, solution: &Solution<C::Point>| Some(sign * test(curve, solution)?);

@@ -17,12 +17,16 @@ use crate::continuation::{
 };
 use crate::error::Error;
 use crate::field::VectorField;
+use crate::numbers::readable;
 
 /// Distance from a branch point, in the metric, of the first point on the other branch.
 const DEPARTURE: f64 = 1e-3;
 
 /// Rate of change of the parameter along the branch, as part of its range, below which it stands still at the start.
 const VERTICAL_START: f64 = 1e-6;
+
+/// States that a message names at most.
+const NAMED_STATES: usize = 6;
 
 /// The settings that suit equilibria, where steps cost little: short ones, so that nothing is jumped over.
 pub fn equilibrium_settings() -> Settings {
@@ -242,9 +246,18 @@ impl<'a> Equilibria<'a> {
             Some(point) => Ok(leaves(unknown, point)),
             None => {
                 let name = &self.field.parameter_names()[index];
+                let names = self.field.state_names();
+                let state: Vec<String> = names
+                    .iter()
+                    .zip(&unknown)
+                    .take(NAMED_STATES)
+                    .map(|(name, value)| format!("{name} = {}", readable(*value)))
+                    .collect();
+                let more = if n > NAMED_STATES { ", .." } else { "" };
                 let allowed = format!(
-                    "the equilibrium there is a branch point, or degenerate, and no single branch passes through it; \
-                     start beside it, at a slightly different {name}"
+                    "the equilibrium that was found there, {}{more}, is a branch point, or degenerate, and no single branch \
+                     passes through it; start beside it, at a slightly different {name}, or where another equilibrium is nearer",
+                    state.join(", ")
                 );
                 Err(invalid(&format!("start at {name}"), &unknown[n].to_string(), &allowed))
             }

@@ -14,6 +14,8 @@ use std::convert::Infallible;
 
 /// Perturbation of the field, relative to its fastest rate, beyond which a branch point does not persist.
 const UNPERTURBED: f64 = 1e-8;
+/// Points of codimension two are one where parameters and states differ by less than this part of their sizes.
+const SAME_PLACE: f64 = 1e-8;
 /// A real part, relative to the largest modulus, of an eigenvalue that is not critical below which its sign is not decided: next
 /// to another bifurcation eigenvalues are known to the root of rounding only.
 const UNDECIDED: f64 = 1e-7;
@@ -86,6 +88,14 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         let distance = distance(self, &before.unknown, &after.unknown);
         let found = locating::codimension_two(self, before, after, distance, kind)?;
         Ok(found.map_or(Location::Nothing, Location::At))
+    }
+
+    fn are_same(&self, one: &Inspection, other: &Inspection) -> bool {
+        let (Some(one), Some(other)) = (&one.special, &other.special) else { return false };
+        let values = one.values.iter().zip(&other.values).zip(self.ranges);
+        let states = one.state.iter().zip(&other.state).zip(self.states.iter().copied());
+        one.kind == other.kind
+            && values.chain(states).all(|((one, other), size)| (one - other).abs() <= SAME_PLACE * size)
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {

@@ -213,3 +213,39 @@ fn what_is_reported_at_a_point_of_codimension_two_is_its_own() {
     }
     assert!(seen >= 3, "{seen}");
 }
+
+// A Bogdanov-Takens point with a Hopf curve beyond which comes back past it so closely that signs next to it are rounding.
+field!(CloseToBogdanovTakens, ["x", "y"], ["p", "q"], |x, p, d| {
+    let m = p[0] * 1.7 - p[1] * 0.5;
+    let n = p[0] * -0.6 - p[1];
+    d[0] = x[1];
+    d[1] = m + n * x[0] + x[0] * x[0] * 0.1 - x[0] * x[0] * x[0] * 0.5 + x[1] * (x[0] * 0.7 + 0.1);
+});
+
+#[test]
+fn a_bogdanov_takens_point_is_told_once() {
+    let branch = Equilibria::of(&CloseToBogdanovTakens)
+        .start(&[0.0, 0.0])
+        .parameters(&[-1.0, 0.9])
+        .along("p", -1.0..=1.0)
+        .run()
+        .unwrap();
+    let locus = EquilibriumLocus::of(&CloseToBogdanovTakens)
+        .from_hopf(branch.hopf_points().next().unwrap())
+        .along("p", -2.0..=2.0)
+        .and("q", -2.0..=2.0)
+        .run()
+        .unwrap();
+    let found: Vec<_> = locus
+        .special_points()
+        .filter(|point| point.kind == SpecialKind::BogdanovTakens)
+        .map(|point| point.values)
+        .collect();
+    let [[p, q]] = found[..] else { panic!("{found:?}") };
+    // y = 0, the trace 0.1 + 0.7 x = 0 and the determinant -(n + 0.2 x - 1.5 x^2) = 0.
+    let x = -1.0 / 7.0;
+    let n = -0.2 * x + 1.5 * x * x;
+    let m = -(n * x + 0.1 * x * x - 0.5 * x * x * x);
+    assert_relative_eq!(1.7 * p - 0.5 * q, m, epsilon = 1e-9);
+    assert_relative_eq!(-0.6 * p - q, n, epsilon = 1e-9);
+}
