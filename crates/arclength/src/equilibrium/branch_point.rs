@@ -93,13 +93,7 @@ impl BranchPoint {
     /// The same with the errors of its coefficients.
     fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
         let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
-        let place = Place {
-            state: &self.state,
-            parameters: &self.parameters,
-            active: &problem.active,
-            scales,
-            location_error: scales.last().map_or(0.0, |range| self.location_error / range),
-        };
+        let place = Place::on_branch(problem, (&self.state, &self.parameters), scales, self.location_error);
         let errors = coefficient_error::errors(known, place, |state, parameters| {
             let moved = EquilibriumProblem::new(problem.field, parameters, &problem.active);
             let unknown = [state, &[parameters[self.active]]].concat();

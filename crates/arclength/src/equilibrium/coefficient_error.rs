@@ -3,6 +3,7 @@
 //! A coefficient is a formula of the equilibrium, of eigenvectors and of linear systems that may be nearly singular. Computed anew
 //! next to the equilibrium, within what rounding and the location leave open, it shows what all of them together make of that.
 
+use super::problem::EquilibriumProblem;
 use crate::random::Random;
 
 /// Rounding of a state, as part of its size.
@@ -25,7 +26,18 @@ pub(crate) struct Place<'a> {
     pub location_error: f64,
 }
 
-impl Place<'_> {
+impl<'a> Place<'a> {
+    /// A place on a branch along the first active parameter of `problem`, of which `location_error` is the error.
+    pub(crate) fn on_branch(
+        problem: &'a EquilibriumProblem<'_>,
+        (state, parameters): (&'a [f64], &'a [f64]),
+        scales: &'a [f64],
+        location_error: f64,
+    ) -> Self {
+        let location_error = location_error / scales[state.len()];
+        Self { state, parameters, active: &problem.active, scales, location_error }
+    }
+
     /// State and parameters moved by the errors, at least by rounding, each up or down as `random` has it.
     fn moved(&self, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
         let part = self.location_error.max(ROUNDING);

@@ -83,13 +83,7 @@ impl FoldPoint {
         let quadratic = simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
         let unfolding = simple.then(|| project(forms.real(&[&along])));
         let quadratic_error = quadratic.and_then(|value| {
-            let place = Place {
-                state: &state,
-                parameters: &parameters,
-                active: &problem.active,
-                scales,
-                location_error: location_error / scales[n],
-            };
+            let place = Place::on_branch(problem, (&state, &parameters), scales, location_error);
             let [error] = coefficient_error::errors([value], place, |state, parameters| {
                 let moved = EquilibriumProblem::new(problem.field, parameters, &[]);
                 let (right, left, simple) = null_vectors(&moved, state).ok()?;

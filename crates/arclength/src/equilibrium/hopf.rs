@@ -63,13 +63,7 @@ impl HopfPoint {
         let local = CriticalPair::at(problem.field, &state, &parameters, frequency, scales)?;
         let first = local.first_lyapunov();
         let first_lyapunov_error = first.and_then(|(value, _)| {
-            let place = Place {
-                state: &state,
-                parameters: &parameters,
-                active: &problem.active,
-                scales,
-                location_error: location_error / scales[n],
-            };
+            let place = Place::on_branch(problem, (&state, &parameters), scales, location_error);
             let [error] = coefficient_error::errors([value], place, |state, parameters| {
                 let near = CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()?;
                 near.first_lyapunov().map(|(value, _)| [value])
