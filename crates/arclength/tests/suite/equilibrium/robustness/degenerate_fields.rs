@@ -93,3 +93,24 @@ fn both_branches_of_a_pitchfork_are_found_from_either() {
     assert!(back.points.iter().all(|point| point.state[0] == 0.0));
     assert_eq!((back.points[0].value, back.points[back.points.len() - 1].value), (-1.0, 2.0));
 }
+
+// A Hopf point at p = 0 beside a state that grows.
+field!(HopfBesideGrowth, ["x", "y", "z"], ["p"], |x, p, d| {
+    let square = x[0] * x[0] + x[1] * x[1];
+    d[0] = p[0] * x[0] - x[1] - x[0] * square;
+    d[1] = x[0] + p[0] * x[1] - x[1] * square;
+    d[2] = x[2] * 3.0;
+});
+
+#[test]
+fn what_grows_beside_a_critical_pair_is_unstable() {
+    let branch = Equilibria::of(&HopfBesideGrowth)
+        .start(&[0.0; 3])
+        .parameters(&[-1.0])
+        .along("p", -1.0..=1.0)
+        .run()
+        .unwrap();
+    let hopf = branch.points.iter().find(|point| point.label.is_some()).unwrap();
+    assert!(hopf.value.abs() < 1e-12);
+    assert_eq!(hopf.stability, Stability::Unstable { dimension: None });
+}
