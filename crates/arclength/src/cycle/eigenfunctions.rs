@@ -101,24 +101,14 @@ impl<'a> Linearization<'a> {
 
     /// The same, orthogonal to another null function if there is one.
     pub(crate) fn null_function_beside(&self, other: Option<&NodeFunction>) -> Option<(NodeFunction, f64)> {
-        let n = self.scales.len();
         let known: Vec<&[f64]> = std::iter::once(&self.flow).chain(other).map(|known| &known[..]).collect();
         let duals: Vec<NodeFunction> = known.iter().map(|function| self.dual(function)).collect();
-        let mut guess = self.generic();
-        let mut found = None;
-        for _ in 0..ITERATIONS {
-            let row = self.dual(&guess);
-            let columns = [&known[..], &[&guess[..]]].concat();
-            let rows: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).chain([&row[..]]).collect();
-            let mut problem = LinearProblem::new(self.nodes, vec![1.0; n], &self.matrices, &columns, &rows)?;
-            let mut values = vec![0.0; rows.len()];
-            *values.last_mut()? = 1.0;
-            let (function, scalars) = problem.solve(&vec![0.0; guess.len()], &values)?;
-            let size = self.nodes.product(&function, &self.dual(&function)).sqrt();
-            guess = function.iter().map(|value| value / size).collect();
-            found = Some(scalars[0] / size);
-        }
-        found.map(|beta| (guess, beta))
+        let rows: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).collect();
+        let dual = |function: &[f64]| self.dual(function);
+        let start = self.generic();
+        let (function, scalars) =
+            inverse_iterations(self.nodes, &self.matrices, (&known, &rows), start, dual)?;
+        Some((function, scalars[0]))
     }
 
     /// Covector function of a cycle at a branch point: `psi' = -T f_x^T psi`, orthogonal to the flow and of unit size. Along a family of
@@ -139,20 +129,37 @@ impl<'a> Linearization<'a> {
         let mut known = vec![&self.flow[..]];
         known.extend(is_along_family.then_some(&self.parameter[..]));
         let duals: Vec<NodeFunction> = known.iter().map(|function| self.dual(function)).collect();
-        let mut guess = self.dual(&self.generic());
-        for _ in 0..ITERATIONS {
-            let row = self.vector(&guess);
-            let columns: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).chain([&guess[..]]).collect();
-            let rows = [&known[..], &[&row[..]]].concat();
-            let mut problem = LinearProblem::new(nodes, vec![1.0; n], &adjoint, &columns, &rows)?;
-            let mut values = vec![0.0; rows.len()];
-            *values.last_mut()? = 1.0;
-            let (function, _) = problem.solve(&vec![0.0; guess.len()], &values)?;
-            let square = self.nodes.product(&function, &self.vector(&function));
-            guess = function.iter().map(|value| value / square.sqrt()).collect();
-        }
-        Some(guess)
+        let columns: Vec<&[f64]> = duals.iter().map(|dual| &dual[..]).collect();
+        let vector = |function: &[f64]| self.vector(function);
+        let start = self.dual(&self.generic());
+        inverse_iterations(nodes, &adjoint, (&columns, &known), start, vector).map(|(function, _)| function)
     }
+}
+
+/// The function of unit size that solves `y' = M y` best, with the `columns` and orthogonal to the `rows`, from a start: in the null space it
+/// is exact. `paired` is what a function is measured by. With the factors of the columns.
+fn inverse_iterations(
+    nodes: Nodes<'_>,
+    matrices: &[f64],
+    (columns, rows): (&[&[f64]], &[&[f64]]),
+    start: NodeFunction,
+    paired: impl Fn(&[f64]) -> NodeFunction,
+) -> Option<(NodeFunction, Vec<f64>)> {
+    let n = start.len() / nodes.count();
+    let mut values = vec![0.0; rows.len()];
+    values.push(1.0);
+    let (mut function, mut factors) = (start, Vec::new());
+    for _ in 0..ITERATIONS {
+        let row = paired(&function);
+        let columns = [columns, &[&function[..]]].concat();
+        let rows = [rows, &[&row[..]]].concat();
+        let mut problem = LinearProblem::new(nodes, vec![1.0; n], matrices, &columns, &rows)?;
+        let (found, scalars) = problem.solve(&vec![0.0; function.len()], &values)?;
+        let size = nodes.product(&found, &paired(&found)).sqrt();
+        function = found.iter().map(|value| value / size).collect();
+        factors = scalars.iter().map(|scalar| scalar / size).collect();
+    }
+    Some((function, factors))
 }
 
 /// Inverse iterations for a null function.

@@ -54,9 +54,14 @@ fn near_zero(
     match locate(curve, before, after, &settings, tolerance, |curve, solution| Some(test(curve, solution))) {
         Ok(Some(near)) => near,
         // Next to a branch point corrections fail, but the ends are good starts.
-        _ if test(curve, before).abs() < test(curve, after).abs() => before.clone(),
-        _ => after.clone(),
+        _ => nearer_end(curve, before, after, test),
     }
+}
+
+/// The end at which a test function is closer to zero.
+fn nearer_end(curve: &EquilibriumCurve<'_>, before: &Node, after: &Node, test: Test) -> Node {
+    let is_before = test(curve, before).abs() < test(curve, after).abs();
+    if is_before { before.clone() } else { after.clone() }
 }
 
 /// Whether `unknown` lies between the two ends, give or take a margin, and near the curve.
@@ -98,9 +103,7 @@ fn degenerate(
     if narrowed.is_none() && distance > settings.shortest_jump {
         return Err(Error::OtherBranch);
     }
-    let nearest =
-        || if test(curve, before).abs() < test(curve, after).abs() { before.clone() } else { after.clone() };
-    let mut node = narrowed.unwrap_or_else(nearest);
+    let mut node = narrowed.unwrap_or_else(|| nearer_end(curve, before, after, test));
     let n = curve.dimension();
     let value = node.unknown[n];
     let location_error = LAST_BRACKET * distance * curve.system.scales[n];
