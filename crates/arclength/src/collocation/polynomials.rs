@@ -123,11 +123,32 @@ impl PiecewisePolynomial {
 
 /// Linear combination of the node states of one interval.
 pub(crate) fn combine(interval: &[f64], basis: &[f64], state: &mut [f64]) {
-    let n = state.len();
-    state.fill(0.0);
-    for (values, weight) in interval.chunks_exact(n).zip(basis) {
-        for (entry, value) in state.iter_mut().zip(values) {
-            *entry += weight * value;
+    match state.len() {
+        1 => combine_few::<1>(interval, basis, state),
+        2 => combine_few::<2>(interval, basis, state),
+        3 => combine_few::<3>(interval, basis, state),
+        4 => combine_few::<4>(interval, basis, state),
+        5 => combine_few::<5>(interval, basis, state),
+        6 => combine_few::<6>(interval, basis, state),
+        n => {
+            state.fill(0.0);
+            for (values, weight) in interval.chunks_exact(n).zip(basis) {
+                for (entry, value) in state.iter_mut().zip(values) {
+                    *entry += weight * value;
+                }
+            }
         }
     }
+}
+
+/// The same of a number of components that the compiler knows, whose sums stay in registers.
+#[inline(always)]
+fn combine_few<const N: usize>(interval: &[f64], basis: &[f64], state: &mut [f64]) {
+    let mut sums = [0.0; N];
+    for (values, weight) in interval.as_chunks::<N>().0.iter().zip(basis) {
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += weight * value;
+        }
+    }
+    state.copy_from_slice(&sums);
 }

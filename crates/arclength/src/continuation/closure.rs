@@ -20,6 +20,9 @@ const PLACE: f64 = 1e-9;
 const MOST_COMPONENTS: usize = 3;
 /// Steps that end farther from the start than this many times their length do not pass it.
 const FAR: f64 = 2.0;
+/// Components vanish together where the curve comes back: one that is this many times larger than another, both in parts of their changes
+/// in the step, leads elsewhere.
+const APART: f64 = 100.0;
 
 /// The start of a curve, to which it may come back.
 pub(super) struct Closure {
@@ -72,9 +75,14 @@ impl Closure {
         let passes = |index: &usize| here[*index] * there[*index] <= 0.0 && change(index) > 0.0;
         let mut passing: Vec<usize> = (0..here.len()).filter(passes).collect();
         passing.sort_by(|one, other| change(other).total_cmp(&change(one)));
+        let largest = (0..here.len()).map(|index| change(&index)).fold(0.0, f64::max);
         passing.into_iter().take(MOST_COMPONENTS).find_map(|index| {
-            let test =
-                |curve: &mut C, solution: &Solution<C::Point>| Some(self.beyond(curve, solution)[index]);
+            let slope = APART * largest / change(&index);
+            let test = |curve: &mut C, solution: &Solution<C::Point>| {
+                let beyond = self.beyond(curve, solution);
+                let farthest = CLOSURE_TOLERANCE.max(slope * beyond[index].abs());
+                beyond.iter().all(|entry| entry.abs() <= farthest).then_some(beyond[index])
+            };
             // A curve whose start cannot be computed again is followed on.
             let candidate = locate(curve, current, advanced, settings, PLACE, test).ok()??;
             let beyond = self.beyond(curve, &candidate);

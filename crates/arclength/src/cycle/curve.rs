@@ -1,8 +1,9 @@
 //! The curve of limit cycles of one parameter: mesh adaptation, metric, stability along the way.
 
 use super::end::CycleEnd;
+use super::exponentials::{may_be_unresolved, multipliers_by_exponentials};
 use super::extrema::{Range, ranges};
-use super::floquet::{DEFECT, Floquet, floquet, multiplier_changes};
+use super::floquet::{DEFECT, Floquet, floquet};
 use super::gate::Place;
 use super::limit_cycle::LimitCycle;
 use super::passages::Touch;
@@ -10,7 +11,6 @@ use super::segments::Segments;
 use super::sizes::{StateSizes, vanishing_point};
 use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
-use super::variational::{KnownOrbit, are_resolved, may_be_unresolved, multipliers_by_exponentials};
 use crate::collocation::equations::Collocation;
 use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
@@ -356,22 +356,13 @@ impl<'a> CycleCurve<'a> {
         if !is_doubtful {
             return Ok((found, Vec::new()));
         }
-        let mesh = self.collocation.mesh();
-        let orbit = KnownOrbit { mesh, degree: self.collocation.gauss().degree(), unknown };
-        let Some((resolved, changes)) = multipliers_by_exponentials(problem, orbit, found.divergence) else {
-            return Ok((found, Vec::new()));
-        };
-        // Where both agree those are told that special cycles are defined by.
-        let differences = multiplier_changes(&found.nontrivial, &resolved.nontrivial);
-        if are_resolved(&found, &differences) {
-            let errors = found.errors(&differences);
-            return Ok((found, errors));
-        }
-        // The cycle's own mesh resolves its direction, and the divergence along it.
-        let Floquet { trivial, trivial_error, divergence, sign, .. } = found;
-        let resolved = Floquet { trivial, trivial_error, divergence, sign, ..resolved };
-        let errors = resolved.errors(&changes);
-        Ok((resolved, errors))
+        Ok(match multipliers_by_exponentials(&self.collocation, unknown, &found) {
+            Some((told, changes)) => {
+                let errors = told.errors(&changes);
+                (told, errors)
+            }
+            None => (found, Vec::new()),
+        })
     }
 
     /// Rate of change of the parameter along the curve, as part of its range: zero at a fold.

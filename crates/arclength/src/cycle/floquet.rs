@@ -7,6 +7,7 @@
 //! of its square root. The products are never formed (Fairgrieve and Jepson 1991; Lust 2001): the multipliers
 //! come from a periodic Schur decomposition.
 
+use crate::collocation::condensation::Jump;
 use crate::collocation::equations::Collocation;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::Spectrum;
@@ -239,27 +240,32 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
     scales: &[f64],
     workspace: &mut Option<(usize, PeriodicSchur)>,
 ) -> Result<Floquet, Error> {
-    floquet_of(collocation, collocation.transfer(), unknown, scales, workspace)
-}
-
-/// As [`floquet`], with blocks that something else than the collocation gives.
-pub(super) fn floquet_of<P: BoundaryValueEquations>(
-    collocation: &Collocation<P>,
-    transfer: &[f64],
-    unknown: &[f64],
-    scales: &[f64],
-    workspace: &mut Option<(usize, PeriodicSchur)>,
-) -> Result<Floquet, Error> {
     let n = scales.len();
     let intervals = collocation.intervals();
     let scalars = &unknown[intervals * collocation.interval_size()..];
-    // Reflections v (I - 2 v v') that map the scaled flow direction at each mesh point to the first axis.
-    let mut reflectors = vec![0.0; intervals * n];
-    let mut signs = vec![1.0; intervals];
-    for interval in 0..intervals {
-        let reflector = &mut reflectors[interval * n..(interval + 1) * n];
+    let mut flow = vec![0.0; intervals * n];
+    for (interval, flow) in flow.chunks_exact_mut(n).enumerate() {
         let start = &collocation.interval(unknown, interval)[..n];
-        collocation.problem.field(collocation.mesh()[interval], start, scalars, reflector);
+        collocation.problem.field(collocation.mesh()[interval], start, scalars, flow);
+    }
+    let divergence = divergence(collocation, n);
+    floquet_of(flow, collocation.transfer(), scales, (divergence, collocation.linear_jumps()), workspace)
+}
+
+/// As [`floquet`], from the flow direction at the beginning of every part of the period and the block that maps it to the next; with the
+/// integral of the divergence and the jumps.
+pub(super) fn floquet_of(
+    mut flow: Vec<f64>,
+    transfer: &[f64],
+    scales: &[f64],
+    (divergence, jumps): (f64, &[Jump]),
+    workspace: &mut Option<(usize, PeriodicSchur)>,
+) -> Result<Floquet, Error> {
+    let n = scales.len();
+    let intervals = flow.len() / n;
+    // Reflections v (I - 2 v v') that map the scaled flow direction at each mesh point to the first axis.
+    let mut signs = vec![1.0; intervals];
+    for (reflector, sign) in flow.chunks_exact_mut(n).zip(&mut signs) {
         for (entry, scale) in reflector.iter_mut().zip(scales) {
             *entry /= scale;
         }
@@ -267,11 +273,12 @@ pub(super) fn floquet_of<P: BoundaryValueEquations>(
         if !(norm > 0.0 && norm.is_finite()) {
             return Err(Error::Eigenvalues { quantity: "Floquet multipliers" });
         }
-        signs[interval] = if reflector[0] > 0.0 { -1.0 } else { 1.0 };
-        reflector[0] -= signs[interval] * norm;
+        *sign = if reflector[0] > 0.0 { -1.0 } else { 1.0 };
+        reflector[0] -= *sign * norm;
         let norm = length(reflector);
         reflector.iter_mut().for_each(|entry| *entry /= norm);
     }
+    let reflectors = flow;
     let mut factors = vec![0.0; intervals * (n - 1) * (n - 1)];
     let mut trivial = 1.0;
     let mut coupling = 0.0;
@@ -309,8 +316,7 @@ pub(super) fn floquet_of<P: BoundaryValueEquations>(
         }
     }
     let trivial_error = (trivial - 1.0).abs().max(coupling);
-    let jumps = collocation.linear_jumps().iter();
-    let (mut divergence, mut sign, mut zeros) = (divergence(collocation, n), 1.0, 0);
+    let (mut divergence, mut sign, mut zeros) = (divergence, 1.0, 0);
     for jump in jumps {
         let (logarithm, factor) = determinant(&jump.derivatives[..n * n], n);
         divergence += logarithm;

@@ -10,6 +10,7 @@ pub(crate) mod eigenfunctions;
 mod end;
 mod ending;
 mod expansion;
+mod exponentials;
 pub(crate) mod extrema;
 pub(crate) mod floquet;
 pub(crate) mod gate;
