@@ -36,6 +36,41 @@ fn an_adaptive_neuron_fires() {
     check(&cycles, 3.0, 1.474509636205281, 0.5603538881832256);
 }
 
+/// Along any of its parameters the dose is given at other fractions of the unit time, round and round.
+#[test]
+fn doses_at_equal_times_are_told_exactly_all_along_a_branch() {
+    let text = "par k=.3,dose=2,tau=5\nc'=-k*c\ns'=1\nglobal 1 {s-tau} {s=0;c=c+dose}\ninit c=1\ndone\n";
+    let folder = settled(text, 203.0);
+    for (name, range, [k, dose, tau]) in [
+        ("tau", ".3:20", [0.3, 2.0, 5.0]),
+        ("k", ".02:3", [0.3, 2.0, 5.0]),
+        ("dose", ".1:10", [0.3, 2.0, 5.0]),
+    ] {
+        let cycles =
+            folder.json(&format!("cycles --from h.json:END --along {name}={range} --monitor mean(c)"));
+        for end in cycles["ends"].as_array().unwrap() {
+            assert!(end["cause"].as_str().unwrap().starts_with("reached the end"), "{name}: {end}");
+        }
+        for point in points(&cycles) {
+            let value = number(&point["value"]);
+            let own = |place: &str, other: f64| if place == name { value } else { other };
+            let (k, dose, tau) = (own("k", k), own("dose", dose), own("tau", tau));
+            let largest = dose / (1.0 - (-k * tau).exp());
+            let error = (3.0 * number(&point["error_estimate"])).max(1e-9);
+            assert!((number(&point["max"]["c"]) / largest - 1.0).abs() <= error, "{name} = {value}");
+            assert!(
+                (number(&point["min"]["c"]) - (largest - dose)).abs() <= error * largest,
+                "{name} = {value}"
+            );
+            assert!((number(&point["max"]["s"]) / tau - 1.0).abs() <= error, "{name} = {value}");
+            let mean =
+                number(point["monitors"].as_array().map_or(&point["monitors"]["mean(c)"], |all| &all[0]));
+            assert!((mean / (dose / (k * tau)) - 1.0).abs() < 1e-6, "{name} = {value}: {mean}");
+            assert_eq!(point["stable"], true);
+        }
+    }
+}
+
 #[test]
 fn a_thermostat_has_a_mode_that_events_set() {
     let text = "par h=.2\nx'=-x+3*m\ny'=(x-y)/2\nm'=0\nglobal 1 y-1-h {m=0}\nglobal -1 y-1+h {m=1}\ninit y=.9,m=1\ndone\n";

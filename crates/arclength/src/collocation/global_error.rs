@@ -157,9 +157,11 @@ impl GlobalError {
     }
 }
 
+/// The relative error that is told where nothing is known.
+pub(crate) const NOTHING_KNOWN: f64 = 1.0;
+
 /// The largest of some relative errors; one where a linear system was singular, so that nothing is known, and at most that.
 pub(crate) fn largest(errors: impl Iterator<Item = f64>) -> f64 {
-    const NOTHING_KNOWN: f64 = 1.0;
     let mut largest = 0.0;
     for error in errors {
         if error.is_nan() || error > NOTHING_KNOWN {

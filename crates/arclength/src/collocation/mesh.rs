@@ -18,10 +18,14 @@ use crate::error::Error;
 const DENSITY_FLOOR: f64 = 0.2;
 /// A new mesh aims at this part of the tolerance.
 const TARGET: f64 = 0.2;
+/// An error of an interval below this, relative to the sizes of the states, is rounding, which is no smaller where the interval is narrower.
+const ROUNDING: f64 = 1e-13;
 /// Fewest intervals between two jumps.
 const FEWEST_BETWEEN_JUMPS: f64 = 2.0;
-/// The mesh is made coarser when it has this many times the intervals needed.
+/// The mesh is made coarser when it has this many times the intervals needed, and made anew where a part of it between two jumps, which
+/// may shrink from step to step, has this many times its share.
 const EXCESS: f64 = 1.6;
+const EXCESS_OF_A_PART: f64 = 2.0;
 
 /// Largest error of the polynomial on each interval, relative to `scales`.
 pub(crate) fn error_profile<P: BoundaryValueEquations>(
@@ -88,7 +92,11 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     let needed = intervals_needed(errors, degree, TARGET * resolution.tolerance);
     let wanted = (needed.ceil() as usize).max(resolution.fewest_intervals);
     let too_coarse = worst > resolution.tolerance || intervals < resolution.fewest_intervals;
-    if !too_coarse && (intervals as f64) < EXCESS * wanted as f64 {
+    let kept = collocation.jump_points();
+    let masses = masses(collocation.mesh(), errors, degree);
+    let is_distorted = parts(&masses, &kept)
+        .any(|(part, share)| part.len() as f64 > EXCESS_OF_A_PART * count_of_part(share, intervals) as f64);
+    if !too_coarse && !(is_distorted && !kept.is_empty()) && (intervals as f64) < EXCESS * wanted as f64 {
         collocation.set_reference(unknown);
         return Ok((Adaptation::Unchanged, worst));
     }
@@ -98,7 +106,7 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     // An estimate from a coarse mesh is not to be trusted far: at most double at a time.
     let count = wanted.min(2 * intervals);
     let count = if too_coarse { count.max(intervals + 1) } else { count };
-    let mesh = equidistribute(collocation.mesh(), errors, (degree, count), &collocation.jump_points());
+    let mesh = equidistribute(collocation.mesh(), &masses, count, &kept);
     *unknown = collocation.carry(unknown, &mesh);
     for vector in vectors.iter_mut() {
         **vector = collocation.carry(vector, &mesh);
@@ -107,38 +115,73 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     Ok((Adaptation::Changed, worst))
 }
 
+/// As many intervals, divided anew by their errors without what is rounding, where a jump misses its mesh point by more than the width of
+/// an interval beside it: polynomials do not go on that far. Carries `unknown` and `vectors` along.
+pub(crate) fn widen_beside_jumps<P: BoundaryValueEquations>(
+    collocation: &mut Collocation<P>,
+    scales: &[f64],
+    unknown: &mut Vec<f64>,
+    vectors: &mut [&mut Vec<f64>],
+) {
+    let Some(times) = jump_times(collocation, unknown) else { return };
+    let (mesh, kept) = (collocation.mesh(), collocation.jump_points());
+    let is_narrow = |(time, point): (&f64, &usize)| {
+        let width = (mesh[*point] - mesh[point - 1]).min(mesh[point + 1] - mesh[*point]);
+        (time - mesh[*point]).abs() > width
+    };
+    if !times.iter().zip(&kept).any(is_narrow) {
+        return;
+    }
+    let mut errors = error_profile(collocation, unknown, scales);
+    errors.iter_mut().filter(|error| **error < ROUNDING).for_each(|error| *error = 0.0);
+    let masses = masses(mesh, &errors, collocation.gauss().degree());
+    let mesh = equidistribute(mesh, &masses, collocation.intervals(), &kept);
+    *unknown = collocation.carry(unknown, &mesh);
+    for vector in vectors.iter_mut() {
+        **vector = collocation.carry(vector, &mesh);
+    }
+    collocation.set_mesh(mesh, unknown);
+}
+
 /// Number of intervals of an equidistributed mesh that would have the error `target`.
 fn intervals_needed(errors: &[f64], degree: usize, target: f64) -> f64 {
     let power = 1.0 / (degree as f64 + 1.0);
     errors.iter().map(|error| (error / target).powf(power)).sum()
 }
 
-/// A mesh of about `intervals` intervals on which the error is about the same everywhere; mesh points number `kept` stay.
-fn equidistribute(
-    mesh: &[f64],
-    errors: &[f64],
-    (degree, intervals): (usize, usize),
-    kept: &[usize],
-) -> Vec<f64> {
+/// The part of the intervals of a new mesh that every old one stands for.
+fn masses(mesh: &[f64], errors: &[f64], degree: usize) -> Vec<f64> {
     let power = 1.0 / (degree as f64 + 1.0);
     let total: f64 = errors.iter().map(|error| error.powf(power)).sum();
-    // Mass of every old interval; the floor keeps quiet stretches from being starved.
-    let masses: Vec<f64> = errors
-        .iter()
-        .zip(mesh.windows(2))
-        .map(|(error, pair)| {
-            error.powf(power) + DENSITY_FLOOR * total.max(f64::MIN_POSITIVE) * (pair[1] - pair[0])
-        })
-        .collect();
-    let mass: f64 = masses.iter().sum();
-    let last = masses.len();
+    // The floor keeps quiet stretches from being starved.
+    let floor = DENSITY_FLOOR * total.max(f64::MIN_POSITIVE);
+    let pairs = errors.iter().zip(mesh.windows(2));
+    pairs.map(|(error, pair)| error.powf(power) + floor * (pair[1] - pair[0])).collect()
+}
+
+/// The masses of the parts between mesh points number `kept`, each with its share of all.
+fn parts<'a>(masses: &'a [f64], kept: &'a [usize]) -> impl Iterator<Item = (&'a [f64], f64)> {
+    let all: f64 = masses.iter().sum();
+    let ends = kept.iter().copied().chain([masses.len()]);
+    let starts = std::iter::once(0).chain(kept.iter().copied());
+    starts.zip(ends).map(move |(start, end)| {
+        let part = &masses[start..end];
+        (part, if kept.is_empty() { 1.0 } else { part.iter().sum::<f64>() / all })
+    })
+}
+
+/// Number of intervals that a part between two jumps has of some.
+fn count_of_part(share: f64, intervals: usize) -> usize {
+    (share * intervals as f64).round().max(FEWEST_BETWEEN_JUMPS) as usize
+}
+
+/// A mesh of about `intervals` intervals on which the error is about the same everywhere; mesh points number `kept` stay.
+fn equidistribute(mesh: &[f64], masses: &[f64], intervals: usize, kept: &[usize]) -> Vec<f64> {
     let mut result = vec![0.0];
     let mut start = 0;
-    for end in kept.iter().copied().chain([last]) {
-        let part = &masses[start..end];
-        let share = if kept.is_empty() { 1.0 } else { part.iter().sum::<f64>() / mass };
-        let fewest = if kept.is_empty() { 1.0 } else { FEWEST_BETWEEN_JUMPS };
-        let count = (share * intervals as f64).round().max(fewest) as usize;
+    for (part, share) in parts(masses, kept) {
+        let end = start + part.len();
+        let count = if kept.is_empty() { intervals } else { count_of_part(share, intervals) };
         result.extend(dividing_equally(&mesh[start..=end], part, count));
         result.push(mesh[end]);
         start = end;
@@ -168,6 +211,20 @@ pub(crate) fn halved(mesh: &[f64]) -> Vec<f64> {
     starts.chain(mesh.last().copied()).collect()
 }
 
+/// The times at which jumps take place, which mesh points may miss, in unit time; `None` where one does not take place nearby.
+pub(crate) fn jump_times<P: BoundaryValueEquations>(
+    collocation: &Collocation<P>,
+    unknown: &[f64],
+) -> Option<Vec<f64>> {
+    let scalars = &unknown[unknown.len() - collocation.problem.scalars()..];
+    let jumps = collocation.problem.jumps().iter().zip(collocation.jump_points()).enumerate();
+    let time = |(index, (time, point)): (usize, (&f64, usize))| {
+        let before = collocation.end_of(unknown, point - 1);
+        Some(time + collocation.problem.delay(index, &before, scalars)?)
+    };
+    jumps.map(time).collect()
+}
+
 /// Moves the mesh points of jumps to where the jumps take place, and those between them in proportion; carries `unknown` and
 /// `vectors` along. `None` where a jump does not take place nearby. Returns the largest distance by which one was moved.
 pub(crate) fn fit_jumps<P: BoundaryValueEquations>(
@@ -177,15 +234,8 @@ pub(crate) fn fit_jumps<P: BoundaryValueEquations>(
 ) -> Option<f64> {
     let old = collocation.problem.jumps().to_vec();
     let points = collocation.jump_points();
-    let scalars = &unknown[unknown.len() - collocation.problem.scalars()..];
-    let mut largest = 0.0_f64;
-    let mut times = Vec::with_capacity(old.len());
-    for (index, (time, point)) in old.iter().zip(&points).enumerate() {
-        let before = collocation.end_of(unknown, point - 1);
-        let delay = collocation.problem.delay(index, &before, scalars)?;
-        largest = largest.max(delay.abs());
-        times.push(time + delay);
-    }
+    let times = jump_times(collocation, unknown)?;
+    let largest = times.iter().zip(&old).map(|(time, old)| (time - old).abs()).fold(0.0, f64::max);
     let is_ordered = times.first().is_none_or(|time| *time > 0.0)
         && times.last().is_none_or(|time| *time < 1.0)
         && times.windows(2).all(|pair| pair[0] < pair[1]);

@@ -14,6 +14,7 @@ use super::start::Asked;
 use super::variational::{KnownOrbit, resolved_multipliers};
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
+use crate::collocation::global_error::NOTHING_KNOWN;
 use crate::collocation::mesh::halved;
 use crate::continuation::{Adaptation, Curve, Equations, Settings, Stop, correct};
 use crate::linear::multiplier::Multiplier;
@@ -34,8 +35,6 @@ const LEFT: f64 = 1.0 / 16.0;
 const AS_ESTIMATED: f64 = 3.0;
 /// Newton's method is at its end where its last step is rounding; its size counts this many times.
 const ROUNDING: f64 = 3.0;
-/// Relative error of a cycle that no finer mesh confirms.
-const UNCONFIRMED: f64 = 1.0;
 /// Nothing is told to be more exact than this.
 const LEAST_ERROR: f64 = 1e-13;
 /// A solution this close to where Newton's method started, in the metric, has the multipliers of the Jacobian there.
@@ -106,7 +105,7 @@ impl<'a> Asked<'a> {
             }
             let Some(mut level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
                 if last_change.is_none() {
-                    (point.error_estimate, point.stable) = (UNCONFIRMED, None);
+                    (point.error_estimate, point.stable) = (NOTHING_KNOWN, None);
                 }
                 break;
             };
@@ -172,10 +171,10 @@ impl<'a> Asked<'a> {
         let settings = Settings { corrector_tolerance: TOLERANCE, ..self.settings };
         let mut correction = correct(&mut curve, &mut unknown, &border, &settings).ok()?;
         // A cycle between two steps still has the borders of one of these.
-        for _ in 0..MOST_FITS {
-            if curve.fit_segments(&mut unknown, &mut [&mut border]).ok()? == Adaptation::Unchanged {
-                break;
-            }
+        let mut fits = 0;
+        while curve.fit_segments(&mut unknown, &mut [&mut border]).ok()? != Adaptation::Unchanged {
+            fits += 1;
+            (fits <= MOST_FITS).then_some(())?;
             correct(&mut curve, &mut unknown, &border, &settings).ok()?;
             correction.distance = f64::INFINITY;
         }

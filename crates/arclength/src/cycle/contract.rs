@@ -8,6 +8,7 @@ use super::limit_cycle::LimitCycle;
 use super::special;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
+use crate::collocation::global_error::NOTHING_KNOWN;
 use crate::collocation::mesh::{error_profile, fit_mesh};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
@@ -148,11 +149,14 @@ impl Curve for CycleCurve<'_> {
         let [fixed, across] = self.errors(&solution.unknown, &solution.tangent);
         let fitted = self.fitted(&solution.unknown, &solution.tangent);
         let point = &mut solution.point;
-        if let Some((fitted, ranges)) = fitted {
-            (point.fitted, point.ranges) = (Some(fitted), ranges);
-        }
         point.error_across = across;
         point.error_estimate = if point.is_neutral { across } else { fixed };
+        match fitted {
+            Ok(Some((fitted, ranges))) => (point.fitted, point.ranges) = (Some(fitted), ranges),
+            Ok(None) => {}
+            // Its polynomials go on beyond a border, nobody knows how far.
+            Err(_) => point.error_estimate = NOTHING_KNOWN,
+        }
     }
 
     fn resolves(&mut self, point: &CycleInspection) -> bool {

@@ -13,7 +13,7 @@ use super::slow_passage::{Passing, SlowPassage};
 use super::switching::Branching;
 use crate::collocation::equations::Collocation;
 use crate::collocation::global_error::{GlobalError, largest};
-use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps};
+use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps, jump_times, widen_beside_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::{Adaptation, Curve, Settings, Solution, correct};
@@ -195,9 +195,15 @@ impl<'a> CycleCurve<'a> {
         if self.collocation.problem.segments.is_none() {
             return Ok(Adaptation::Unchanged);
         }
+        let is_turned = self.passes_borders_outside(unknown) && self.keep_borders_inside(unknown, vectors);
         let moved = fit_jumps(&mut self.collocation, unknown, vectors);
         if let Some(event) = self.lost_event(unknown, moved) {
             self.lost = Some(event);
+            return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
+        }
+        let has_jumps = self.collocation.problem.segments.as_ref().is_some_and(Segments::has_jumps);
+        if moved.is_none() && has_jumps {
+            // The polynomials would go on beyond an event.
             return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
         }
         let collocation = &mut self.collocation;
@@ -224,17 +230,36 @@ impl<'a> CycleCurve<'a> {
             }
             collocation.set_mesh(finer, unknown);
         }
-        let collocation = &mut self.collocation;
-        let origin = collocation
-            .problem
-            .segments
-            .as_ref()
-            .and_then(|segments| segments.better_origin(collocation.mesh()));
-        if let Some(origin) = origin {
-            self.count_from(origin, unknown, vectors);
-        }
+        let is_turned = self.keep_borders_inside(unknown, vectors) || is_turned;
         let is_moved = !(is_same || touches) || moved.is_none_or(|moved| moved > SAME_TIME);
-        Ok(if is_moved || origin.is_some() { Adaptation::Changed } else { Adaptation::Unchanged })
+        Ok(if is_moved || is_turned { Adaptation::Changed } else { Adaptation::Unchanged })
+    }
+
+    /// Whether a border whose mesh point is inside the unit time is passed outside.
+    fn passes_borders_outside(&self, unknown: &[f64]) -> bool {
+        let passed = jump_times(&self.collocation, unknown).unwrap_or_default();
+        passed.iter().any(|time| *time <= 0.0 || *time >= 1.0)
+    }
+
+    /// Counts the unit time from elsewhere where a border comes close to where it is counted from, or is passed beyond; whether it did.
+    fn keep_borders_inside(&mut self, unknown: &mut Vec<f64>, vectors: &mut [&mut Vec<f64>]) -> bool {
+        let collocation = &self.collocation;
+        let Some(segments) = &collocation.problem.segments else { return false };
+        let passed = jump_times(collocation, unknown);
+        let passed = passed.as_deref().unwrap_or(&segments.times);
+        let Some(origin) = segments.better_origin(collocation.mesh(), passed) else { return false };
+        if !collocation.mesh().contains(&origin) {
+            let mut finer = collocation.mesh().to_vec();
+            finer.insert(finer.partition_point(|time| *time < origin), origin);
+            *unknown = collocation.carry(unknown, &finer);
+            for vector in vectors.iter_mut() {
+                **vector = collocation.carry(vector, &finer);
+            }
+            self.collocation.set_mesh(finer, unknown);
+        }
+        let origin = self.collocation.mesh().partition_point(|time| *time < origin);
+        self.count_from(origin, unknown, vectors);
+        true
     }
 
     /// The event that a cycle does not come to where it has to, or with other events than known; `moved` is how far mesh points were
@@ -261,36 +286,49 @@ impl<'a> CycleCurve<'a> {
         first.filter(|_| !holds)
     }
 
-    /// The same cycle with mesh points at the borders, and its extremes; `None` where the mesh has them, or they are not found. The
-    /// curve stays as it is.
-    pub(super) fn fitted(&mut self, unknown: &[f64], tangent: &[f64]) -> Option<(Fitted, Vec<Range>)> {
+    /// The same cycle with mesh points at the borders, and its extremes; `None` where the mesh has them. The curve stays as it is.
+    ///
+    /// # Errors
+    /// [`Error::NotFound`] where the cycle is not found with such mesh points.
+    pub(super) fn fitted(
+        &mut self,
+        unknown: &[f64],
+        tangent: &[f64],
+    ) -> Result<Option<(Fitted, Vec<Range>)>, Error> {
         if !self.collocation.problem.has_borders() {
-            return None;
+            return Ok(None);
         }
         let kept = (self.collocation.mesh().to_vec(), self.collocation.problem.segments.clone());
         let (mut moved, mut direction) = (unknown.to_vec(), tangent.to_vec());
+        if self.passes_borders_outside(unknown) {
+            self.keep_borders_inside(&mut moved, &mut [&mut direction]);
+        }
+        let amplitudes = self.amplitudes.clone();
+        widen_beside_jumps(&mut self.collocation, &amplitudes, &mut moved, &mut [&mut direction]);
         let mut fits = 0;
         let found = loop {
             match fit_jumps(&mut self.collocation, &mut moved, &mut [&mut direction]) {
-                Some(distance) if distance <= SAME_TIME => break fits > 0,
+                Some(distance) if distance <= SAME_TIME => break Ok(fits > 0),
                 Some(_) if fits < MOST_FITS => fits += 1,
-                _ => break false,
+                _ => break Err(CorrectionFailure::Diverged),
             }
             let mut border = vec![0.0; direction.len()];
             self.apply_metric(&direction, &mut border);
             let settings = self.settings;
-            if correct(self, &mut moved, &border, &settings).is_err() {
-                break false;
+            if let Err(cause) = correct(self, &mut moved, &border, &settings) {
+                break Err(cause);
             }
         };
-        let fitted = found.then(|| {
-            let states = moved[..moved.len() - 2].to_vec();
-            let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
-            (Fitted { mesh: self.collocation.mesh().to_vec(), states }, ranges)
+        let fitted = found.map(|is_moved| {
+            is_moved.then(|| {
+                let states = moved[..moved.len() - 2].to_vec();
+                let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
+                (Fitted { mesh: self.collocation.mesh().to_vec(), states }, ranges)
+            })
         });
         self.collocation.problem.segments = kept.1;
         self.collocation.set_mesh(kept.0, unknown);
-        fitted
+        fitted.map_err(|cause| Error::NotFound { sought: "cycle with mesh points at its borders", cause })
     }
 
     /// Counts the unit time from a mesh point on.

@@ -162,20 +162,31 @@ impl Segments {
         self.times = points.into_iter().map(|point| mesh[point]).collect();
     }
 
-    /// The mesh point from which the unit time is counted better, where a border comes close to where it is counted from now: the one
-    /// that is farthest from all borders.
-    pub(crate) fn better_origin(&self, mesh: &[f64]) -> Option<usize> {
-        let distance = |origin: f64| {
-            let away = |time: &f64| {
-                let gap = (time - origin).abs();
-                gap.min(1.0 - gap)
-            };
-            self.times.iter().map(away).fold(f64::INFINITY, f64::min)
+    /// A time from which the unit time is counted better, where a border comes close to where it is counted from now, or lies beyond: one
+    /// in the middle half of the longest segment, a mesh point if there is one. `passed` are the times at which the cycle passes the
+    /// borders, which mesh points may miss; what lies between a mesh point and its border belongs to no segment.
+    pub(crate) fn better_origin(&self, mesh: &[f64], passed: &[f64]) -> Option<f64> {
+        let spans: Vec<[f64; 2]> =
+            self.times.iter().zip(passed).map(|(one, other)| [one.min(*other), one.max(*other)]).collect();
+        let (first, last) = (spans.first()?, spans.last()?);
+        let around = [last[1] - 1.0, first[0]];
+        let between = spans.windows(2).map(|pair| [pair[0][1], pair[1][0]]);
+        let [start, end] = between
+            .chain([around])
+            .max_by(|one, other| (one[1] - one[0]).total_cmp(&(other[1] - other[0])))?;
+        let half = 0.5 * (end - start);
+        let is_close = around[1].min(-around[0]) < CLOSE_TO_ORIGIN * half;
+        if !is_close {
+            return None;
+        }
+        let middle = 0.5 * (start + end);
+        let distance = |time: f64| {
+            let gap = (time - middle).rem_euclid(1.0);
+            gap.min(1.0 - gap)
         };
-        let farthest =
-            (1..mesh.len() - 1).max_by(|&a, &b| distance(mesh[a]).total_cmp(&distance(mesh[b])))?;
-        let is_close = distance(0.0) < CLOSE_TO_ORIGIN * distance(mesh[farthest]);
-        is_close.then_some(farthest)
+        let inner = mesh[1..mesh.len() - 1].iter().copied();
+        let nearest = inner.min_by(|one, other| distance(*one).total_cmp(&distance(*other)));
+        Some(nearest.filter(|time| distance(*time) < 0.5 * half).unwrap_or(middle.rem_euclid(1.0)))
     }
 
     /// Counts the unit time from a mesh point on; `mesh` is the new mesh, as many points of which lie before the old origin as the

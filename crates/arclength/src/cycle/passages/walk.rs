@@ -65,6 +65,7 @@ impl Along<'_> {
         let switches = self.pieces.thresholds().len();
         for (index, pair) in stretch.times.windows(2).enumerate() {
             let [mut from, until] = [pair[0], pair[1]];
+            let mut before: Option<Course> = None;
             while let Some((time, place, upwards)) = self.exit(standing, from, until, end) {
                 let state = self.state(time, end);
                 from = time;
@@ -91,6 +92,17 @@ impl Along<'_> {
                     }
                     continue;
                 }
+                let turns_back = found.last().is_some_and(|last| {
+                    last.time == time && last.gate.place == place && last.gate.upwards != upwards
+                });
+                if turns_back && let Some(course) = before.take() {
+                    // A visit of no length is rounding, and there might be no end of them.
+                    found.pop();
+                    standing.course = course;
+                    from = 0.5 * (time + until);
+                    continue;
+                }
+                before = Some(standing.course.clone());
                 let (next, left) = self.behind(&standing.course, place, upwards, &state);
                 let jumps = self.rate_jumps(&standing.course, &next, place, &state);
                 let gate = Gate { place, upwards, events: Vec::new() };
