@@ -45,6 +45,10 @@ class Columns(Mapping[str, "np.ndarray[Any, Any]"]):
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self._arrays:
+            if not isinstance(name, str):
+                raise UnknownLabel(
+                    f"columns have names, not {name!r}; allowed: {', '.join(self._names)}", key="column", value=repr(name)
+                )
             column = self._native.column(name)
             if column is None:
                 raise UnknownLabel(
@@ -179,7 +183,11 @@ class Result:
 
         Raises :class:`~arclength.InvalidInput` for another ending or a file that cannot be written.
         """
-        self._native.write(os.fspath(path))
+        try:
+            self._native.write(os.fspath(path))
+        except InvalidInput as error:
+            error.key, error.value = error.key or "path", error.value or os.fspath(path)
+            raise
 
     def to_json(self) -> bytes:
         """The bytes of its ``.json`` file, as the programs write it."""
@@ -305,7 +313,11 @@ def load(path: Path) -> Any:
     Results of ``equilibria``, ``cycles``, ``locus`` and ``simulate`` of models, of ``hopf``, ``cycles`` and ``locus`` of wheels can be
     loaded. Raises :class:`~arclength.InvalidInput` for any other file.
     """
-    return of(_native.read_result(os.fspath(path)))
+    try:
+        return of(_native.read_result(os.fspath(path)))
+    except InvalidInput as error:
+        error.key, error.value = error.key or "path", error.value or os.fspath(path)
+        raise
 
 
 def of(native: NativeResult) -> Any:
