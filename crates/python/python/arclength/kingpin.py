@@ -40,7 +40,7 @@ from ._requests import (
 )
 from .errors import InvalidInput, Interrupted
 from .models import samples_on_disk
-from .results import Branch, Path, Point, Result, of
+from .results import Branch, Path, Point, Result, decided, of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -703,8 +703,8 @@ class Chart(Result):
         return xarray.Dataset(
             {
                 "growth_rate": (plane, self.growth_rate, {"units": "1/s"}),
-                "stable": (plane, self.stable),
-                "rolls": (plane, self.rolls),
+                "stable": (plane, decided(self.stable)),
+                "rolls": (plane, decided(self.rolls)),
             },
             coords={axis["key"]: (axis["key"], axis["values"], {"units": axis["unit"]}) for axis in (y, x)},
         )
@@ -721,6 +721,14 @@ class Motion(Result):
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         return self.columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of its columns."""
+        return iter(self.columns)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it has this column."""
+        return name in self.columns
 
     def plot(self, *names: str, ax: Axes | None = None, **style: Any) -> Axes:
         """Draws columns over the time, by default the caster angle; returns the axes."""

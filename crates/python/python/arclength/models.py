@@ -28,7 +28,7 @@ from ._requests import (
     whole,
     word,
 )
-from .errors import InvalidInput
+from .errors import InvalidInput, NotTraceable
 from .results import Branch, Path, Point, Result, of
 
 if TYPE_CHECKING:
@@ -137,29 +137,29 @@ class Model:
     ) -> Model:
         """A model of SymPy expressions: the derivative of each state (a symbol or its name), and values of the parameters.
 
-        Raises :class:`~arclength.InvalidInput` for a symbol that is neither, and :class:`~arclength.NotTraceable` for a function
-        without a rule (needs sympy).
+        Expressions may be texts: a name in them is that state or parameter where there is one (``E``, ``beta``, ``S``), else what it is
+        for SymPy. Raises :class:`~arclength.InvalidInput` for a symbol that is neither, and :class:`~arclength.NotTraceable` for a
+        function without a rule (needs sympy).
         """
         import sympy
 
-        expressions = [sympy.sympify(expression) for expression in equations.values()]
         names = [str(symbol) for symbol in [*equations, *(parameters or {})]]
-        used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}
-        unknown = sorted(used - set(names))
-        if unknown:
-            raise InvalidInput(
-                f"{unknown[0]}: neither a state nor a parameter; allowed: {', '.join(names)}",
-                key=unknown[0],
-                allowed=", ".join(names),
-            )
-        function = sympy.lambdify(names, expressions, modules="numpy", cse=True)
+        # Whatever they are called, symbols are no words of Python and no functions.
+        variables = {name: sympy.Dummy(f"x{index}") for index, name in enumerate(names)}
+        expressions = [_of_sympy(sympy, expression, variables) for expression in equations.values()]
+        function = sympy.lambdify(list(variables.values()), expressions, modules="numpy", cse=True)
 
         def derivatives(x: Any, p: Any) -> Any:
             return function(*x, *p.values())
 
         states = [str(state) for state in equations]
         values = {str(key): value for key, value in (parameters or {}).items()}
-        return cls(derivatives, states, values, name=name)
+        try:
+            return cls(derivatives, states, values, name=name)
+        except NameError as error:
+            unknown = error.name or str(error)
+            message = f"the function {unknown} of SymPy has no rule; write it by others"
+            raise NotTraceable(message, key=unknown, allowed="elementary functions") from None
 
     @classmethod
     def from_casadi(
@@ -419,6 +419,27 @@ class Model:
             threads=threads,
             progress=progress,
         )
+
+
+def _of_sympy(sympy: Any, given: Any, variables: Mapping[str, Any]) -> Any:
+    """An expression in these variables."""
+    allowed = f"an expression in {', '.join(variables)}"
+    try:
+        expression = sympy.sympify(given, locals={name: sympy.Symbol(name) for name in variables} if isinstance(given, str) else None)
+    except (sympy.SympifyError, SyntaxError, TypeError, AttributeError) as error:
+        told = str(error).strip().splitlines() or [type(error).__name__]
+        message = f"{given}: SymPy cannot read it ({told[0]}); allowed: {allowed}"
+        raise InvalidInput(message, key="equations", value=str(given), allowed=allowed) from None
+    if not isinstance(expression, sympy.Expr):
+        raise InvalidInput(f"{given}: not an expression of numbers; allowed: {allowed}", key="equations", value=str(given), allowed=allowed)
+    if expression.has(sympy.zoo, sympy.nan, sympy.oo, -sympy.oo):
+        message = f"{given}: not finite; allowed: finite numbers"
+        raise NotTraceable(message, key="equations", value=str(given), allowed="finite numbers")
+    unknown = sorted({str(symbol) for symbol in expression.free_symbols} - set(variables))
+    if unknown:
+        listed = ", ".join(variables)
+        raise InvalidInput(f"{unknown[0]}: neither a state nor a parameter; allowed: {listed}", key=unknown[0], allowed=listed)
+    return expression.xreplace({symbol: variables[str(symbol)] for symbol in expression.free_symbols})
 
 
 def _text_of(model: Path, signs: str) -> str:
@@ -772,6 +793,13 @@ class ModelBranch(Branch):
 class Equilibria(ModelBranch):
     """A branch of equilibria."""
 
+    def _of_model(self) -> dict[int, str]:
+        points = self.document["points"]
+        states = len(points[0]["state"]) if points else 0
+        aux = len({name for point in points for name in point.get("aux") or ()})
+        # After the label, the value of the parameter and the stability.
+        return {**dict.fromkeys(range(3, 3 + states), "state"), **dict.fromkeys(range(3 + states, 3 + states + aux), "aux")}
+
 
 class Cycles(ModelBranch):
     """A branch of limit cycles."""
@@ -780,6 +808,12 @@ class Cycles(ModelBranch):
 class Locus(ModelBranch):
     """A curve of special points in two parameters."""
 
+    def _of_model(self) -> dict[int, str]:
+        points = self.document["points"]
+        states = len(points[0]["state"]) if points and self.schema == "arclength.locus" else 0
+        # After the label both parameters; after frequency and first Lyapunov coefficient the states.
+        return {1: "parameter", 2: "parameter", **dict.fromkeys(range(5, 5 + states), "state")}
+
 
 class History(Result):
     """A motion: ``history["x"]`` is an array of shape ``(samples,)``, ``history["t"]`` the times."""
@@ -787,10 +821,18 @@ class History(Result):
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         return self.columns[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Names of its columns."""
+        return iter(self.columns)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it has this column."""
+        return name in self.columns
+
     @property
     def end(self) -> ModelPoint:
         """Where it ends: a start for :meth:`ModelPoint.cycles` where it has settled on a cycle, and for :meth:`ModelPoint.simulate`."""
-        state = {name: float(column[-1]) for name, column in self.columns.items() if column.dtype == float}
+        state = {name: float(self.columns[name][-1]) for name in self.document["states"]}
         return ModelPoint({"label": "END", "state": state}, self)  # type: ignore[arg-type]
 
     def _file(self) -> Any:
