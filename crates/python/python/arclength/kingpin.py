@@ -13,6 +13,7 @@ import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from . import _native
@@ -653,7 +654,7 @@ class WheelBranch(Branch):
 
     if TYPE_CHECKING:
 
-        @property
+        @cached_property
         def points(self) -> tuple[WheelPoint, ...]: ...  # noqa: D102
 
         def __iter__(self) -> Iterator[WheelPoint]: ...

@@ -772,7 +772,7 @@ class ModelBranch(Branch):
 
     if TYPE_CHECKING:
 
-        @property
+        @cached_property
         def points(self) -> tuple[ModelPoint, ...]: ...  # noqa: D102
 
         def __iter__(self) -> Iterator[ModelPoint]: ...

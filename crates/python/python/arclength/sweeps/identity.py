@@ -247,9 +247,10 @@ class _Content:
             return self._class(value)
         if callable(value) and self._is_named(value):
             return self._all("named", value.__module__, value.__qualname__)
-        if callable(value) and callable(getattr(value, "__wrapped__", None)):
+        wrapped = getattr(value, "__wrapped__", None)
+        if callable(value) and callable(wrapped):
             # What keeps answers, and what is compiled: by what it stands for.
-            return self._all("wrapped", kind, value.__wrapped__)
+            return self._all("wrapped", kind, wrapped)
         return self._object(value)
 
     def _is_known(self, module: str | None) -> bool:
