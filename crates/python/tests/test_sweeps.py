@@ -439,6 +439,13 @@ def test_a_damaged_chunk_is_computed_again(tmp_path):
     assert arclength.sweep(words, sample, tmp_path, chunk=30).manifest == manifest
 
 
+def test_other_types_of_columns_are_refused(tmp_path):
+    arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields={"y": float})
+    with pytest.raises(arclength.InvalidInput, match="field y of word: the sweep .* was begun with number"):
+        arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields={"y": str})
+    arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields=["y"])
+
+
 def test_a_damaged_plan_is_refused(tmp_path):
     arclength.sweep(words, arclength.grid(v=(0, 1, 100)), tmp_path, chunk=30)
     plan = tmp_path / "sweep.json"

@@ -139,6 +139,15 @@ class Plan:
                 allowed=str(self.document["chunk"]),
             )
         self.kinds: dict[str, str] = dict(self.document["columns"])
+        for name, kind in _declared(task).items():
+            if self.kinds.get(name) != kind:
+                told = self.kinds.get(name, "nothing")
+                raise InvalidInput(
+                    f"field {name} of {kind}: the sweep in {folder} was begun with {told}; allowed: the same types, or an empty folder",
+                    key="fields",
+                    value=name,
+                    allowed=told,
+                )
         self.size: int = self.document["chunk"]
         self.count = -(-sample.count // self.size)
         self.key = storage.digest(storage.canonical(self.document))
