@@ -1,10 +1,11 @@
 //! Who may ask: only pages of this server, by a loopback name.
 //!
 //! A page of another site could otherwise reach the server through the browser, under a name of its own that resolves to the loopback
-//! address. So the names in `Host` and `Origin` are compared with loopback names, not with each other; their ports must be the same.
+//! address. So the names in `Host` and `Origin` are compared with loopback names, not with each other; their ports must be that of this
+//! server.
 
 use crate::failure::Failure;
-use axum::extract::Request;
+use axum::extract::{Request, State};
 use axum::http::header::{
     CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HOST, HeaderName, ORIGIN, REFERRER_POLICY,
     X_CONTENT_TYPE_OPTIONS,
@@ -31,16 +32,15 @@ fn loopback_port(authority: &str) -> Option<u16> {
     is_loopback.then_some(port)
 }
 
-/// That a request comes from this machine's user, not from a page of another site.
-fn check(headers: &HeaderMap) -> Result<(), Failure> {
+/// That a request comes from this machine's user, to the server on this port, not from a page of another site.
+fn check(headers: &HeaderMap, port: u16) -> Result<(), Failure> {
     let refused = |status, message: &str| Err(Failure::new(status, message));
     let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or_default());
-    let Some(port) = text(HOST).and_then(loopback_port) else {
-        return refused(
-            StatusCode::FORBIDDEN,
-            "Host is no loopback name; allowed: 127.0.0.1, localhost, [::1]",
-        );
-    };
+    if text(HOST).and_then(loopback_port) != Some(port) {
+        let message =
+            format!("Host is not this server; allowed: 127.0.0.1:{port}, localhost:{port}, [::1]:{port}");
+        return refused(StatusCode::FORBIDDEN, &message);
+    }
     if let Some(origin) = text(ORIGIN) {
         let authority = origin.strip_prefix("http://").unwrap_or_default();
         if loopback_port(authority) != Some(port) {
@@ -76,8 +76,8 @@ pub(crate) async fn only_json(request: Request, next: Next) -> Response {
 }
 
 /// Refuses requests from elsewhere and says in every answer what its page may load.
-pub(crate) async fn guard(request: Request, next: Next) -> Response {
-    let mut answer = match check(request.headers()) {
+pub(crate) async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
+    let mut answer = match check(request.headers(), port) {
         Ok(()) => next.run(request).await,
         Err(failure) => failure.into_response(),
     };
@@ -117,10 +117,14 @@ mod tests {
         let headers = |entries: &[(HeaderName, &str)]| -> HeaderMap {
             entries.iter().map(|(name, value)| (name.clone(), value.parse().unwrap())).collect()
         };
-        let asked = |entries: &[(HeaderName, &str)]| check(&headers(entries)).is_ok();
+        let asked = |entries: &[(HeaderName, &str)]| check(&headers(entries), 8000).is_ok();
         let host = (HOST, "127.0.0.1:8000");
         assert!(asked(std::slice::from_ref(&host)));
         assert!(asked(&[host.clone(), (ORIGIN, "http://localhost:8000")]));
+        // Another server on this machine, which this one is not.
+        assert!(!asked(&[(HOST, "localhost:1")]));
+        assert!(!asked(&[(HOST, "localhost:1"), (ORIGIN, "http://localhost:1")]));
+        assert!(!asked(&[(HOST, "localhost")]));
         // A name of another site that resolves to this machine; another server on this machine; a sandboxed frame.
         assert!(!asked(&[(HOST, "rebound.example.org:8000")]));
         assert!(!asked(&[host.clone(), (ORIGIN, "http://rebound.example.org:8000")]));

@@ -121,6 +121,9 @@ async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure
 
 impl DiagramRequest {
     fn answer(&self, files: &FilesInMemory) -> Result<Response, Failure> {
+        if self.results.is_empty() {
+            return Err(Failure::bad_request("results: none is named; allowed: names of one result or more"));
+        }
         let failure = |index: usize, problem: String| {
             Failure::from(Error::ResultFile { path: self.results[index].clone(), problem })
         };

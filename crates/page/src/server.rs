@@ -11,7 +11,7 @@ use axum::Router;
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, State};
 use axum::http::StatusCode;
-use axum::middleware::from_fn;
+use axum::middleware::from_fn_with_state;
 use serde::Deserialize;
 use serde_json::Value;
 use std::future::IntoFuture;
@@ -124,7 +124,7 @@ impl Server {
                 Failure::new(StatusCode::METHOD_NOT_ALLOWED, "this address is not asked in this way")
             })
             .layer(DefaultBodyLimit::max(LARGEST_BODY))
-            .layer(from_fn(guard))
+            .layer(from_fn_with_state(self.address.port(), guard))
             .with_state(work.clone());
         let outcome = runtime.block_on(async {
             let listener = tokio::net::TcpListener::from_std(self.listener)?;

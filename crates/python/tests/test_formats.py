@@ -1,5 +1,7 @@
 """Models of other packages, against the same model in Python, and a bar for the progress."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -37,6 +39,46 @@ def test_casadi():
         np.testing.assert_allclose(model(point), np.array(truth(point)).ravel(), rtol=1e-13, atol=1e-13)
     with pytest.raises(arclength.NotTraceable, match="OP_FMOD"):
         arclength.Model.from_casadi({"x": a, "ode": casadi.fmod(a, 2)})
+
+
+def test_small_and_large_numbers_of_casadi():
+    casadi = pytest.importorskip("casadi")
+    a, b = casadi.SX.sym("a"), casadi.SX.sym("b")
+    model = arclength.Model.from_casadi({"x": casadi.vertcat(a, b), "ode": casadi.vertcat(casadi.expm1(a), casadi.log1p(b))})
+    small = [sign * 10.0**power for power in range(-300, 3) for sign in (1, -1)]
+    for x in [*small, 0.0, 0.3, -0.7, 5.0, 300.0, -30.0, -1500.0, -1e6]:
+        expected = math.expm1(x)
+        assert model([x, 0.0])[0] == pytest.approx(expected, rel=4e-15, abs=0), x
+    for x in [*(x for x in small if x > -1), 0.0, 0.3, -0.7, -0.999999, 1e10, 1e300]:
+        assert model([0.0, x])[1] == pytest.approx(math.log1p(x), rel=4e-15, abs=0), x
+
+
+def test_sympy_takes_names_in_texts_for_what_they_are_given_as():
+    sympy = pytest.importorskip("sympy")
+    for name in ("E", "I", "S", "N", "O", "Q", "beta", "gamma", "zeta", "sin_", "exp_1", "C", "Lambda", "lambdify"):
+        model = arclength.Model.from_sympy({"x": f"{name}*x + 1"}, {name: 2.0})
+        assert model([3.0]).tolist() == [7.0], name
+        symbol, x = sympy.Symbol(name), sympy.Symbol("x", positive=True)
+        assert arclength.Model.from_sympy({x: symbol * x + 1}, {symbol: 2.0})([3.0]).tolist() == [7.0], name
+        assert arclength.Model.from_sympy({name: f"-{name}**2"})([3.0]).tolist() == [-9.0], name
+    # A name that is given to nothing is what it is for SymPy; functions stay functions.
+    assert arclength.Model.from_sympy({"x": "E*x + exp(x) + a"}, {"a": 1.0})([1.0])[0] == pytest.approx(2 * math.e + 1)
+    assert arclength.Model.from_sympy({"lam": sympy.Symbol("lam") * 2})([1.0]).tolist() == [2.0]
+
+
+def test_sympy_refuses_with_a_remedy():
+    sympy = pytest.importorskip("sympy")
+    x = sympy.Symbol("x")
+    for wrong in ("beta*x", "x +", "S*x", "gamma", "[x]", "x > 1", "lambda*x"):
+        with pytest.raises(arclength.InvalidInput, match="allowed: an expression in x") as refused:
+            arclength.Model.from_sympy({"x": wrong})
+        assert (refused.value.key, refused.value.value) == ("equations", wrong)
+    with pytest.raises(arclength.InvalidInput, match="c: neither a state nor a parameter"):
+        arclength.Model.from_sympy({"x": "c*x"})
+    with pytest.raises(arclength.NotTraceable, match="besselj"):
+        arclength.Model.from_sympy({x: sympy.besselj(0, x)})
+    with pytest.raises(arclength.NotTraceable, match="not finite"):
+        arclength.Model.from_sympy({x: x / 0})
 
 
 ANTIMONY = """

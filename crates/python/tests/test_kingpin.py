@@ -170,6 +170,9 @@ METHODS = [
     (arclength.models.ModelPoint.cycles, "arclength.cycles", {"from": {"path": "f", "label": "l"}, "along": {"key": "a"}}),
     (arclength.models._cycles, "arclength.cycles", {"from": {"path": "f", "label": "l"}, "along": {"key": "a"}}),
     (arclength.models._simulate, "arclength.simulate", {"model": {"source": {"file": "m"}}}),
+    (arclength.Model.simulate, "arclength.simulate", {"model": {"source": {"file": "m"}}}),
+    (arclength.models.ModelPoint.simulate, "arclength.simulate", {"model": {"source": {"file": "m"}}}),
+    (arclength.Model.cycles, "arclength.cycles", {"from": {"path": "f", "label": "l"}, "along": {"key": "a"}}),
     (
         arclength.models.ModelPoint.locus,
         "arclength.locus",

@@ -1,6 +1,7 @@
 """Sweeps: the same bytes whoever works on them, nothing lost and nothing twice, whatever dies in the middle."""
 
 import concurrent.futures
+import functools
 import hashlib
 import json
 import multiprocessing
@@ -9,6 +10,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from pathlib import Path
 
@@ -297,3 +299,165 @@ def test_progress_and_ctrl_c(tmp_path):
     """)
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert "the same call goes on" in done.stdout, done.stderr
+
+
+SCALE = 2.0
+
+
+def scaled(v):
+    return {"y": SCALE * v}
+
+
+def through_another(v):
+    return scaled(v)
+
+
+class Scales:
+    def __init__(self, factor):
+        self.factor = factor
+
+    def __call__(self, v):
+        return {"y": self.factor * v}
+
+
+def closes(k):
+    return lambda v: {"y": k * v}
+
+
+def defaults(k):
+    def inside(v, *, k=k):
+        return {"y": k * v}
+
+    return inside
+
+
+def total(v, A):
+    return {"y": float(np.sum(A)) * v}
+
+
+LARGE = np.arange(3000.0)
+CHANGED = LARGE.copy()
+CHANGED[1500] = -1e9
+PAIR = [lambda v: {"y": v}, lambda v: {"y": -v}]
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ({"function": closes(1.0)}, {"function": closes(100.0)}),
+        ({"function": defaults(1.0)}, {"function": defaults(100.0)}),
+        ({"function": PAIR[0]}, {"function": PAIR[1]}),
+        ({"function": Scales(1.0)}, {"function": Scales(2.0)}),
+        ({"function": functools.partial(total, A=LARGE)}, {"function": functools.partial(total, A=CHANGED)}),
+        ({"function": total, "constants": {"A": LARGE}}, {"function": total, "constants": {"A": CHANGED}}),
+        ({"function": total, "constants": {"A": np.array([1.0])}}, {"function": total, "constants": {"A": np.array([1.000000001])}}),
+        ({"function": total, "constants": {"A": [LARGE]}}, {"function": total, "constants": {"A": [CHANGED]}}),
+        ({"function": total, "constants": {"A": (1, 2)}}, {"function": total, "constants": {"A": (1, 3)}}),
+        ({"function": scaled, "sample": {"v": np.zeros(1)}}, {"function": scaled, "sample": {"v": np.zeros(1, int)}}),
+    ],
+)
+def test_what_a_function_depends_on_tells_it_from_others(tmp_path, first, second):
+    first, second = ({"sample": {"v": [1.0]}, "fields": {"y": float}, "chunk": 1, **one} for one in (first, second))
+    arclength.sweep(**first, folder=tmp_path)
+    arclength.sweep(**first, folder=tmp_path)
+    with pytest.raises(arclength.InvalidInput, match="another sweep is in there"):
+        arclength.sweep(**second, folder=tmp_path)
+
+
+def test_what_is_called_and_global_values_tell_a_function_from_others(tmp_path, monkeypatch):
+    sample = {"v": [1.0]}
+    arclength.sweep(through_another, sample, tmp_path / "a")
+    arclength.sweep(scaled, sample, tmp_path / "b")
+    monkeypatch.setitem(globals(), "SCALE", 3.0)
+    with pytest.raises(arclength.InvalidInput, match="function global scaled differs"):
+        arclength.sweep(through_another, sample, tmp_path / "a")
+    with pytest.raises(arclength.InvalidInput, match="function global SCALE differs"):
+        arclength.sweep(scaled, sample, tmp_path / "b")
+
+
+def test_a_module_of_ones_own_tells_a_function_from_others(tmp_path):
+    script = textwrap.dedent("""
+        import arclength, own
+        def f(v):
+            return {"y": own.times(v), "unused": 0.0}
+        print(arclength.sweep(f, {"v": [1.0]}, "out").to_pandas().y[0])
+    """)
+    outputs = []
+    for seed, text in (("1", "def times(v): return 2 * v\n"), ("2", "# the same\ndef times(v): return 2 * v\n"), ("3", "def times(v): return 3 * v\n")):
+        (tmp_path / "own.py").write_text(text)
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])}
+        command = [sys.executable, "-B", "-c", script]
+        done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+        outputs.append(done.stdout or done.stderr)
+    assert outputs[:2] == ["2.0\n", "2.0\n"], "the same in every process, and whatever a remark says"
+    assert "global own.times differs" in outputs[2]
+
+
+def test_a_value_of_which_nothing_can_be_told_is_refused(tmp_path):
+    lock = threading.Lock()
+
+    def locked(v):
+        with lock:
+            return {"y": v}
+
+    with pytest.raises(arclength.InvalidInput, match="closure lock: of a lock in it cannot be told") as refused:
+        arclength.sweep(locked, {"v": [1.0]}, tmp_path)
+    assert refused.value.key == "closure lock"
+    assert 'version="' in refused.value.allowed
+    assert arclength.sweep(locked, {"v": [1.0]}, tmp_path, version="1").to_pandas().y[0] == 1
+    with pytest.raises(arclength.InvalidInput, match="another sweep"):
+        arclength.sweep(locked, {"v": [1.0]}, tmp_path, version="2")
+
+
+def words(v):
+    return {"s": "abcdefgh" * 3 + str(v)}
+
+
+def test_a_damaged_chunk_is_computed_again(tmp_path):
+    sample = arclength.grid(v=(0, 1, 100))
+    swept = arclength.sweep(words, sample, tmp_path, chunk=30)
+    whole, manifest = swept.files[0].read_bytes(), swept.manifest
+    table = swept.to_arrow()
+    for place in (4, 40, 200, len(whole) // 2, len(whole) - 5):
+        damaged = bytearray(whole)
+        damaged[place] ^= 1
+        swept.files[0].write_bytes(damaged)
+        with pytest.raises(arclength.ComputationFailed, match="not what the manifest says"):
+            swept.to_arrow()
+        with pytest.raises(arclength.ComputationFailed, match="damaged: 0;"):
+            arclength.merge(tmp_path)
+        assert swept.manifest == manifest
+        again = arclength.sweep(words, sample, tmp_path, chunk=30)
+        assert (again.files[0].read_bytes(), again.manifest) == (whole, manifest)
+        assert again.to_arrow().equals(table)
+    # Whatever happens to its hash, the chunk is right.
+    beside = swept.files[0].with_suffix(".sha256")
+    assert beside.read_text() == f"{hashlib.sha256(whole).hexdigest()}  {swept.files[0].name}\n"
+    beside.write_text("0" * 64)
+    assert arclength.sweep(words, sample, tmp_path, chunk=30).manifest == manifest
+    beside.unlink()
+    assert arclength.sweep(words, sample, tmp_path, chunk=30).manifest == manifest
+
+
+def test_other_types_of_columns_are_refused(tmp_path):
+    arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields={"y": float})
+    with pytest.raises(arclength.InvalidInput, match="field y of word: the sweep .* was begun with number"):
+        arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields={"y": str})
+    arclength.sweep(scaled, {"v": [1.0]}, tmp_path, fields=["y"])
+
+
+def test_a_damaged_plan_is_refused(tmp_path):
+    arclength.sweep(words, arclength.grid(v=(0, 1, 100)), tmp_path, chunk=30)
+    plan = tmp_path / "sweep.json"
+    plan.write_text(plan.read_text().replace('"chunk":30', '"chunk":31'))
+    with pytest.raises(arclength.InvalidInput, match="not what was written"):
+        arclength.sweep(words, arclength.grid(v=(0, 1, 100)), tmp_path)
+
+
+def test_an_unknown_keyword_of_an_analysis(tmp_path):
+    with pytest.raises(arclength.InvalidInput, match="w: neither a parameter nor a keyword of stability") as refused:
+        arclength.sweep(Wheel().stability, {"w": [1.0]}, tmp_path)
+    assert refused.value.key == "w"
+    assert "c_q" in refused.value.allowed
+    with pytest.raises(arclength.InvalidInput, match="duration"):
+        arclength.sweep(Wheel().simulate, {"v": [1.0]}, tmp_path)

@@ -12,6 +12,9 @@ fn only_pages_of_this_server_are_answered() {
     };
     assert_eq!(ask(&format!("127.0.0.1:{port}"), ""), 200);
     assert_eq!(ask(&format!("localhost:{port}"), ""), 200);
+    // Another server on this machine.
+    assert_eq!(ask("localhost:1", ""), 403);
+    assert_eq!(ask("localhost", ""), 403);
     // A name of another site that resolves to the loopback address, with and without saying so.
     assert_eq!(ask(&format!("rebound.example.org:{port}"), ""), 403);
     let other = format!("Origin: http://rebound.example.org:{port}\r\n");
@@ -37,6 +40,17 @@ fn every_answer_says_what_its_page_may_load() {
             answer.head
         );
         assert!(answer.head.contains("x-content-type-options: nosniff"), "{path}");
+    }
+}
+
+#[test]
+fn a_diagram_of_nothing_is_refused() {
+    let server = Running::start();
+    for states in [json!([]), json!(["x"])] {
+        let request = json!({"results": [], "states": states, "format": "svg"});
+        let answer = server.post("/api/diagram", &json!({"request": request, "files": {}}));
+        assert_eq!(answer.status, 400);
+        assert!(answer.message().contains("results: none is named"), "{}", answer.message());
     }
 }
 

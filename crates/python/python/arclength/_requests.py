@@ -6,12 +6,13 @@ import json
 import math
 import operator
 import os
+import re
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 from . import _native
 from .errors import AnalysisWarning, InvalidInput
@@ -28,6 +29,15 @@ Conditions = str | tuple[float, float] | list[float]
 #: Called with the part that is done (0 to 1) or ``None``, and with where the computation is, or ``None``; ``True`` is a bar of tqdm.
 Progress = Callable[[float | None, str | None], object] | Literal[True]
 
+#: How a motion of a model is integrated, and which crossings of a section count.
+Method = Literal["auto", "explicit", "implicit"]
+Direction = Literal["both", "rising", "falling"]
+#: Whether a wheel may slide, and what disturbs it.
+Contact = Literal["rolling", "sliding"]
+Kick = Literal["impulse", "release-angle", "jolt", "step-steer"]
+
+#: More threads than any machine has processors for take minutes to start.
+_MOST_THREADS = 1024
 
 _ENCODER = json.JSONEncoder(allow_nan=False)
 
@@ -83,8 +93,33 @@ def whole(key: str, value: Any) -> int:
         ) from None
 
 
+def word(key: str, value: Any, words: Any) -> str:
+    """One of the words of a type such as :data:`Method`."""
+    allowed = get_args(words)
+    if value not in allowed:
+        listed = ", ".join(allowed)
+        raise InvalidInput(f"{key} {value!r}: there is no such thing; allowed: {listed}", key=key, value=str(value), allowed=listed)
+    return str(value)
+
+
+def optional_word(key: str, value: Any, words: Any) -> str | None:
+    """One of the words of a type, or nothing."""
+    return None if value is None else word(key, value, words)
+
+
+def thread_count(threads: Any) -> int:
+    """A number of threads; 0 where none is given."""
+    count = 0 if threads is None else whole("threads", threads)
+    if not 0 <= count <= _MOST_THREADS:
+        allowed = f"1 to {_MOST_THREADS}, or None for one for each processor"
+        raise InvalidInput(f"threads {count}: out of range; allowed: {allowed}", key="threads", value=str(count), allowed=allowed)
+    return count
+
+
 def named(key: str, values: Mapping[str, Any] | None) -> dict[str, float | str]:
     """Numbers with names."""
+    if values is not None and not isinstance(values, Mapping):
+        raise _form(key, values, "a mapping from names to numbers")
     return {str(name): number(f"{key} {name}", value) for name, value in (values or {}).items()}
 
 
@@ -162,6 +197,8 @@ def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] 
     """What is recorded along a branch, with values at which a point is wanted, and at which it ends."""
     if isinstance(given, str):
         given = [given]
+    if not isinstance(given, Iterable):
+        raise _form("monitors", given, "expressions, or a mapping from expressions to values")
     asked = given if isinstance(given, Mapping) else {expression: () for expression in given}
     recorded = [{"expression": expression, "at": numbers("monitor", at)} for expression, at in asked.items()]
     ending = [
@@ -189,17 +226,57 @@ def reported(progress: Progress | None, title: str) -> Iterator[Callable[[float 
         yield tell
 
 
+#: How the native module says what it cannot read, and where.
+_UNREAD = re.compile(r"the request cannot be read: (?P<what>.*?), expected (?P<expected>.*) at line \d+ column \d+")
+_EXPECTED = {
+    "f64": "a finite number",
+    **dict.fromkeys(("u8", "u16", "u32", "u64", "usize"), "a whole number that is not negative and not too large"),
+}
+_OF_A_FIELD = re.compile(r"(?P<key>\w+) = (?P<value>\S+) is not allowed: |unknown (?:key|state) `(?P<unknown>[^`]*)`")
+
+
+def _unread(analysis: str, request: Mapping[str, Any]) -> str | None:
+    """What the native module cannot read of a request."""
+    try:
+        _native.complete_request(analysis, _ENCODER.encode(request))
+    except InvalidInput as error:
+        told = _UNREAD.match(error.message)
+        return told["what"] if told is not None else error.message
+    return None
+
+
+def _explain(error: InvalidInput, analysis: str, request: Mapping[str, Any]) -> None:
+    """Says of an error of the native module which field it is about."""
+    told = _UNREAD.match(error.message)
+    if told is not None:
+        # Without the field at fault there is no error, or it is missed.
+        without = {key: _unread(analysis, {one: value for one, value in request.items() if one != key}) for key in request}
+        fields = [key for key, what in without.items() if what is None] or [key for key, what in without.items() if what != told["what"]]
+        key = fields[0] if fields else "request"
+        given = re.search(r'[`"]([^`"]*)[`"]', told["what"])
+        value = given[1] if given else told["what"]
+        allowed = _EXPECTED.get(told["expected"], told["expected"].removeprefix("one of ").replace("`", "").replace(" or ", ", "))
+        error.message = f"{key} {value}: out of range; allowed: {allowed}"
+        error.key, error.value, error.allowed = key, value, allowed
+    elif error.key is None and (told := _OF_A_FIELD.match(error.message)) is not None:
+        error.key, error.value = told["key"] or told["unknown"], told["value"] or told["unknown"]
+
+
 def run(
     analysis: str, request: Mapping[str, Any], *, threads: int | None = None, progress: Progress | None = None
 ) -> NativeResult:
     """Runs an analysis and warns of what is worth knowing."""
     text = _ENCODER.encode(request)
-    count = 0 if threads is None else whole("threads", threads)
-    if progress is True:
-        with reported(progress, analysis) as told:
-            result = _native.run_analysis(analysis, text, count, told)
-    else:
-        result = _native.run_analysis(analysis, text, count, progress)
+    count = thread_count(threads)
+    try:
+        if progress is True:
+            with reported(progress, analysis) as told:
+                result = _native.run_analysis(analysis, text, count, told)
+        else:
+            result = _native.run_analysis(analysis, text, count, progress)
+    except InvalidInput as error:
+        _explain(error, analysis, request)
+        raise
     if _KEPT.get():
         return result
     for warning in result.warnings:

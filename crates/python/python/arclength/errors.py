@@ -6,6 +6,8 @@ allowed), each a text, or ``None`` where that is not known.
 
 from __future__ import annotations
 
+import re
+
 __all__ = [
     "AnalysisWarning",
     "ArclengthError",
@@ -16,6 +18,10 @@ __all__ = [
     "NotTraceable",
     "UnknownLabel",
 ]
+
+
+#: How messages say what is allowed.
+_ALLOWED = re.compile(r"(?:; allowed: |is not allowed: |; the (?:keys|states) are |; there are: )(?P<allowed>[^\n]*)")
 
 
 class ArclengthError(Exception):
@@ -32,14 +38,15 @@ class ArclengthError(Exception):
         self.message = message
         self.key = key
         self.value = value
-        self.allowed = allowed
+        told = _ALLOWED.search(message) if allowed is None else None
+        self.allowed = allowed if told is None else told["allowed"]
 
     def __str__(self) -> str:
         return self.message
 
     def __reduce__(self) -> tuple[object, ...]:
         details = {"key": self.key, "value": self.value, "allowed": self.allowed}
-        return (_again, (type(self), self.message, details))
+        return (_again, (type(self), self.message, details), self.__dict__)
 
 
 def _again(kind: type[ArclengthError], message: str, details: dict[str, str | None]) -> ArclengthError:

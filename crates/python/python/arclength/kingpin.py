@@ -8,16 +8,20 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
-from typing import TYPE_CHECKING, Any, NamedTuple
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from . import _native
 from ._requests import (
     Along,
     Conditions,
+    Contact,
+    Kick,
     Progress,
     Sampled,
     assignments,
@@ -27,14 +31,17 @@ from ._requests import (
     number,
     numbers,
     optional,
+    optional_word,
     run,
     sampled,
     text,
+    thread_count,
     whole,
+    word,
 )
-from .errors import InvalidInput
+from .errors import InvalidInput, Interrupted
 from .models import samples_on_disk
-from .results import Branch, Path, Point, Result, of
+from .results import Branch, Path, Point, Result, decided, of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -179,7 +186,9 @@ class Wheel:
         return hash(tuple(self._values.items()))
 
     def __repr__(self) -> str:
-        inside = ", ".join(f"{key}={value!r}" if key == "tyre" else f"{key}={value}" for key, value in self._given.items())
+        # Infinity is a word here, so that Python reads it back.
+        words = {key: key == "tyre" or not math.isfinite(float(value)) for key, value in self._given.items()}
+        inside = ", ".join(f"{key}={value!r}" if words[key] else f"{key}={value}" for key, value in self._given.items())
         return f"Wheel({inside})"
 
     def _repr_html_(self) -> str:
@@ -235,17 +244,27 @@ class Wheel:
         """
         import numpy as np
 
+        allowed = "arrays of shape (n,), one for each key"
+        wrong = InvalidInput(f"points: not columns of equal length; allowed: {allowed}", key="points", allowed=allowed)
+        if not (hasattr(points, "keys") and hasattr(points, "__getitem__")):
+            raise wrong
         keys = [str(key) for key in points.keys()]
-        arrays = [np.ascontiguousarray(points[key], dtype=float) for key in keys]
-        if not keys or any(array.ndim != 1 or len(array) != len(arrays[0]) for array in arrays):
-            allowed = "arrays of shape (n,), one for each key"
-            raise InvalidInput(f"points: not columns of equal length; allowed: {allowed}", key="points", allowed=allowed)
-        at_once = 0 if threads is None else whole("threads", threads)
+        try:
+            arrays = [np.ascontiguousarray(points[key], dtype=float) for key in keys]
+        except (TypeError, ValueError):
+            raise wrong from None
+        if not keys or any(np.shape(points[key]) != arrays[0].shape or array.ndim != 1 for key, array in zip(keys, arrays, strict=True)):
+            raise wrong
+        at_once = thread_count(threads)
         parts = []
-        # Between parts Python listens to Ctrl-C.
-        for start in range(0, max(len(arrays[0]), 1), _POINTS_AT_ONCE):
-            part = [array[start : start + _POINTS_AT_ONCE] for array in arrays]
-            parts.append(_native.stability_at(list(self._given.items()), keys, part, at_once))
+        try:
+            # Between parts Python listens to Ctrl-C.
+            for start in range(0, max(len(arrays[0]), 1), _POINTS_AT_ONCE):
+                part = [array[start : start + _POINTS_AT_ONCE] for array in arrays]
+                parts.append(_native.stability_at(list(self._given.items()), keys, part, at_once))
+        except KeyboardInterrupt:
+            done = min(len(parts) * _POINTS_AT_ONCE, len(arrays[0]))
+            raise Interrupted(f"interrupted after {done} of {len(arrays[0])} points") from None
         growth_rate, stable, rolls = (np.concatenate(column) for column in zip(*parts, strict=True))
         undecided = np.isnan(stable)
         return {
@@ -313,14 +332,34 @@ class Wheel:
             )
 
     def locus(
-        self, first: Along, second: Along, *, label: str = "HB1", threads: int | None = None, **keywords: Any
-    ) -> Branch:
+        self,
+        first: Along,
+        second: Along,
+        *,
+        label: str = "HB1",
+        at: float | Iterable[float] = (),
+        steps: int = 10_000,
+        finer: int = 1,
+        tolerance: float = 1e-8,
+        intervals: int = 2000,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> WheelBranch:
         """The curve of Hopf points in two parameters through the Hopf point ``label`` along the first of them.
 
         From other points of other branches: :meth:`WheelPoint.locus`, which has the keywords.
         """
-        result: Branch = self.hopf(first, threads=threads)[label].locus(first, second, threads=threads, **keywords)
-        return result
+        return self.hopf(first, threads=threads)[label].locus(
+            first,
+            second,
+            at=at,
+            steps=steps,
+            finer=finer,
+            tolerance=tolerance,
+            intervals=intervals,
+            threads=threads,
+            progress=progress,
+        )
 
     def shimmy(
         self,
@@ -330,10 +369,10 @@ class Wheel:
         steps: int = 500,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> Branch:
+    ) -> WheelBranch:
         """Large stable shimmy with sliding along a parameter, followed through its changes of phases."""
         request = {"along": _interval("along", along), "at": numbers("at", at), "steps": whole("steps", steps)}
-        result: Branch = self._run("shimmy", request, threads, progress)
+        result: WheelBranch = self._run("shimmy", request, threads, progress)
         return result
 
     def simulate(
@@ -343,7 +382,7 @@ class Wheel:
         perturb: Mapping[str, float] | None = None,
         blow: float = 0.0,
         points: int = 1001,
-        contact: str = "rolling",
+        contact: Contact = "rolling",
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Motion:
@@ -356,7 +395,7 @@ class Wheel:
             "perturb": named("perturb", perturb),
             "blow": number("blow", blow),
             "points": whole("points", points),
-            "contact": contact,
+            "contact": word("contact", contact, Contact),
         }
         result: Motion = self._run("simulate", request, threads, progress)
         return result
@@ -368,7 +407,7 @@ class Wheel:
         *,
         samples: int | None = None,
         seed: int = 1,
-        contact: str | None = None,
+        contact: Contact | None = None,
         duration: float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
@@ -379,7 +418,7 @@ class Wheel:
             "y": sampled("y", y),
             "samples": None if samples is None else whole("samples", samples),
             "seed": whole("seed", seed),
-            "contact": contact,
+            "contact": optional_word("contact", contact, Contact),
             "duration": optional("duration", duration),
         }
         result: Basin = self._run("basin", request, threads, progress)
@@ -387,10 +426,10 @@ class Wheel:
 
     def safe_kick(
         self,
-        kind: str = "impulse",
+        kind: Kick = "impulse",
         *,
         largest: float | None = None,
-        contact: str | None = None,
+        contact: Contact | None = None,
         duration: float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
@@ -398,9 +437,9 @@ class Wheel:
         """The smallest disturbance from which the wheel does not return: ``"impulse"`` (N s), ``"release-angle"`` (rad), ``"jolt"``
         (m/s) or ``"step-steer"`` (1/m), in both directions."""
         request = {
-            "kind": kind,
+            "kind": word("kind", kind, Kick),
             "largest": optional("largest", largest),
-            "contact": contact,
+            "contact": optional_word("contact", contact, Contact),
             "duration": optional("duration", duration),
         }
         result: Result = self._run("safe-kick", request, threads, progress)
@@ -410,22 +449,22 @@ class Wheel:
         self,
         along: Sampled | str = ("v", 1.0, 8.0, 15),
         *,
-        kind: str = "impulse",
+        kind: Kick = "impulse",
         largest: float | None = None,
-        contact: str | None = None,
+        contact: Contact | None = None,
         duration: float | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> Branch:
+    ) -> WheelBranch:
         """The safe disturbance along a parameter beside the amplitude of the unstable limit cycle."""
         request = {
             "along": sampled("along", along),
-            "kind": kind,
+            "kind": word("kind", kind, Kick),
             "largest": optional("largest", largest),
-            "contact": contact,
+            "contact": optional_word("contact", contact, Contact),
             "duration": optional("duration", duration),
         }
-        result: Branch = self._run("margin", request, threads, progress)
+        result: WheelBranch = self._run("margin", request, threads, progress)
         return result
 
     def damper(
@@ -592,7 +631,7 @@ class WheelPoint(Point):
         intervals: int = 2000,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> Branch:
+    ) -> WheelBranch:
         """The curve of such points in two parameters: Hopf points, folds, period doublings, torus bifurcations."""
         with self.branch._file() as path:
             request = {
@@ -604,7 +643,7 @@ class WheelPoint(Point):
                 "tolerance": number("tolerance", tolerance),
                 "intervals": whole("intervals", intervals),
             }
-            result: Branch = of(run("kingpin.locus", request, threads=threads, progress=progress))
+            result: WheelBranch = of(run("kingpin.locus", request, threads=threads, progress=progress))
             return result
 
 
@@ -612,6 +651,19 @@ class WheelBranch(Branch):
     """A branch of a wheel."""
 
     _point = WheelPoint
+
+    if TYPE_CHECKING:
+
+        @cached_property
+        def points(self) -> tuple[WheelPoint, ...]: ...  # noqa: D102
+
+        def __iter__(self) -> Iterator[WheelPoint]: ...
+
+        @overload
+        def __getitem__(self, key: str | int) -> WheelPoint: ...
+        @overload
+        def __getitem__(self, key: slice) -> tuple[WheelPoint, ...]: ...
+        def __getitem__(self, key: str | int | slice) -> Any: ...
 
 
 class HopfPoints(WheelBranch):
@@ -652,8 +704,8 @@ class Chart(Result):
         return xarray.Dataset(
             {
                 "growth_rate": (plane, self.growth_rate, {"units": "1/s"}),
-                "stable": (plane, self.stable),
-                "rolls": (plane, self.rolls),
+                "stable": (plane, decided(self.stable)),
+                "rolls": (plane, decided(self.rolls)),
             },
             coords={axis["key"]: (axis["key"], axis["values"], {"units": axis["unit"]}) for axis in (y, x)},
         )
@@ -670,6 +722,14 @@ class Motion(Result):
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         return self.columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Names of its columns."""
+        return iter(self.columns)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it has this column."""
+        return name in self.columns
 
     def plot(self, *names: str, ax: Axes | None = None, **style: Any) -> Axes:
         """Draws columns over the time, by default the caster angle; returns the axes."""

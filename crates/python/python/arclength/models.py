@@ -5,15 +5,18 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 from . import _native
 from ._requests import (
     Along,
+    Direction,
+    Method,
     Progress,
     interval,
     monitors,
@@ -23,8 +26,9 @@ from ._requests import (
     optional,
     run,
     whole,
+    word,
 )
-from .errors import InvalidInput
+from .errors import InvalidInput, NotTraceable
 from .results import Branch, Path, Point, Result, of
 
 if TYPE_CHECKING:
@@ -91,11 +95,22 @@ class Model:
     ) -> None:
         from ._trace import trace
 
+        if isinstance(states, str) or not isinstance(states, (Mapping, Sequence)):
+            allowed = "names, or a mapping from names to initial values"
+            raise InvalidInput(f"states {states!r}: not names; allowed: {allowed}", key="states", value=repr(states), allowed=allowed)
         initial = dict(states) if isinstance(states, Mapping) else dict.fromkeys(states, 0.0)
         if len(initial) != len(states):
-            raise InvalidInput("two states have the same name", key="states", value=repr(list(states)))
+            message = "two states have the same name; allowed: names that differ"
+            raise InvalidInput(message, key="states", value=repr(list(states)), allowed="names that differ")
         values = {key: _finite(key, value) for key, value in (parameters or {}).items()}
-        source = trace(function, {key: _finite(key, value) for key, value in initial.items()}, values)
+        try:
+            source = trace(function, {key: _finite(key, value) for key, value in initial.items()}, values)
+        except InvalidInput as error:
+            told = re.match(r"`([^`]*)`: ", error.message) if error.key is None else None
+            if told is not None:
+                error.key, error.value = "parameters" if told[1] in values else "states", told[1]
+                error.allowed = error.allowed or "other names: letters a to z, digits, underscores, different in more than capital letters"
+            raise
         self._stored = {"name": name or getattr(function, "__name__", "model"), "source": source}
         #: The function from which it was traced, if it was.
         self.function: Callable[[Any, Any], Any] | None = function
@@ -109,6 +124,9 @@ class Model:
         """
         if isinstance(model, str) and ("\n" in model or "=" in model):
             return cls._of_text(name or "model.ode", model)
+        if not isinstance(model, (str, os.PathLike)):
+            allowed = "the text of a model, or the path of its file"
+            raise InvalidInput(f"model {model!r}: not a model; allowed: {allowed}", key="model", value=repr(model), allowed=allowed)
         request = {"source": {"file": os.fspath(model)}}
         native = _native.NativeModel(json.dumps(request))
         return cls._of_text(name or native.name, native.source)
@@ -119,29 +137,29 @@ class Model:
     ) -> Model:
         """A model of SymPy expressions: the derivative of each state (a symbol or its name), and values of the parameters.
 
-        Raises :class:`~arclength.InvalidInput` for a symbol that is neither, and :class:`~arclength.NotTraceable` for a function
-        without a rule (needs sympy).
+        Expressions may be texts: a name in them is that state or parameter where there is one (``E``, ``beta``, ``S``), else what it is
+        for SymPy. Raises :class:`~arclength.InvalidInput` for a symbol that is neither, and :class:`~arclength.NotTraceable` for a
+        function without a rule (needs sympy).
         """
         import sympy
 
-        expressions = [sympy.sympify(expression) for expression in equations.values()]
         names = [str(symbol) for symbol in [*equations, *(parameters or {})]]
-        used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}
-        unknown = sorted(used - set(names))
-        if unknown:
-            raise InvalidInput(
-                f"{unknown[0]}: neither a state nor a parameter; allowed: {', '.join(names)}",
-                key=unknown[0],
-                allowed=", ".join(names),
-            )
-        function = sympy.lambdify(names, expressions, modules="numpy", cse=True)
+        # Whatever they are called, symbols are no words of Python and no functions.
+        variables = {name: sympy.Dummy(f"x{index}") for index, name in enumerate(names)}
+        expressions = [_of_sympy(sympy, expression, variables) for expression in equations.values()]
+        function = sympy.lambdify(list(variables.values()), expressions, modules="numpy", cse=True)
 
         def derivatives(x: Any, p: Any) -> Any:
             return function(*x, *p.values())
 
         states = [str(state) for state in equations]
         values = {str(key): value for key, value in (parameters or {}).items()}
-        return cls(derivatives, states, values, name=name)
+        try:
+            return cls(derivatives, states, values, name=name)
+        except NameError as error:
+            unknown = error.name or str(error)
+            message = f"the function {unknown} of SymPy has no rule; write it by others"
+            raise NotTraceable(message, key=unknown, allowed="elementary functions") from None
 
     @classmethod
     def from_casadi(
@@ -235,9 +253,8 @@ class Model:
         self, state: Any, parameters: Mapping[str, float] | None = None, *, t: float = 0.0
     ) -> np.ndarray[Any, Any]:
         """The right-hand side at a state of shape ``(n,)``, natively; parameters that are not given are as in the model."""
-        import numpy as np
-
         values = self.parameters
+        _ = named("parameters", parameters)
         unknown = [key for key in parameters or {} if key not in values]
         if unknown:
             allowed = ", ".join(values) or "none"
@@ -246,12 +263,8 @@ class Model:
                 key=unknown[0],
                 allowed=allowed,
             )
-        values = {**values, **(parameters or {})}
-        return self._native.evaluate(
-            float(t),
-            np.ascontiguousarray(state, dtype=float),
-            np.array(list(values.values()), dtype=float),
-        )
+        given = {**values, **{key: _finite(f"parameters {key}", value) for key, value in (parameters or {}).items()}}
+        return self._native.evaluate(_finite("t", t), _vector("state", state, len(self.states)), _vector("parameters", list(given.values()), len(given)))
 
     def _at(self, point: Mapping[str, Any]) -> tuple[Model, dict[str, Any]]:
         """The model with keywords for a point of a sweep: values of parameters, and what of the point is none."""
@@ -330,7 +343,16 @@ class Model:
         along: Along,
         *,
         set: Mapping[str, float] | None = None,
-        **keywords: Any,
+        at: float | Iterable[float] = (),
+        stay: bool = False,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
+        steps: int = 10_000,
+        finer: int = 1,
+        tolerance: float = 1e-8,
+        intervals: int = 2000,
+        threads: int | None = None,
+        progress: Progress | None = None,
     ) -> Cycles:
         """Follows limit cycles along a parameter from samples of an orbit over one period, stable or not.
 
@@ -339,7 +361,22 @@ class Model:
         ``branch["HB1"].cycles(...)``.
         """
         with samples_on_disk(samples) as path:
-            return _cycles({"samples": path}, {"text": self._stored}, along, set, **keywords)
+            return _cycles(
+                {"samples": path},
+                {"text": self._stored},
+                along,
+                set,
+                at=at,
+                stay=stay,
+                monitors=monitors,
+                until=until,
+                steps=steps,
+                finer=finer,
+                tolerance=tolerance,
+                intervals=intervals,
+                threads=threads,
+                progress=progress,
+            )
 
     def simulate(
         self,
@@ -349,7 +386,17 @@ class Model:
         start: Mapping[str, float] | None = None,
         named_set: str | None = None,
         freeze: float | None = None,
-        **keywords: Any,
+        points: int | None = None,
+        t0: float | None = None,
+        transient: float | None = None,
+        bound: float | None = None,
+        tolerance: float | None = None,
+        max_step: float | None = None,
+        method: Method = "auto",
+        section: str | None = None,
+        direction: Direction = "both",
+        threads: int | None = None,
+        progress: Progress | None = None,
     ) -> History:
         """Follows the motion from the initial state for a time; what is not given is as the model has it in its lines ``@``.
 
@@ -357,7 +404,42 @@ class Model:
         (``"auto"``, ``"explicit"``, ``"implicit"``), ``section`` (``"x=0"``: samples are at its crossings, those of one ``direction``,
         ``"rising"`` or ``"falling"``, or ``"both"``), ``threads`` and ``progress``. Ctrl-C ends the motion where it is.
         """
-        return _simulate(self._request(set, start, named_set, freeze), duration, **keywords)
+        return _simulate(
+            self._request(set, start, named_set, freeze),
+            duration,
+            points=points,
+            t0=t0,
+            transient=transient,
+            bound=bound,
+            tolerance=tolerance,
+            max_step=max_step,
+            method=method,
+            section=section,
+            direction=direction,
+            threads=threads,
+            progress=progress,
+        )
+
+
+def _of_sympy(sympy: Any, given: Any, variables: Mapping[str, Any]) -> Any:
+    """An expression in these variables."""
+    allowed = f"an expression in {', '.join(variables)}"
+    try:
+        expression = sympy.sympify(given, locals={name: sympy.Symbol(name) for name in variables} if isinstance(given, str) else None)
+    except (sympy.SympifyError, SyntaxError, TypeError, AttributeError) as error:
+        told = str(error).strip().splitlines() or [type(error).__name__]
+        message = f"{given}: SymPy cannot read it ({told[0]}); allowed: {allowed}"
+        raise InvalidInput(message, key="equations", value=str(given), allowed=allowed) from None
+    if not isinstance(expression, sympy.Expr):
+        raise InvalidInput(f"{given}: not an expression of numbers; allowed: {allowed}", key="equations", value=str(given), allowed=allowed)
+    if expression.has(sympy.zoo, sympy.nan, sympy.oo, -sympy.oo):
+        message = f"{given}: not finite; allowed: finite numbers"
+        raise NotTraceable(message, key="equations", value=str(given), allowed="finite numbers")
+    unknown = sorted({str(symbol) for symbol in expression.free_symbols} - set(variables))
+    if unknown:
+        listed = ", ".join(variables)
+        raise InvalidInput(f"{unknown[0]}: neither a state nor a parameter; allowed: {listed}", key=unknown[0], allowed=listed)
+    return expression.xreplace({symbol: variables[str(symbol)] for symbol in expression.free_symbols})
 
 
 def _text_of(model: Path, signs: str) -> str:
@@ -382,14 +464,39 @@ def _finite(key: str, value: Any) -> float:
     return given
 
 
+def _any_number(key: str, value: Any) -> float:
+    """A number, or none: not a number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{key} {value!r}: not a number; allowed: a number", key=key, value=repr(value), allowed="a number") from None
+
+
+def _vector(key: str, values: Any, count: int) -> np.ndarray[Any, Any]:
+    import numpy as np
+
+    allowed = f"{count} numbers, of shape ({count},)"
+    try:
+        vector = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInput(f"{key} {values!r}: not numbers; allowed: {allowed}", key=key, value=repr(values), allowed=allowed) from None
+    if np.shape(values) != (count,):
+        shape = str(np.shape(values))
+        raise InvalidInput(f"{key} of shape {shape}; allowed: {allowed}", key=key, value=shape, allowed=allowed)
+    return vector
+
+
 @contextmanager
 def samples_on_disk(samples: Path | Mapping[str, Any]) -> Iterator[str]:
     """A file of samples, or columns as such a file for as long as they are read."""
     if isinstance(samples, (str, os.PathLike)):
         yield os.fspath(samples)
         return
-    names = list(samples)
-    columns = [list(samples[name]) for name in names]
+    if not (hasattr(samples, "keys") and hasattr(samples, "__getitem__")):
+        allowed = "a .csv file, or columns (a mapping, a DataFrame)"
+        raise InvalidInput(f"samples {samples!r}: not samples; allowed: {allowed}", key="samples", value=repr(samples), allowed=allowed)
+    names = list(samples.keys())
+    columns = [[_any_number(f"samples {name}", value) for value in samples[name]] for name in names]
     if len({len(column) for column in columns}) != 1:
         raise InvalidInput("the columns of the samples differ in length", key="samples", allowed="columns of equal length")
     with tempfile.TemporaryDirectory(prefix="arclength-") as folder:
@@ -397,7 +504,7 @@ def samples_on_disk(samples: Path | Mapping[str, Any]) -> Iterator[str]:
         with open(path, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(names)
-            writer.writerows([repr(float(value)) for value in row] for row in zip(*columns, strict=True))
+            writer.writerows([repr(value) for value in row] for row in zip(*columns, strict=True))
         yield path
 
 
@@ -470,9 +577,9 @@ def _simulate(
     bound: float | None = None,
     tolerance: float | None = None,
     max_step: float | None = None,
-    method: str = "auto",
+    method: Method = "auto",
     section: str | None = None,
-    direction: str = "both",
+    direction: Direction = "both",
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> History:
@@ -485,11 +592,12 @@ def _simulate(
         "bound": optional("bound", bound),
         "tolerance": optional("tolerance", tolerance),
         "max_step": optional("max_step", max_step),
-        "method": method,
+        "method": word("method", method, Method),
     }
+    crossing = word("direction", direction, Direction)
     if section is not None:
         left, equals, right = section.partition("=")
-        request["section"] = {"expression": f"{left}-({right})" if equals else left, "direction": direction}
+        request["section"] = {"expression": f"{left}-({right})" if equals else left, "direction": crossing}
     result: History = of(run("arclength.simulate", request, threads=threads, progress=progress))
     return result
 
@@ -622,7 +730,17 @@ class ModelPoint(Point):
         *,
         set: Mapping[str, float] | None = None,
         start: Mapping[str, float] | None = None,
-        **keywords: Any,
+        points: int | None = None,
+        t0: float | None = None,
+        transient: float | None = None,
+        bound: float | None = None,
+        tolerance: float | None = None,
+        max_step: float | None = None,
+        method: Method = "auto",
+        section: str | None = None,
+        direction: Direction = "both",
+        threads: int | None = None,
+        progress: Progress | None = None,
     ) -> History:
         """Follows the motion that starts here, changed where ``set`` and ``start`` say so, for a time.
 
@@ -631,7 +749,19 @@ class ModelPoint(Point):
         with self.branch._file() as path:
             source = {"point": {"path": path, "label": self._label()}}
             return _simulate(
-                {"source": source, "set": named("set", set), "start": named("start", start)}, duration, **keywords
+                {"source": source, "set": named("set", set), "start": named("start", start)},
+                duration,
+                points=points,
+                t0=t0,
+                transient=transient,
+                bound=bound,
+                tolerance=tolerance,
+                max_step=max_step,
+                method=method,
+                section=section,
+                direction=direction,
+                threads=threads,
+                progress=progress,
             )
 
 
@@ -639,6 +769,19 @@ class ModelBranch(Branch):
     """A branch of a model."""
 
     _point = ModelPoint
+
+    if TYPE_CHECKING:
+
+        @cached_property
+        def points(self) -> tuple[ModelPoint, ...]: ...  # noqa: D102
+
+        def __iter__(self) -> Iterator[ModelPoint]: ...
+
+        @overload
+        def __getitem__(self, key: str | int) -> ModelPoint: ...
+        @overload
+        def __getitem__(self, key: slice) -> tuple[ModelPoint, ...]: ...
+        def __getitem__(self, key: str | int | slice) -> Any: ...
 
     @property
     def of_model(self) -> Model:
@@ -650,6 +793,13 @@ class ModelBranch(Branch):
 class Equilibria(ModelBranch):
     """A branch of equilibria."""
 
+    def _of_model(self) -> dict[int, str]:
+        points = self.document["points"]
+        states = len(points[0]["state"]) if points else 0
+        aux = len({name for point in points for name in point.get("aux") or ()})
+        # After the label, the value of the parameter and the stability.
+        return {**dict.fromkeys(range(3, 3 + states), "state"), **dict.fromkeys(range(3 + states, 3 + states + aux), "aux")}
+
 
 class Cycles(ModelBranch):
     """A branch of limit cycles."""
@@ -658,6 +808,12 @@ class Cycles(ModelBranch):
 class Locus(ModelBranch):
     """A curve of special points in two parameters."""
 
+    def _of_model(self) -> dict[int, str]:
+        points = self.document["points"]
+        states = len(points[0]["state"]) if points and self.schema == "arclength.locus" else 0
+        # After the label both parameters; after frequency and first Lyapunov coefficient the states.
+        return {1: "parameter", 2: "parameter", **dict.fromkeys(range(5, 5 + states), "state")}
+
 
 class History(Result):
     """A motion: ``history["x"]`` is an array of shape ``(samples,)``, ``history["t"]`` the times."""
@@ -665,10 +821,18 @@ class History(Result):
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         return self.columns[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Names of its columns."""
+        return iter(self.columns)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether it has this column."""
+        return name in self.columns
+
     @property
     def end(self) -> ModelPoint:
         """Where it ends: a start for :meth:`ModelPoint.cycles` where it has settled on a cycle, and for :meth:`ModelPoint.simulate`."""
-        state = {name: float(column[-1]) for name, column in self.columns.items() if column.dtype == float}
+        state = {name: float(self.columns[name][-1]) for name in self.document["states"]}
         return ModelPoint({"label": "END", "state": state}, self)  # type: ignore[arg-type]
 
     def _file(self) -> Any:

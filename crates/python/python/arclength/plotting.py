@@ -30,7 +30,8 @@ def _axes(ax: Axes | None) -> Axes:
 def _chosen(branch: Branch, x: str | None, y: str | None) -> tuple[str, list[str]]:
     names = list(branch.columns)
     plane = [name for name in ("value", "value_1", "value_2") if name in names]
-    keys = [entry["key"] for entry in branch.document.get("in", [])]
+    renamed = branch.columns.renamed
+    keys = [renamed.get(entry["key"], entry["key"]) for entry in branch.document.get("in", [])]
     if keys:
         plane = [key for key in keys if key in names] or plane
     across = x or (plane[0] if plane else names[1])

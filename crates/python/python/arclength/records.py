@@ -26,6 +26,12 @@ class Record(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._fields)
 
+    def __eq__(self, other: object) -> bool:
+        return same(self, other) if isinstance(other, Mapping) else NotImplemented
+
+    # Fields may be arrays.
+    __hash__ = None  # type: ignore[assignment]
+
     def __getattr__(self, name: str) -> Any:
         try:
             return object.__getattribute__(self, "_fields")[name]
@@ -45,6 +51,24 @@ class Record(Mapping[str, Any]):
 
     def __reduce__(self) -> tuple[object, ...]:
         return (type(self), (self._fields,))
+
+
+def same(first: Any, second: Any) -> bool:
+    """Whether two values are equal, arrays as a whole; what is not a number is equal to itself."""
+    if isinstance(first, Mapping) and isinstance(second, Mapping):
+        return first.keys() == second.keys() and all(same(value, second[name]) for name, value in first.items())
+    if isinstance(first, (list, tuple)) and isinstance(second, (list, tuple)):
+        return len(first) == len(second) and all(map(same, first, second))
+    if hasattr(first, "dtype") or hasattr(second, "dtype"):
+        import numpy as np
+
+        one, other = np.asarray(first), np.asarray(second)
+        if one.shape != other.shape:
+            return False
+        if one.dtype.kind in "fc" and other.dtype.kind in "fc":
+            return bool(np.array_equal(one, other, equal_nan=True))
+        return all(map(same, one.ravel().tolist(), other.ravel().tolist()))
+    return bool(first == second) or (first != first and second != second)
 
 
 def tidy(value: Any, name: str = "") -> Any:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import csv
 import functools
 import html
+import io
 import json
 import os
-from collections.abc import Iterator, Mapping
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from . import _native
+from ._copied import Copied, state_of, write_parquet, write_whole
 from ._requests import on_disk
 from .errors import InvalidInput, UnknownLabel
-from .records import Record, tidy
+from .records import Record, same, tidy
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,12 +35,49 @@ class Columns(Mapping[str, "np.ndarray[Any, Any]"]):
 
     Numbers are ``float64``, not a number where there is none; counts ``uint64``; words, and yes and no, are objects, ``None`` where
     there is none. ``units`` has the units of the columns that have one.
+
+    Names differ: where a state, an auxiliary quantity or a parameter of a model has the name of another column of the result, it is in
+    ``state_NAME``, ``aux_NAME`` or ``parameter_NAME``.
     """
 
-    def __init__(self, native: NativeResult) -> None:
+    def __init__(self, native: NativeResult, of_model: Callable[[], Mapping[int, str]] = dict) -> None:
         self._native = native
-        self._names = native.column_names()
         self._arrays: dict[str, np.ndarray[Any, Any]] = {}
+        given = native.column_names()
+        #: Names with the places of their columns, and with the names that they had.
+        self._places = {name: place for place, name in enumerate(given)}
+        self._given = dict.fromkeys(given, "")
+        #: Names of what is of the model, where they were changed.
+        self.renamed: dict[str, str] = {}
+        if len(self._places) < len(given):
+            names = self._distinct(given, of_model())
+            self._places = {name: place for place, name in enumerate(names)}
+        self._given = {name: given[place] for name, place in self._places.items()}
+        self._names = list(self._places)
+
+    def _distinct(self, given: list[str], kinds: Mapping[int, str]) -> list[str]:
+        taken = set(given)
+        names = []
+        for place, name in enumerate(given):
+            is_first_of_others = all(other in kinds for other in range(place) if given[other] == name)
+            if given.count(name) > 1 and (place in kinds or not is_first_of_others):
+                kind = kinds.get(place, "result")
+                new = f"{kind}_{name}"
+                while new in taken:
+                    new = f"{kind}_{new}"
+                taken.add(new)
+                if place in kinds:
+                    self.renamed[name] = new
+                name = new
+            names.append(name)
+        return names
+
+    def _column(self, name: str) -> Any:
+        """A column as the native module gives it, which knows the first of a name only."""
+        given, place = self._given[name], self._places[name]
+        if self._native.column_names().index(given) == place:
+            return self._native.column(given)
+        return _read_column(_as_csv(self._native), place)
 
     @property
     def units(self) -> dict[str, str]:
@@ -45,14 +86,18 @@ class Columns(Mapping[str, "np.ndarray[Any, Any]"]):
 
     def __getitem__(self, name: str) -> np.ndarray[Any, Any]:
         if name not in self._arrays:
-            column = self._native.column(name)
-            if column is None:
+            if not isinstance(name, str):
+                raise UnknownLabel(
+                    f"columns have names, not {name!r}; allowed: {', '.join(self._names)}", key="column", value=repr(name)
+                )
+            if name not in self._places:
                 raise UnknownLabel(
                     f"there is no column `{name}`; there are: {', '.join(self._names)}",
                     key="column",
                     value=name,
                     allowed=", ".join(self._names),
                 )
+            column = self._column(name)
             if isinstance(column, list):
                 import numpy as np
 
@@ -68,8 +113,32 @@ class Columns(Mapping[str, "np.ndarray[Any, Any]"]):
     def __len__(self) -> int:
         return len(self._names)
 
+    def __eq__(self, other: object) -> bool:
+        return same(self, other) if isinstance(other, Mapping) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __repr__(self) -> str:
         return f"<columns {', '.join(self._names)}>"
+
+
+def _as_csv(native: NativeResult) -> bytes:
+    with tempfile.TemporaryDirectory(prefix="arclength-") as folder:
+        path = os.path.join(folder, "result.csv")
+        native.write(path)
+        with open(path, "rb") as file:
+            return file.read()
+
+
+def _read_column(text: bytes, place: int) -> Any:
+    """A column of numbers or counts, by its place."""
+    import numpy as np
+
+    _, *rows = csv.reader(io.StringIO(text.decode(), newline=""))
+    cells = [row[place] for row in rows]
+    if cells and all(cell.isdigit() for cell in cells):
+        return np.array(cells, dtype=np.uint64)
+    return np.array([float(cell) if cell else np.nan for cell in cells], dtype=float)
 
 
 class Result:
@@ -77,6 +146,13 @@ class Result:
 
     def __init__(self, native: NativeResult) -> None:
         self._native = native
+        #: What is not in the file: what there was to tell when it was computed.
+        self._warnings = native.warnings
+        self._interrupted = native.interrupted
+
+    def _of_model(self) -> dict[int, str]:
+        """Places of the columns that the model gives their names, with what they are."""
+        return {}
 
     @property
     def schema(self) -> str:
@@ -86,12 +162,12 @@ class Result:
     @property
     def interrupted(self) -> bool:
         """Whether Ctrl-C stopped it before its end."""
-        return self._native.interrupted
+        return self._interrupted
 
     @property
     def warnings(self) -> list[str]:
         """What is worth knowing of it."""
-        return self._native.warnings
+        return list(self._warnings)
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -107,7 +183,7 @@ class Result:
     @cached_property
     def columns(self) -> Columns:
         """Its rows, by columns."""
-        return Columns(self._native)
+        return Columns(self._native, self._of_model)
 
     @property
     def story(self) -> str | None:
@@ -139,12 +215,16 @@ class Result:
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Its columns by Arrow's C interface, for pyarrow, polars, pandas, DuckDB and others."""
+        if self.columns.renamed:
+            return self.to_arrow().__arrow_c_stream__()
         return self._native.stream()
 
     def to_arrow(self) -> Any:
         """Its columns as a ``pyarrow.Table``, with the units in the metadata of the fields (needs pyarrow)."""
         import pyarrow
 
+        if self.columns.renamed:
+            return pyarrow.table(_Stream(self._native)).rename_columns(list(self.columns))
         return pyarrow.table(self)
 
     def to_pandas(self) -> pd.DataFrame:
@@ -163,15 +243,21 @@ class Result:
         """Its columns as a ``polars.DataFrame`` (needs polars)."""
         import polars
 
+        if self.columns.renamed:
+            columns = {name: column.tolist() if column.dtype == object else column for name, column in self.columns.items()}
+            return polars.DataFrame([polars.Series(name, column, nan_to_null=True) for name, column in columns.items()])
         return polars.DataFrame(self)
 
     def to_xarray(self) -> Any:
-        """Its columns as an ``xarray.Dataset`` along ``row``, with ``units`` as attributes (needs xarray)."""
+        """Its columns as an ``xarray.Dataset`` along ``row``, with ``units`` as attributes (needs xarray).
+
+        Yes and no are true and false; where some are undecided they are 1 and 0, and not a number where that is undecided.
+        """
         import xarray
 
         units = self.columns.units
         attributes = {name: {"units": units[name]} if name in units else {} for name in self.columns}
-        return xarray.Dataset({name: ("row", column, attributes[name]) for name, column in self.columns.items()})
+        return xarray.Dataset({name: ("row", decided(column), attributes[name]) for name, column in self.columns.items()})
 
     def save(self, path: Path) -> None:
         """Writes it to a file, whole or not at all: ``.json`` (from which it is loaded again, by the programs too), ``.csv``,
@@ -179,7 +265,21 @@ class Result:
 
         Raises :class:`~arclength.InvalidInput` for another ending or a file that cannot be written.
         """
-        self._native.write(os.fspath(path))
+        place = os.fspath(path)
+        ending = os.path.splitext(place)[1].lower()
+        if self.columns.renamed and ending in (".csv", ".parquet"):
+            if ending == ".parquet":
+                write_parquet(self.to_arrow(), place)
+            else:
+                names = io.StringIO(newline="")
+                csv.writer(names, lineterminator="\n").writerow(self.columns)
+                write_whole(place, names.getvalue().encode() + _as_csv(self._native).partition(b"\n")[2])
+            return
+        try:
+            self._native.write(place)
+        except InvalidInput as error:
+            error.key, error.value = error.key or "path", error.value or os.fspath(path)
+            raise
 
     def to_json(self) -> bytes:
         """The bytes of its ``.json`` file, as the programs write it."""
@@ -199,17 +299,52 @@ class Result:
         return result
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (_from_json, (self.to_json(),))
+        if self.schema in _LOADED:
+            return (_from_json, (self.to_json(), self._warnings, self._interrupted))
+        return (_from_state, (state_of(self._native),))
 
 
-def _from_json(text: bytes) -> Any:
-    import tempfile
+#: Results that are read from their files, so that more can start from them.
+_LOADED = frozenset(
+    "arclength.equilibria arclength.cycles arclength.locus arclength.cycle_locus arclength.simulate"
+    " kingpin.hopf kingpin.cycles kingpin.locus kingpin.cycle_locus".split()
+)
 
+
+class _Stream:
+    """The columns with the names that the native module gives them."""
+
+    def __init__(self, native: NativeResult) -> None:
+        self._native = native
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        return self._native.stream()
+
+
+def decided(column: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Yes and no as such where all are decided, else as numbers; other columns as they are."""
+    import numpy as np
+
+    if column.dtype != object or not {type(entry) for entry in column.ravel().tolist()} <= {bool, type(None)}:
+        return column
+    if all(entry is not None for entry in column.ravel().tolist()):
+        return column.astype(bool)
+    return np.array([np.nan if entry is None else float(entry) for entry in column.ravel().tolist()]).reshape(column.shape)
+
+
+def _from_json(text: bytes, warnings: list[str], interrupted: bool) -> Any:
     with tempfile.TemporaryDirectory(prefix="arclength-") as folder:
         path = os.path.join(folder, "result.json")
         with open(path, "wb") as file:
             file.write(text)
-        return load(path)
+        result = load(path)
+    result._warnings, result._interrupted = warnings, interrupted
+    return result
+
+
+def _from_state(state: dict[str, Any]) -> Any:
+    native: Any = Copied(state)
+    return of(native)
 
 
 class Point(Record):
@@ -272,6 +407,10 @@ class Branch(Result):
     def __iter__(self) -> Iterator[Point]:
         return iter(self.points)
 
+    def __contains__(self, key: object) -> bool:
+        """Whether a point has this label, or is equal to this one."""
+        return key in self.labels if isinstance(key, str) else any(point == key for point in self.points)
+
     @overload
     def __getitem__(self, key: str | int) -> Any: ...
     @overload
@@ -305,7 +444,11 @@ def load(path: Path) -> Any:
     Results of ``equilibria``, ``cycles``, ``locus`` and ``simulate`` of models, of ``hopf``, ``cycles`` and ``locus`` of wheels can be
     loaded. Raises :class:`~arclength.InvalidInput` for any other file.
     """
-    return of(_native.read_result(os.fspath(path)))
+    try:
+        return of(_native.read_result(os.fspath(path)))
+    except InvalidInput as error:
+        error.key, error.value = error.key or "path", error.value or os.fspath(path)
+        raise
 
 
 def of(native: NativeResult) -> Any:

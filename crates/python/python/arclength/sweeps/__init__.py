@@ -8,8 +8,8 @@
 6
 
 The points are divided into chunks of one to five seconds of work. Each chunk is a Parquet file in the folder, whose name is the hash of all
-that it depends on; it is written under another name, forced to the disk and then renamed, so that a file is whole or not there. What is
-there is not computed again: a sweep that was stopped, killed or lost its workers goes on by the same call.
+that it depends on; it is written under another name, forced to the disk and then renamed, so that a file is whole or not there. Its own hash
+is beside it. What is there and undamaged is not computed again: a sweep that was stopped, killed or lost its workers goes on by the same call.
 """
 
 from __future__ import annotations
@@ -83,7 +83,8 @@ def sweep(
     fields: which fields of the answer are columns, by default all that are no lists; ``"fractions.0.share"`` looks into lists and
         records; a mapping says the types, too (``float``, ``int``, ``bool``, ``str``).
     batched: the function takes arrays of shape ``(n,)`` and gives such arrays. ``wheel.stability_at`` is such a function.
-    version: whatever tells the function from what it was before. Its own text is looked at; what it calls is not.
+    version: whatever tells the function from what it was before. Its code, default arguments, what it closes over and the global names in it
+        are looked at, as are the constants; what is installed is not. With a version, values whose content cannot be known are let pass.
     chunk: number of points of a chunk. By default it is chosen at the start for about two seconds, and stands in the folder then.
     client: a ``dask.distributed.Client``, or an executor of :mod:`concurrent.futures`; by default threads of this process.
     shard: ``(i, n)`` or ``"i/n"``: only every n-th chunk, from the i-th, i from 1 to n. :func:`merge` puts them together.
@@ -111,7 +112,7 @@ def merge(folder: str | os.PathLike[str], out: str | os.PathLike[str] | None = N
     Raises :class:`~arclength.ComputationFailed` with the numbers of the chunks that are not there.
     """
     path = Path(folder).absolute()
-    document = storage.read_json(path / storage.PLAN)
+    document = storage.read_plan(path)
     key = storage.digest(storage.canonical(document))
     size, points = document["chunk"], document["points"]
     receipts, missing = [], []
@@ -119,13 +120,14 @@ def merge(folder: str | os.PathLike[str], out: str | os.PathLike[str] | None = N
         stop = min(start + size, points)
         identity = storage.canonical({"sweep": key, "start": start, "stop": stop})
         name = f"{number:08d}-{storage.digest(identity)}.parquet"
-        if storage.is_chunk(path / name, identity, stop - start):
-            receipts.append(storage.receipt(path, name, number, stop - start))
-        else:
+        kept = storage.kept(path, name, identity, number, stop - start)
+        if kept is None:
             missing.append(number)
+        else:
+            receipts.append(kept)
     if missing:
         some = ", ".join(map(str, missing[:10])) + (", .." if len(missing) > 10 else "")
-        raise ComputationFailed(f"{path}: {len(missing)} of {-(-points // size)} chunks are not there: {some}; run their shards again")
+        raise ComputationFailed(f"{path}: {len(missing)} of {-(-points // size)} chunks are not there, or damaged: {some}; run their shards again")
     _publish(path, document, receipts)
     swept = Swept(path)
     if out is not None:
@@ -228,7 +230,7 @@ class Swept:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder).absolute()
-        self._document = storage.read_json(self.folder / storage.PLAN)
+        self._document = storage.read_plan(self.folder)
 
     @property
     def count(self) -> int:
@@ -254,12 +256,10 @@ class Swept:
         return [self.folder / entry["file"] for entry in self.manifest["chunks"]]
 
     def to_arrow(self) -> Any:
-        """All rows as a ``pyarrow.Table``, in the order of the points."""
-        import pyarrow.parquet
+        """All rows as a ``pyarrow.Table``, in the order of the points; each chunk is compared with its hash in the manifest."""
+        import pyarrow
 
-        return pyarrow.concat_tables(
-            pyarrow.parquet.read_table(file).replace_schema_metadata(None) for file in self.files
-        )
+        return pyarrow.concat_tables(storage.read_chunk(self.folder, entry) for entry in self.manifest["chunks"])
 
     def to_pandas(self) -> pd.DataFrame:
         """All rows as a ``pandas.DataFrame``, in the order of the points (needs pandas)."""

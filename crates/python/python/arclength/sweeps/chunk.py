@@ -35,19 +35,16 @@ class Chunk:
         """The name of its file: its number, and the hash of all that it depends on."""
         return f"{self.number:08d}-{storage.digest(self.identity)}.parquet"
 
-    @property
-    def is_there(self) -> bool:
-        """Whether its file is whole."""
-        return storage.is_chunk(self.folder / self.file, self.identity, self.stop - self.start)
-
     def __call__(self, stop: threading.Event | None = None) -> dict[str, Any]:
-        """Computes and writes it, unless it is there, and gives its receipt."""
-        if not self.is_there:
-            points = self.sample.points(self.start, self.stop)
-            columns = self._columns(points, (lambda: False) if stop is None else stop.is_set)
-            table = storage.table(columns, self.kinds, self.identity, self.stop - self.start, points)
-            storage.publish(self.folder, self.file, storage.parquet(table))
-        return storage.receipt(self.folder, self.file, self.number, self.stop - self.start)
+        """Computes and writes it, unless it is there whole and undamaged, and gives its receipt."""
+        rows = self.stop - self.start
+        kept = storage.kept(self.folder, self.file, self.identity, self.number, rows)
+        if kept is not None:
+            return kept
+        points = self.sample.points(self.start, self.stop)
+        columns = self._columns(points, (lambda: False) if stop is None else stop.is_set)
+        table = storage.table(columns, self.kinds, self.identity, rows, points)
+        return storage.keep(self.folder, self.file, storage.parquet(table), self.number, rows)
 
     def _columns(self, points: Mapping[str, Any], stopped: Any) -> Mapping[str, Any]:
         threads = _threads() if self.threads is None else self.threads

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -11,10 +12,11 @@ from .. import _native
 from ..errors import ComputationFailed, InvalidInput
 from . import storage
 from .chunk import Chunk
+from .identity import difference
 from .sample import Sample
 from .task import PROBLEM, WARNINGS, Row, Task, kind_of, kind_of_type
 
-SCHEMA = {"name": "arclength.sweep", "version": 1}
+SCHEMA = {"name": "arclength.sweep", "version": 2}
 #: Seconds of work that a chunk is to be, when its size is chosen.
 _SECONDS = 2.0
 #: Seconds that the choice may take, and the most points of a chunk.
@@ -114,19 +116,20 @@ class Plan:
             else:
                 kinds, seconds = _trial(task, sample, threads)
                 size = chunk or _chosen(seconds, sample.count)
-            text = storage.canonical({**asked, "columns": list(kinds.items()), "chunk": size})
+            content = storage.sealed({**asked, "columns": list(kinds.items()), "chunk": size})
             # Whoever is first says how it is divided; all others go by that.
-            storage.publish(folder, storage.PLAN, text.encode(), once=True)
-        self.document = storage.read_json(path)
-        for name, value in asked.items():
-            if storage.canonical(self.document.get(name)) != storage.canonical(value):
-                raise InvalidInput(
-                    f"{folder}: another sweep is in there ({name} differs); allowed: an empty folder, or the same function, constants and "
-                    "sample",
-                    key="folder",
-                    value=str(folder),
-                    allowed="an empty folder",
-                )
+            storage.publish(folder, storage.PLAN, content, once=True)
+        self.document = storage.read_plan(folder)
+        there = {name: self.document.get(name) for name in asked}
+        differs = difference(there, json.loads(storage.canonical(asked)))
+        if differs:
+            raise InvalidInput(
+                f"{folder}: another sweep is in there ({differs} differs); allowed: an empty folder, or the same function with all that it "
+                "depends on, constants and sample",
+                key="folder",
+                value=str(folder),
+                allowed="an empty folder",
+            )
         if chunk is not None and chunk != self.document["chunk"]:
             raise InvalidInput(
                 f"chunk {chunk}: the sweep in {folder} was begun with chunks of {self.document['chunk']} points; allowed: "
@@ -136,6 +139,15 @@ class Plan:
                 allowed=str(self.document["chunk"]),
             )
         self.kinds: dict[str, str] = dict(self.document["columns"])
+        for name, kind in _declared(task).items():
+            if self.kinds.get(name) != kind:
+                told = self.kinds.get(name, "nothing")
+                raise InvalidInput(
+                    f"field {name} of {kind}: the sweep in {folder} was begun with {told}; allowed: the same types, or an empty folder",
+                    key="fields",
+                    value=name,
+                    allowed=told,
+                )
         self.size: int = self.document["chunk"]
         self.count = -(-sample.count // self.size)
         self.key = storage.digest(storage.canonical(self.document))

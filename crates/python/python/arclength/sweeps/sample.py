@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InvalidInput
+from .identity import of_value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -42,12 +42,8 @@ class Sample:
         return f"<{self.count} points of {', '.join(self.names)}>"
 
 
-def _digest(values: np.ndarray[Any, Any]) -> str:
-    if values.dtype == object:
-        content = "\0".join(map(repr, values)).encode()
-    else:
-        content = values.astype(values.dtype.newbyteorder("<")).tobytes()
-    return hashlib.sha256(content).hexdigest()
+def _digest(name: str, values: np.ndarray[Any, Any]) -> str:
+    return of_value(f"sample {name}", values, lenient=False)
 
 
 class Grid(Sample):
@@ -68,7 +64,7 @@ class Grid(Sample):
         return {name: axis[index] for (name, axis), index in zip(self.axes.items(), indices, strict=True)}
 
     def description(self) -> dict[str, Any]:
-        axes = [{"name": name, "count": len(axis), "sha256": _digest(axis)} for name, axis in self.axes.items()]
+        axes = [{"name": name, "count": len(axis), "values": _digest(name, axis)} for name, axis in self.axes.items()]
         return {"kind": "grid", "axes": axes}
 
 
@@ -135,7 +131,7 @@ class Listed(Sample):
         return Listed(self.points(start, stop), first=start)
 
     def description(self) -> dict[str, Any]:
-        columns = [{"name": name, "sha256": _digest(values)} for name, values in self.columns.items()]
+        columns = [{"name": name, "values": _digest(name, values)} for name, values in self.columns.items()]
         return {"kind": "table", "count": self.count, "columns": columns}
 
 

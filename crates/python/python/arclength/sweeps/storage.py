@@ -120,16 +120,67 @@ def table(
     return pyarrow.table(arrays, names=names).replace_schema_metadata({CHUNK: identity})
 
 
-def is_chunk(path: Path, identity: str, rows: int) -> bool:
-    """Whether a file is whole, and is what its name says."""
+def kept(folder: Path, name: str, identity: str, chunk: int, rows: int) -> dict[str, Any] | None:
+    """The receipt of a chunk whose file is there and is, byte for byte, what was written; else nothing."""
     import pyarrow
     import pyarrow.parquet
 
     try:
-        metadata = pyarrow.parquet.read_metadata(path)
-    except (FileNotFoundError, pyarrow.ArrowException):
-        return False
-    return metadata.num_rows == rows and (metadata.metadata or {}).get(CHUNK) == identity.encode()
+        content = (folder / name).read_bytes()
+        written = (folder / _hash_name(name)).read_bytes()
+    except FileNotFoundError:
+        return None
+    found = receipt(name, content, chunk, rows)
+    if written != _hash_line(found):
+        return None
+    try:
+        metadata = pyarrow.parquet.read_metadata(pyarrow.BufferReader(content))
+    except (pyarrow.ArrowException, OSError):
+        return None
+    return found if metadata.num_rows == rows and (metadata.metadata or {}).get(CHUNK) == identity.encode() else None
+
+
+def keep(folder: Path, name: str, content: bytes, chunk: int, rows: int) -> dict[str, Any]:
+    """Writes a chunk, beside it first its hash, and gives its receipt. Whatever is on the disk, the receipt is of what was computed."""
+    told = receipt(name, content, chunk, rows)
+    publish(folder, _hash_name(name), _hash_line(told))
+    publish(folder, name, content)
+    return told
+
+
+def _hash_name(name: str) -> str:
+    return f"{name.removesuffix('.parquet')}.sha256"
+
+
+def _hash_line(told: Mapping[str, Any]) -> bytes:
+    # As `sha256sum --check` reads it.
+    return f"{told['sha256']}  {told['file']}\n".encode()
+
+
+def receipt(name: str, content: bytes, chunk: int, rows: int) -> dict[str, Any]:
+    """What is told of a chunk with this content."""
+    return {"chunk": chunk, "file": name, "rows": rows, "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+
+
+def sealed(document: Mapping[str, Any]) -> bytes:
+    """A plan as the content of its file, with its own hash in it."""
+    return canonical({**document, "sha256": hashlib.sha256(canonical(document).encode()).hexdigest()}).encode()
+
+
+def read_plan(folder: Path) -> dict[str, Any]:
+    """The plan in a folder."""
+    path = folder / PLAN
+    document: Any = read_json(path)
+    if isinstance(document, dict):
+        told = document.pop("sha256", None)
+        if told is None or told == hashlib.sha256(canonical(document).encode()).hexdigest():
+            return document
+    raise InvalidInput(
+        f"{path}: it is not what was written; allowed: another folder, where the sweep is computed anew",
+        key="folder",
+        value=str(folder),
+        allowed="another folder",
+    )
 
 
 def read_json(path: Path) -> Any:
@@ -144,10 +195,16 @@ def read_json(path: Path) -> Any:
         raise InvalidInput(f"{path}: not JSON: {error}", key="folder", value=str(path)) from None
 
 
-def receipt(folder: Path, name: str, chunk: int, rows: int) -> dict[str, Any]:
-    """What is told of a chunk that is there."""
-    content = (folder / name).read_bytes()
-    return {"chunk": chunk, "file": name, "rows": rows, "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest()}
+def read_chunk(folder: Path, entry: Mapping[str, Any]) -> pyarrow.Table:
+    """The rows of a chunk in the manifest; refused where the file is not what was written."""
+    import pyarrow.parquet
+
+    path = folder / entry["file"]
+    content = path.read_bytes() if path.exists() else b""
+    if hashlib.sha256(content).hexdigest() != entry["sha256"]:
+        raise ComputationFailed(f"{path}: it is not what the manifest says; the same sweep computes it again")
+    table: pyarrow.Table = pyarrow.parquet.read_table(pyarrow.BufferReader(content)).replace_schema_metadata(None)
+    return table
 
 
 def write_merged(folder: Path, files: Sequence[Mapping[str, Any]], out: Path) -> None:
@@ -158,10 +215,7 @@ def write_merged(folder: Path, files: Sequence[Mapping[str, Any]], out: Path) ->
     writer = None
     try:
         for entry in files:
-            content = (folder / entry["file"]).read_bytes()
-            if hashlib.sha256(content).hexdigest() != entry["sha256"]:
-                raise ComputationFailed(f"{folder / entry['file']}: it is not what the manifest says; delete it and go on with the sweep")
-            chunk = pyarrow.parquet.read_table(pyarrow.BufferReader(content)).replace_schema_metadata(None)
+            chunk = read_chunk(folder, entry)
             if writer is None:
                 writer = pyarrow.parquet.ParquetWriter(temporary, chunk.schema, compression="zstd")
             writer.write_table(chunk, row_group_size=max(chunk.num_rows, 1))

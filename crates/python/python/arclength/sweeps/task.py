@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import functools
-import hashlib
 import inspect
 import json
-import textwrap
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .._requests import as_column_of_warnings
 from ..errors import ArclengthError, ComputationFailed, Interrupted, InvalidInput
 from ..results import Result
+from . import identity
 
 #: Types that a column may have, by the name that a manifest has for them.
 TYPES: dict[str, type] = {"number": float, "whole number": int, "yes or no": bool, "word": str}
@@ -49,10 +49,18 @@ class Task:
         function = self.function
         analysis = _analysis(function)
         if analysis is not None:
-            code = {"name": analysis[1], "of": analysis[0]._identity()}
+            subject, name = analysis
+            code = {"name": name, "of": subject._identity()}
+            if not type(subject).__module__.startswith(f"{__name__.partition('.')[0]}."):
+                code["class"] = identity.of_value("class", type(subject), lenient=bool(self.version))
         else:
-            code = {"name": getattr(function, "__qualname__", type(function).__name__), "source": _source(function, self.version)}
-        constants = {name: repr(value) for name, value in sorted(self.constants.items())}
+            code = {
+                "name": getattr(function, "__qualname__", type(function).__name__),
+                "python": ".".join(map(str, sys.version_info[:2])),
+                **identity.of_function(function, lenient=bool(self.version)),
+            }
+        lenient = bool(self.version)
+        constants = {name: identity.of_value(f"constants {name}", value, lenient=lenient) for name, value in sorted(self.constants.items())}
         return {**code, "version": self.version, "constants": constants, "fields": self.fields, "batched": self.batched}
 
     def call(self, point: Mapping[str, Any], stopped: Callable[[], bool], threads: int | None) -> Any:
@@ -73,6 +81,7 @@ class Task:
         both = {**keywords, **self.constants}
         if "set" in keywords:
             both["set"] = {**(self.constants.get("set") or {}), **keywords["set"]}
+        _check_keywords(subject, name, method, both)
         return method(**both)
 
     def row(self, point: Mapping[str, Any], stopped: Callable[[], bool], threads: int | None) -> Row:
@@ -124,6 +133,19 @@ def _check(stopped: Callable[[], bool], *_: object) -> None:
         raise Stopped
 
 
+def _check_keywords(subject: Any, name: str, method: Callable[..., Any], keywords: Mapping[str, Any]) -> None:
+    accepted = [one for one in inspect.signature(method).parameters.values() if one.kind is not one.VAR_KEYWORD]
+    known = [one.name for one in accepted]
+    allowed = ", ".join([*subject.parameters, *known])
+    for key in keywords:
+        if key not in known:
+            raise InvalidInput(f"{key}: neither a parameter nor a keyword of {name}; allowed: {allowed}", key=key, allowed=allowed)
+    for one in accepted:
+        if one.default is one.empty and one.name not in keywords:
+            message = f"{one.name}: {name} needs it; allowed: {one.name} in the sample or in constants="
+            raise InvalidInput(message, key=one.name, allowed=f"{one.name} in the sample or in constants=")
+
+
 def _analysis(function: Callable[..., Any]) -> tuple[Any, str] | None:
     """The wheel or the model, and the name of the analysis, if the function is a method of one."""
     subject = getattr(function, "__self__", None)
@@ -137,21 +159,6 @@ def _analysis(function: Callable[..., Any]) -> tuple[Any, str] | None:
             allowed="a function, or an analysis of a Wheel or a Model",
         )
     return subject, function.__name__
-
-
-def _source(function: Callable[..., Any], version: str) -> str:
-    try:
-        text = textwrap.dedent(inspect.getsource(function))
-    except (OSError, TypeError):
-        if version:
-            return ""
-        raise InvalidInput(
-            "the text of the function is not to be had, so that its results cannot be told from those of another; allowed: a function "
-            'of a file, or version="..." of your own',
-            key="version",
-            allowed='version="..."',
-        ) from None
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _fields(document: Mapping[str, Any], fields: list[str] | None) -> Row:
