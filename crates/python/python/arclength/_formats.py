@@ -79,7 +79,7 @@ def _casadi_rules(casadi: Any) -> dict[int, Callable[..., Any]]:
         "FMIN": np.minimum,
         "FMAX": np.maximum,
         "LOG1P": lambda a: np.log(1.0 + a),
-        "EXPM1": lambda a: np.exp(a) - 1.0,
+        "EXPM1": np.expm1,
         "HYPOT": lambda a, b: np.sqrt(a * a + b * b),
     }
     same = {"EXP": "exp", "LOG": "log", "SQRT": "sqrt", "FLOOR": "floor", "CEIL": "ceil", "SIGN": "sign"}

@@ -24,7 +24,7 @@ from ._requests import (
     run,
     whole,
 )
-from .errors import InvalidInput
+from .errors import InvalidInput, NotTraceable
 from .results import Branch, Path, Point, Result, of
 
 if TYPE_CHECKING:
@@ -35,16 +35,16 @@ Monitors = Mapping[str, float | Iterable[float]] | Iterable[str]
 
 
 class Parameters(Mapping[str, Any]):
-    """Values of parameters as a traced function gets them: ``p["mu"]``, ``p.mu``, ``p[0]``, and ``a, b = p.values()``."""
+    """Values of parameters as a traced function gets them: ``p["mu"]``, ``p.mu``, ``p[0]``, ``p[0:2]``, and ``a, b = p.values()``."""
 
     __slots__ = ("_values",)
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         object.__setattr__(self, "_values", dict(values))
 
-    def __getitem__(self, name: str | int) -> Any:
+    def __getitem__(self, name: str | int | slice) -> Any:
         values: dict[str, Any] = self._values
-        if isinstance(name, int):
+        if isinstance(name, (int, slice)):
             return list(values.values())[name]
         return values[name]
 
@@ -90,15 +90,24 @@ class Model:
         name: str | None = None,
     ) -> None:
         from ._trace import trace
+        from ._trace.checking import check
 
         initial = dict(states) if isinstance(states, Mapping) else dict.fromkeys(states, 0.0)
         if len(initial) != len(states):
             raise InvalidInput("two states have the same name", key="states", value=repr(list(states)))
+        if not isinstance(parameters or {}, Mapping):
+            raise InvalidInput(
+                "parameters: not a mapping; allowed: names with their values, {\"a\": 1.0}",
+                key="parameters",
+                value=repr(parameters),
+                allowed="names with values",
+            )
         values = {key: _finite(key, value) for key, value in (parameters or {}).items()}
         source = trace(function, {key: _finite(key, value) for key, value in initial.items()}, values)
         self._stored = {"name": name or getattr(function, "__name__", "model"), "source": source}
         #: The function from which it was traced, if it was.
         self.function: Callable[[Any, Any], Any] | None = function
+        check(function, self, initial, values)
 
     @classmethod
     def from_ode(cls, model: Path, *, name: str | None = None) -> Model:
@@ -124,9 +133,17 @@ class Model:
         """
         import sympy
 
-        expressions = [sympy.sympify(expression) for expression in equations.values()]
         names = [str(symbol) for symbol in [*equations, *(parameters or {})]]
-        used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}
+        # In texts, names are those that were given, also E, S, N and beta, which mean something in SymPy.
+        given = {name: sympy.Symbol(name) for name in names}
+        try:
+            expressions = [
+                sympy.sympify(expression, locals=given if isinstance(expression, str) else None)
+                for expression in equations.values()
+            ]
+            used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}
+        except (sympy.SympifyError, AttributeError, TypeError, SyntaxError) as error:
+            raise InvalidInput(f"SymPy cannot read the equations: {error}", key="equations") from error
         unknown = sorted(used - set(names))
         if unknown:
             raise InvalidInput(
@@ -134,7 +151,19 @@ class Model:
                 key=unknown[0],
                 allowed=", ".join(names),
             )
-        function = sympy.lambdify(names, expressions, modules="numpy", cse=True)
+        try:
+            function = sympy.lambdify(
+                [sympy.Symbol(name) for name in names],
+                [
+                    expression.subs({symbol: sympy.Symbol(str(symbol)) for symbol in expression.free_symbols})
+                    for expression in expressions
+                ],
+                modules="numpy",
+                cse=True,
+                dummify=True,
+            )
+        except Exception as error:
+            raise NotTraceable(f"SymPy cannot write the equations as a function: {error}", key="equations") from error
 
         def derivatives(x: Any, p: Any) -> Any:
             return function(*x, *p.values())
