@@ -89,14 +89,6 @@ class SymbolArray(np.ndarray):
     def __reduce__(self) -> Any:
         raise refusal("an array that is pickled", "values must not leave the function")
 
-    @property
-    def real(self) -> Any:
-        return self
-
-    @property
-    def imag(self) -> Any:
-        return wrapped(np.zeros(self.shape, dtype=self.kind))
-
     def astype(self, dtype: Any, *_: Any, **__: Any) -> Any:
         return cast(self, np.dtype(dtype))
 
@@ -136,6 +128,8 @@ def _refused(name: str) -> Callable[..., Any]:
     return method
 
 
+SymbolArray.real = property(lambda self: self)  # type: ignore[assignment]
+SymbolArray.imag = property(lambda self: wrapped(np.zeros(self.shape, dtype=self.kind)))  # type: ignore[assignment]
 for _name in "sum prod mean std var max min any all cumsum cumprod dot clip trace argmax argmin argsort nonzero round searchsorted".split():
     setattr(SymbolArray, _name, _method(_name))
 for _name in "choose compress conj conjugate argpartition take ptp".split():
@@ -253,7 +247,7 @@ def shadow(value: Any) -> Any:
     if type(value) is Symbol:
         return value.type(1)
     if isinstance(value, np.ndarray) and (type(value) is SymbolArray or value.dtype == object):
-        if has_symbols(value):
+        if type(value) is not SymbolArray or has_symbols(value):
             return np.ones(value.shape, dtype=getattr(value, "kind", FLOAT))
         return realized(value)
     if type(value) in (list, tuple):
@@ -266,7 +260,8 @@ def known_kind(dtype: np.dtype[Any]) -> np.dtype[Any]:
     kind = known_type(dtype.type)
     if kind is None:
         raise refusal(f"an array of type {dtype}", "values are real numbers")
-    return np.dtype(kind)
+    found: np.dtype[Any] = np.dtype(kind)
+    return found
 
 
 def kind_of(value: Any) -> np.dtype[Any]:

@@ -314,12 +314,13 @@ def _solve(a: Any, b: Any) -> Any:
         raise refusal("several linear systems at once", "solve one after the other in a loop")
     if not has_symbols(a) and len(np.shape(a)) == 2 and np.shape(a)[0] == np.shape(a)[1]:
         return np.matmul(np.linalg.inv(np.asarray(realized(a), dtype=float)), to_array(b))
-    rows, solution, _ = _triangle(a, objects(to_array(b), FLOAT).copy() if has_symbols(b) else np.array(realized(b), dtype=float).astype(object))
+    right = array(b, dtype=float)
+    rows, solution, _ = _triangle(a, wrapped(objects(right, FLOAT)))
     for row in reversed(range(len(rows))):
         for column in range(row + 1, len(rows)):
             solution[row] = solution[row] - rows[row][column] * solution[column]
         solution[row] = solution[row] / rows[row][row]
-    return result(solution, known_kind(sample.dtype))
+    return result(plain(solution), known_kind(sample.dtype))
 
 
 def _inverse(a: Any) -> Any:
@@ -329,7 +330,7 @@ def _inverse(a: Any) -> Any:
 def _determinant(a: Any) -> Any:
     if np.ndim(shadow(a)) != 2:
         raise refusal("several determinants at once", "compute one after the other in a loop")
-    rows, _, sign = _triangle(a, np.zeros(np.shape(shadow(a))[0], dtype=object))
+    rows, _, sign = _triangle(a, wrapped(np.zeros(np.shape(shadow(a))[0])))
     product = rows[0][0]
     for index in range(1, len(rows)):
         product = product * rows[index][index]

@@ -208,6 +208,8 @@ class Rebinding:
         """What a name is bound to."""
         if id(value) in self.done:
             return self.done[id(value)][1]
+        if type(value) in (Module, Function, Joining, Generator):
+            return value
         if value is float or value is np.float64:
             return Float if value is float else Float64
         if isinstance(value, types.ModuleType):
@@ -251,7 +253,7 @@ class Rebinding:
         if isinstance(value, types.FunctionType):
             if hasattr(value, "dispatch") and hasattr(value, "registry"):
                 # functools.singledispatch
-                return lambda *given, **keywords: self.value(value.dispatch(given[0].__class__))(*given, **keywords)  # type: ignore[attr-defined]
+                return lambda *given, **keywords: self.value(value.dispatch(given[0].__class__))(*given, **keywords)
             return _foreign(value) if _is_foreign(_module_of(value)) else self._function(value)
         if callable(value) and not isinstance(value, type) and _is_foreign(getattr(value, "__module__", None) or type(value).__module__):
             return _foreign(value)
@@ -295,7 +297,9 @@ class Rebinding:
             self.globals[key] = {**value.__globals__, "__builtins__": self.builtins}
             self.rebound[key] = set()
         names, rebound = self.globals[key], self.rebound[key]
-        for name in _names_in(value.__code__) - rebound:
+        for name in sorted(_names_in(value.__code__)):
+            if name in rebound:
+                continue
             rebound.add(name)
             if name in names and name != "__builtins__":
                 names[name] = self.value(names[name])
@@ -325,7 +329,8 @@ class Rebinding:
             if isinstance(method, types.FunctionType) and name.startswith("__") and name not in ("__new__", "__init__", "__del__", "__getattribute__")
         }
         try:
-            made: Any = type(kind)(kind.__name__, (kind,), {"__module__": kind.__module__, "__qualname__": kind.__qualname__})
+            metaclass: Any = type(kind)
+            made: Any = metaclass(kind.__name__, (kind,), {"__module__": kind.__module__, "__qualname__": kind.__qualname__})
             again = object.__new__(made)
         except TypeError:
             return value

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .values import REMAINDER, NotTraceable, Symbol, node, refusal, typed
+from ..errors import NotTraceable
+from .values import REMAINDER, Symbol, node, refusal, typed
 
 
 def _rule(name: str) -> Callable[..., Any]:
