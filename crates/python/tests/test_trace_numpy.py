@@ -66,6 +66,14 @@ def masked(x, p):
     return y + square[1]
 
 
+def from_constants(x, p):
+    first, second, third = MATRIX.copy(), np.full(3, -1) + 0.0, MATRIX.prod(axis=0)
+    first[0] = x
+    second[x > 0] = p.a
+    third[2] = x[1]
+    return first @ second + third
+
+
 @pytest.mark.parametrize(
     "function",
     [
@@ -114,6 +122,8 @@ def masked(x, p):
         lambda x, p: np.linalg.inv(np.array([[2.0, 0, 0], [0, 1, 0], [0, 0, 1]])) @ x + np.linalg.solve(np.eye(3) * 2, x),
         lambda x, p: x * np.log1p(np.array([1.0, 2, 3])) + np.median(np.array([3.0, 1.0])) + np.linspace(0, 1, 3).argmax(),
         lambda x, p: x * np.array([1.5, 2.5, 3.5]).astype(int) + np.sort(np.array([2.0, 1.0, 3.0])) + MATRIX[np.array([0, 1, 0]), 1],
+        from_constants,
+        lambda x, p: MATRIX.mean(axis=0).clip(0.5) * x + MATRIX.dot(x) + MATRIX.T[1:, 0].sum(),
         lambda x, p: np.r_[x[0], x[1:]] + np.array([[v, 1.0] for v in x])[:, 0] + np.vectorize(lambda v: v * v)(x),
     ],
 )
@@ -136,8 +146,9 @@ def whole(x, p):
 @pytest.mark.parametrize(
     ("function", "remedy"),
     [
-        (whole, "with a point"),
-        (lambda x, p: np.full(3, 0).__setitem__(0, x[0]), "with a point"),
+        (whole, r"np\.array\(\[0\.0"),
+        (lambda x, p: np.full(3, 0).__setitem__(0, x[0]), r"np\.array\(\[0\.0"),
+        (lambda x, p: MATRIX.__setitem__(0, x), "outside of the function"),
         (lambda x, p: np.zeros(3, dtype=np.float32) * p.a + x.astype(np.float32), "double precision"),
         (lambda x, p: np.exp(x > 0), r"1\.0\*condition"),
         (lambda x, p: [np.linalg.norm(np.outer(x, x), 2), 0, 0], r"np\.sum"),

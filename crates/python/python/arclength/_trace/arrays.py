@@ -109,13 +109,41 @@ class SymbolArray(np.ndarray):
         self[...] = np.sort(realized(self), *arguments, **keywords)
 
 
+class NumberArray(np.ndarray):
+    """An array of numbers: one of the function's constants, or of whole numbers. What is computed from it takes symbols."""
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **keywords: Any) -> Any:
+        return call_ufunc(ufunc, method, inputs, keywords)
+
+    def __array_function__(self, function: Any, types: Any, arguments: Any, keywords: Any) -> Any:
+        from .functions import call_function
+
+        return call_function(function, arguments, keywords)
+
+    def __getitem__(self, key: Any) -> Any:
+        if has_symbols(key):
+            raise refusal("entries that are chosen by values", "write np.where(condition, a, b); indices must not depend on values")
+        return super().__getitem__(realized(key))
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if has_symbols(value) or has_symbols(key):
+            kind = "whole numbers or truth values" if self.dtype.kind != "f" else "numbers that was made outside of the function"
+            raise refusal(f"a value put into an array of {kind}", FIXED)
+        super().__setitem__(realized(key), realized(value))
+
+    def astype(self, dtype: Any, *_: Any, **__: Any) -> Any:
+        return wrapped(self.view(np.ndarray).astype(dtype))
+
+
 def _method(name: str) -> Callable[..., Any]:
     def method(self: Any, *arguments: Any, **keywords: Any) -> Any:
+        from .functions import call_function, constant_call
+
+        if not any(map(has_symbols, (self, *arguments, *keywords.values()))):
+            return constant_call(getattr(np.ndarray, name), (self, *arguments), keywords)
         function = getattr(np, name)
         if isinstance(function, np.ufunc):
             return call_ufunc(function, "__call__", (self, *arguments), keywords)
-        from .functions import call_function
-
         return call_function(function, (self, *arguments), keywords)
 
     return method
@@ -130,10 +158,11 @@ def _refused(name: str) -> Callable[..., Any]:
 
 SymbolArray.real = property(lambda self: self)  # type: ignore[assignment]
 SymbolArray.imag = property(lambda self: wrapped(np.zeros(self.shape, dtype=self.kind)))  # type: ignore[assignment]
-for _name in "sum prod mean std var max min any all cumsum cumprod dot clip trace argmax argmin argsort nonzero round searchsorted".split():
+_METHODS = "sum prod mean std var max min any all cumsum cumprod dot clip trace argmax argmin argsort nonzero round searchsorted".split()
+for _name in [*_METHODS, "choose", "compress", "conj", "conjugate", "argpartition", "take"]:
     setattr(SymbolArray, _name, _method(_name))
-for _name in "choose compress conj conjugate argpartition take ptp".split():
-    setattr(SymbolArray, _name, _method(_name))
+    setattr(NumberArray, _name, _method(_name))
+NumberArray.copy = _method("copy")  # type: ignore[method-assign]
 for _name in "tobytes tofile dump dumps byteswap getfield setfield resize partition put itemset newbyteorder tostring to_device".split():
     setattr(SymbolArray, _name, _refused(_name))
 
@@ -173,8 +202,10 @@ def python(value: Any, kind: np.dtype[Any]) -> Any:
 def wrapped(value: Any, kind: np.dtype[Any] | None = None) -> Any:
     """A result of NumPy: arrays of floating numbers become such that symbols can be put into."""
     if isinstance(value, np.ndarray):
-        if type(value) is SymbolArray or (kind is None and value.dtype != FLOAT and value.dtype != object):
+        if type(value) is SymbolArray:
             return value
+        if kind is None and value.dtype != FLOAT and value.dtype != object:
+            return value.view(NumberArray)
         if kind is None and value.dtype == object and not has_symbols(value):
             return value
         array = value.astype(object).view(SymbolArray) if value.dtype != object else value.view(SymbolArray)
@@ -211,7 +242,7 @@ def plain(value: Any) -> Any:
         box = np.empty((), dtype=object)
         box[()] = value
         return box
-    return value.view(np.ndarray) if type(value) is SymbolArray else value
+    return value.view(np.ndarray) if type(value) in (SymbolArray, NumberArray) else value
 
 
 def to_array(value: Any) -> Any:
@@ -237,6 +268,8 @@ def realized(value: Any) -> Any:
     """Arrays without symbols as those of NumPy."""
     if type(value) is SymbolArray and not has_symbols(value):
         return value.view(np.ndarray).astype(value.kind)
+    if type(value) is NumberArray:
+        return value.view(np.ndarray)
     if type(value) in (list, tuple):
         return type(value)(realized(item) for item in value)
     return value
@@ -250,6 +283,8 @@ def shadow(value: Any) -> Any:
         if type(value) is not SymbolArray or has_symbols(value):
             return np.ones(value.shape, dtype=getattr(value, "kind", FLOAT))
         return realized(value)
+    if type(value) is NumberArray:
+        return value.view(np.ndarray)
     if type(value) in (list, tuple):
         return type(value)(shadow(item) for item in value)
     return value

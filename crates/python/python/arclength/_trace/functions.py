@@ -10,6 +10,7 @@ import numpy as np
 from .arrays import (
     FIXED,
     FLOAT,
+    NumberArray,
     SymbolArray,
     call_ufunc,
     cast,
@@ -103,6 +104,8 @@ def constant_call(function: Any, arguments: Any, keywords: Any) -> Any:
             array = realized(value)
             changed.append((value, array, array.copy()))
             return array
+        if type(value) is NumberArray:
+            return value.view(np.ndarray)
         return type(value)(map(real, value)) if type(value) in (list, tuple) else value
 
     if getattr(function, "__name__", "") in MOVES and any(type(value) is SymbolArray for value in arguments):

@@ -227,7 +227,9 @@ class Rebinding:
             if module.partition(".")[0] == "numpy" and hasattr(value, "__name__"):
                 return of_numpy(value.__name__, value)
         if isinstance(value, np.ndarray):
-            return arrays.wrapped(value) if value.dtype == object else value
+            if type(value) is np.ndarray and value.dtype.kind in "fiub":
+                return value.view(arrays.NumberArray)
+            return arrays.wrapped(value)
         return self.callable(value)
 
     def callable(self, value: Any) -> Any:
