@@ -148,7 +148,7 @@ def whole(x, p):
     [
         (whole, r"np\.array\(\[0\.0"),
         (lambda x, p: np.full(3, 0).__setitem__(0, x[0]), r"np\.array\(\[0\.0"),
-        (lambda x, p: MATRIX.__setitem__(0, x), "outside of the function"),
+        (lambda x, p: MATRIX.__setitem__(0, x), "not made in this function"),
         (lambda x, p: np.zeros(3, dtype=np.float32) * p.a + x.astype(np.float32), "double precision"),
         (lambda x, p: np.exp(x > 0), r"1\.0\*condition"),
         (lambda x, p: [np.linalg.norm(np.outer(x, x), 2), 0, 0], r"np\.sum"),

@@ -85,7 +85,23 @@ class Rates:
         return [math.exp(-v * v) for v in value]
 
 
+class Steeper(Rates):
+    @property
+    def buffer(self):
+        return np.zeros(2)
+
+    @staticmethod
+    def power(value):
+        return np.array([v**3 for v in value])
+
+    def rate(self, value):
+        filled = self.buffer
+        filled[0] = value[1]
+        return super().rate(value) + filled * self.power(value)
+
+
 RATES = Rates(1.5)
+STEEPER = Steeper(0.5)
 MODULE = types.ModuleType("of_the_user")
 exec("import numpy as np, math\ndef rate(x):\n    y = np.zeros(2)\n    y[0] = math.sin(x[0])\n    return y\n", MODULE.__dict__)
 
@@ -118,7 +134,9 @@ def imported(x, p):
         lambda x, p: TABLE["square"](x) + TABLE["list"][0](x[0]),
         lambda x, p: RATES.rate(x),
         lambda x, p: MODULE.rate(x) + p.a,
-        RATES.__class__(0.5, np.arctan).rate and functools.partial(lambda rates, x, p: rates.rate(x), RATES),
+        functools.partial(lambda rates, x, p: rates.rate(x), Rates(0.5, np.arctan)),
+        lambda x, p: STEEPER.rate(x),
+        lambda x, p: np.poly1d([1, 2])(x) + np.polynomial.Polynomial([1, 2, 3])(x),
         default,
         imported,
     ],

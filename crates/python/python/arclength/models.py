@@ -73,8 +73,9 @@ class Model:
 
     ``function(x, p)`` is ordinary Python with NumPy or :mod:`math`: ``x`` is an array of shape ``(len(states),)``, ``p`` has the
     parameters by name (:class:`Parameters`), and it returns the derivatives: a list, an array, or a mapping by name of the state. It is
-    called once, to record its operations, which are then differentiated and run natively. Loops, inner functions, ``np.where`` and
-    arrays filled by assignment are recorded. What would have to choose by a value (``if x > 0``, ``while``, ``min``) is refused with
+    called once to record its operations, which are then differentiated and run natively, and at a few points with numbers, to compare.
+    Loops, inner functions, ``np.where`` and arrays filled by assignment are recorded. What would have to choose by a value
+    (``if x > 0``, ``while``, ``min``), and what was recorded otherwise than the function computes it, is refused with
     :class:`~arclength.NotTraceable`, which says where and what to write instead.
 
     ``states`` are names, or names with initial values; ``parameters`` are names with values. Names consist of the letters a to z,

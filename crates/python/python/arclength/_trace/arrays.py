@@ -127,7 +127,7 @@ class NumberArray(np.ndarray):
 
     def __setitem__(self, key: Any, value: Any) -> None:
         if has_symbols(value) or has_symbols(key):
-            kind = "whole numbers or truth values" if self.dtype.kind != "f" else "numbers that was made outside of the function"
+            kind = "whole numbers or truth values" if self.dtype.kind != "f" else "numbers that was not made in this function"
             raise refusal(f"a value put into an array of {kind}", FIXED)
         super().__setitem__(realized(key), realized(value))
 

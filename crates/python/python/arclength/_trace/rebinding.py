@@ -201,6 +201,7 @@ class Rebinding:
             "max": _extreme("max", "np.maximum"),
             "float": Float,
             "print": _printed,
+            "super": self._super,
             "__import__": self._import,
         }
 
@@ -258,7 +259,8 @@ class Rebinding:
                 return lambda *given, **keywords: self.value(value.dispatch(given[0].__class__))(*given, **keywords)
             return _foreign(value) if _is_foreign(_module_of(value)) else self._function(value)
         if callable(value) and not isinstance(value, type) and _is_foreign(getattr(value, "__module__", None) or type(value).__module__):
-            return _foreign(value)
+            # Polynomials of NumPy are objects that act on values.
+            return value if type(value).__module__.partition(".")[0] == "numpy" else _foreign(value)
         return self._object(value)
 
     def _kept(self, value: Any, replaced: Any) -> Any:
@@ -321,6 +323,9 @@ class Rebinding:
         replace = self.value
 
         def attribute(self: Any, name: str) -> Any:
+            own = next((vars(base)[name] for base in kind.__mro__ if name in vars(base)), None)
+            if isinstance(own, property) and own.fget is not None:
+                return replace(own.fget)(self)
             found = super(made, self).__getattribute__(name)
             return found if name.startswith("__") else replace(found)
 
@@ -345,6 +350,13 @@ class Rebinding:
             made.__getattribute__ = attribute
         return again
 
+    def _super(self, *given: Any) -> Any:
+        """``super()``, with the methods replaced."""
+        if not given:
+            frame = sys._getframe(1)
+            given = (frame.f_locals["__class__"], frame.f_locals[frame.f_code.co_varnames[0]])
+        return _Above(super(*given), self.value)
+
     def _module(self, module: types.ModuleType) -> types.ModuleType:
         name = module.__name__
         if name == "math":
@@ -364,6 +376,14 @@ class Rebinding:
 
     def _import(self, *arguments: Any, **keywords: Any) -> Any:
         return self.value(builtins.__import__(*arguments, **keywords))
+
+
+class _Above:
+    def __init__(self, found: Any, replace: Callable[[Any], Any]) -> None:
+        self._found, self._replace = found, replace
+
+    def __getattr__(self, name: str) -> Any:
+        return self._replace(getattr(self._found, name))
 
 
 def _is_plain(kind: type) -> bool:

@@ -264,7 +264,7 @@ class Symbol:
     __round__ = _refusing("the function round", "write np.floor(x + 0.5)")
     __float__ = _refusing(
         "a value made a number (by a function that is not recorded, or put into an array of numbers)",
-        "call NumPy's functions and those of math in functions of this module, and make arrays by np.zeros or np.array there",
+        "call NumPy's functions and those of math, and make arrays by np.zeros or np.array, in functions, not in methods of objects made inside",
     )
     __complex__ = _refusing("a complex number", REAL)
     __hash__ = _refusing("a value as a key of a dictionary or a set", "keys must not depend on states and parameters")
