@@ -101,6 +101,7 @@ def from_constants(x, p):
         # Types.
         lambda x, p: [x[0] if isinstance(x[0], float) else -x[0], 0, x[0] if isinstance(p.a, Number) else -x[0]],
         lambda x, p: x if isinstance(x[0], np.floating) and isinstance(x, np.ndarray) and x.dtype == float else -x,
+        lambda x, p: x * (1 if isinstance(np.where(x[0] > 5, p.a, p.b), float) else 2) + np.where(x[0] > 5, p.a, p.b) ** 2,
         lambda x, p: [float(v) for v in x],
         lambda x, p: np.float64(p.a) * x.astype(float),
         lambda x, p: [Fraction(1, 3) * v + v.imag for v in x],

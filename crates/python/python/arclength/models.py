@@ -137,9 +137,10 @@ class Model:
         names = [str(symbol) for symbol in [*equations, *(parameters or {})]]
         # In texts, names are those that were given, also E, S, N and beta, which mean something in SymPy.
         given = {name: sympy.Symbol(name) for name in names}
+        read: Any = sympy.sympify
         try:
             expressions = [
-                sympy.sympify(expression, locals=given if isinstance(expression, str) else None)
+                read(expression, locals=given) if isinstance(expression, str) else read(expression)
                 for expression in equations.values()
             ]
             used = {str(symbol) for expression in expressions for symbol in expression.free_symbols}

@@ -218,9 +218,9 @@ def wrapped(value: Any, kind: np.dtype[Any] | None = None) -> Any:
     return value
 
 
-def result(value: Any, kind: np.dtype[Any]) -> Any:
-    """A result of this kind: an array, or an entry."""
-    if isinstance(value, np.ndarray) and value.ndim > 0:
+def result(value: Any, kind: np.dtype[Any], sample: Any = None) -> Any:
+    """A result of this kind: an array, or an entry; an array without axes only where the sample is one."""
+    if isinstance(value, np.ndarray) and (value.ndim > 0 or isinstance(sample, np.ndarray)):
         return wrapped(value, kind)
     return entry(value.item() if isinstance(value, np.ndarray) else value, kind)
 
@@ -271,7 +271,8 @@ def realized(value: Any) -> Any:
     if type(value) is NumberArray:
         return value.view(np.ndarray)
     if type(value) in (list, tuple):
-        return type(value)(realized(item) for item in value)
+        items = [realized(item) for item in value]
+        return items if type(value) is list else tuple(items)
     return value
 
 
@@ -286,7 +287,8 @@ def shadow(value: Any) -> Any:
     if type(value) is NumberArray:
         return value.view(np.ndarray)
     if type(value) in (list, tuple):
-        return type(value)(shadow(item) for item in value)
+        items = [shadow(item) for item in value]
+        return items if type(value) is list else tuple(items)
     return value
 
 
@@ -416,7 +418,7 @@ def _reduce(
     axes = tuple(range(array.ndim)) if axis is None else axis if isinstance(axis, tuple) else (axis,)
     axes = tuple(one % array.ndim for one in axes)
     kept = tuple(one for one in range(array.ndim) if one not in axes)
-    rows = array.transpose(*axes, *kept).reshape(math.prod(array.shape[one] for one in axes), -1)
+    rows = array.transpose(*axes, *kept).reshape(math.prod([array.shape[one] for one in axes]), -1)
     first = [initial] if is_number(initial) or type(initial) is Symbol else []
     if not first and ufunc.__name__.startswith("logical"):
         first = [ufunc.identity]

@@ -117,4 +117,5 @@ def check(
         if compared >= ENOUGH or (compared >= 2 and perf_counter() - began > SLOW):
             return
     if not compared:
-        warnings.warn(f"the recording was not compared with its function, which has no value at any point tried: {reason}", AnalysisWarning, stacklevel=4)
+        message = f"the recording was not compared with its function, which has no value at any point tried: {reason}"
+        warnings.warn(message, AnalysisWarning, stacklevel=4)

@@ -92,7 +92,7 @@ def call_function(function: Any, arguments: Any, keywords: Any) -> Any:
 def _results(values: Any, kind: np.dtype[Any]) -> Any:
     if isinstance(values, (list, tuple)):
         return type(values)(_results(value, kind) for value in values)
-    return result(values, kind) if isinstance(values, np.ndarray) or type(values) is Symbol else values
+    return result(values, kind, values) if isinstance(values, np.ndarray) or type(values) is Symbol else values
 
 
 def constant_call(function: Any, arguments: Any, keywords: Any) -> Any:
@@ -185,7 +185,7 @@ def _where(condition: Any, x: Any = None, y: Any = None) -> Any:
     if x is None or y is None:
         raise refusal("np.where with a condition only", "its result would depend on values; give both np.where(condition, a, b)")
     sample = np.where(shadow(condition), shadow(x), shadow(y))
-    return result(_selected(condition, x, y), known_kind(sample.dtype))
+    return result(_selected(condition, x, y), known_kind(sample.dtype), sample)
 
 
 def _selected(condition: Any, x: Any, y: Any) -> Any:
@@ -200,7 +200,7 @@ def _choose(condlist: Any, choicelist: Any, default: Any = 0) -> Any:
     chosen = plain(default)
     for condition, choice in reversed(list(zip(condlist, choicelist, strict=True))):
         chosen = _selected(condition, choice, chosen)
-    return result(np.broadcast_to(chosen, sample.shape).copy(), known_kind(sample.dtype))
+    return result(np.broadcast_to(chosen, sample.shape).copy(), known_kind(sample.dtype), sample)
 
 
 def _clip(a: Any, a_min: Any = None, a_max: Any = None, out: Any = None, *, min: Any = None, max: Any = None) -> Any:

@@ -254,9 +254,10 @@ class Rebinding:
         if type(value) in (list, tuple, dict):
             return self._container(value)
         if isinstance(value, types.FunctionType):
-            if hasattr(value, "dispatch") and hasattr(value, "registry"):
+            dispatch = getattr(value, "dispatch", None)
+            if dispatch is not None and hasattr(value, "registry"):
                 # functools.singledispatch
-                return lambda *given, **keywords: self.value(value.dispatch(given[0].__class__))(*given, **keywords)
+                return lambda *given, **keywords: self.value(dispatch(given[0].__class__))(*given, **keywords)
             return _foreign(value) if _is_foreign(_module_of(value)) else self._function(value)
         if callable(value) and not isinstance(value, type) and _is_foreign(getattr(value, "__module__", None) or type(value).__module__):
             # Polynomials of NumPy are objects that act on values.
@@ -355,7 +356,8 @@ class Rebinding:
         if not given:
             frame = sys._getframe(1)
             given = (frame.f_locals["__class__"], frame.f_locals[frame.f_code.co_varnames[0]])
-        return _Above(super(*given), self.value)
+        above: Any = super
+        return _Above(above(*given), self.value)
 
     def _module(self, module: types.ModuleType) -> types.ModuleType:
         name = module.__name__

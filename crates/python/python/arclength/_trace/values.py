@@ -192,7 +192,7 @@ def _binary(function: Callable[[Any, Any], Any], swapped: bool = False) -> Calla
         if isinstance(other, np.ndarray):
             if other.ndim > 0:
                 return NotImplemented
-            other = other.view(np.ndarray).item() if other.dtype == object else other[()]
+            other = other[()]
         if isinstance(other, (complex, np.complexfloating)):
             raise refusal("a complex number", REAL)
         if type(other) is not Symbol and not is_number(other):
@@ -269,7 +269,9 @@ class Symbol:
     __complex__ = _refusing("a complex number", REAL)
     __hash__ = _refusing("a value as a key of a dictionary or a set", "keys must not depend on states and parameters")
     __str__ = _refusing("a value made a text", "texts must not depend on states and parameters; print(x) shows what is recorded")
-    __format__ = __str__
+
+    def __format__(self, form: str) -> str:
+        return str(self)
 
     def __neg__(self) -> Symbol:
         kind = _result_type(operator.neg, (self.type,))
