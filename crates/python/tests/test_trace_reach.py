@@ -170,9 +170,17 @@ def counting(x, p):
     return [len(CALLS) * x[0]]
 
 
+def broken_for_numbers(x, p):
+    if type(x) is np.ndarray:
+        raise ValueError("not for arrays")
+    return x
+
+
 @pytest.mark.parametrize(
     ("function", "message"),
     [
+        (broken_for_numbers, "raises ValueError for numbers"),
+        (lambda x, p: [x[0]] * (1 + (type(x) is np.ndarray)), "2 derivatives"),
         (caught, "log1p has no rule"),
         (caught_choice, r"np\.where"),
         (lambda x, p: [random.random() * x[0]], "another number each time"),

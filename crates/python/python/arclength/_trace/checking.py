@@ -17,6 +17,8 @@ from . import derivatives
 ENOUGH, TRIED, SLOW = 6, 24, 1.0
 #: Largest relative difference; and that to the largest derivative, for rounding.
 RELATIVE, ROUNDING = 1e-7, 1e-12
+#: How :mod:`math` tells that a number is outside of the domain of a function.
+DOMAIN = ("math ", "expected a")
 
 Point = tuple[np.ndarray[Any, Any], dict[str, float]]
 
@@ -63,9 +65,11 @@ def check(
                 result = function(state.copy(), Parameters(given))
                 single = single or np.dtype(getattr(result, "dtype", float)) == np.float32
                 values = np.array([value if np.ndim(value) == 0 else np.ravel(value)[0] for value in derivatives(result, states)])
-        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            raise _Outside(f"{type(error).__name__}: {error}") from None
+        except NotTraceable:
+            raise
         except Exception as error:
+            if isinstance(error, (ArithmeticError, np.linalg.LinAlgError)) or (isinstance(error, ValueError) and str(error).startswith(DOMAIN)):
+                raise _Outside(f"{type(error).__name__}: {error}") from None
             what = f"the function raises {type(error).__name__} for numbers: {error}"
             raise NotTraceable(f"{what}, at {_told(state, states, given)}", key=what) from error
         if values.dtype.kind == "c":
