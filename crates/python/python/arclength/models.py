@@ -39,16 +39,16 @@ Monitors = Mapping[str, float | Iterable[float]] | Iterable[str]
 
 
 class Parameters(Mapping[str, Any]):
-    """Values of parameters as a traced function gets them: ``p["mu"]``, ``p.mu``, ``p[0]``, and ``a, b = p.values()``."""
+    """Values of parameters as a traced function gets them: ``p["mu"]``, ``p.mu``, ``p[0]``, ``p[0:2]``, and ``a, b = p.values()``."""
 
     __slots__ = ("_values",)
 
     def __init__(self, values: Mapping[str, Any]) -> None:
         object.__setattr__(self, "_values", dict(values))
 
-    def __getitem__(self, name: str | int) -> Any:
+    def __getitem__(self, name: str | int | slice) -> Any:
         values: dict[str, Any] = self._values
-        if isinstance(name, int):
+        if isinstance(name, (int, slice)):
             return list(values.values())[name]
         return values[name]
 
@@ -77,8 +77,9 @@ class Model:
 
     ``function(x, p)`` is ordinary Python with NumPy or :mod:`math`: ``x`` is an array of shape ``(len(states),)``, ``p`` has the
     parameters by name (:class:`Parameters`), and it returns the derivatives: a list, an array, or a mapping by name of the state. It is
-    called once, to record its operations, which are then differentiated and run natively. Loops, inner functions, ``np.where`` and
-    arrays filled by assignment are recorded. What would have to choose by a value (``if x > 0``, ``while``, ``min``) is refused with
+    called once to record its operations, which are then differentiated and run natively, and at a few points with numbers, to compare.
+    Loops, inner functions, ``np.where`` and arrays filled by assignment are recorded. What would have to choose by a value
+    (``if x > 0``, ``while``, ``min``), and what was recorded otherwise than the function computes it, is refused with
     :class:`~arclength.NotTraceable`, which says where and what to write instead.
 
     ``states`` are names, or names with initial values; ``parameters`` are names with values. Names consist of the letters a to z,
@@ -94,6 +95,7 @@ class Model:
         name: str | None = None,
     ) -> None:
         from ._trace import trace
+        from ._trace.checking import check
 
         if isinstance(states, str) or not isinstance(states, (Mapping, Sequence)):
             allowed = "names, or a mapping from names to initial values"
@@ -102,6 +104,13 @@ class Model:
         if len(initial) != len(states):
             message = "two states have the same name; allowed: names that differ"
             raise InvalidInput(message, key="states", value=repr(list(states)), allowed="names that differ")
+        if not isinstance(parameters or {}, Mapping):
+            raise InvalidInput(
+                "parameters: not a mapping; allowed: names with their values, {\"a\": 1.0}",
+                key="parameters",
+                value=repr(parameters),
+                allowed="names with values",
+            )
         values = {key: _finite(key, value) for key, value in (parameters or {}).items()}
         try:
             source = trace(function, {key: _finite(key, value) for key, value in initial.items()}, values)
@@ -114,6 +123,7 @@ class Model:
         self._stored = {"name": name or getattr(function, "__name__", "model"), "source": source}
         #: The function from which it was traced, if it was.
         self.function: Callable[[Any, Any], Any] | None = function
+        check(function, self, initial, values)
 
     @classmethod
     def from_ode(cls, model: Path, *, name: str | None = None) -> Model:
