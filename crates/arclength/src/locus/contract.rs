@@ -1,8 +1,9 @@
 //! What continuation asks of a curve of special equilibria: residuals, test functions, where points of codimension two lie.
 
 use super::curve::{Inspection, LocusCurve};
-use super::kind::{Linearized, LocusKind};
+use super::kind::Linearized;
 use super::locating;
+use super::system::LocusSystem;
 use crate::algebraic::DenseSystem;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{self, Location, Reading, TestFunction};
@@ -20,8 +21,8 @@ const SAME_PLACE: f64 = 1e-8;
 /// to another bifurcation eigenvalues are known to the root of rounding only.
 const UNDECIDED: f64 = 1e-7;
 
-impl<'a, K: LocusKind<'a>> Discretised for LocusCurve<'a, K> {
-    type System = DenseSystem<K>;
+impl<'a> Discretised for LocusCurve<'a> {
+    type System = DenseSystem<LocusSystem<'a>>;
 
     fn system(&self) -> &Self::System {
         &self.system
@@ -32,7 +33,7 @@ impl<'a, K: LocusKind<'a>> Discretised for LocusCurve<'a, K> {
     }
 }
 
-impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
+impl Curve for LocusCurve<'_> {
     type Point = Inspection;
     type Kind = SpecialKind;
     type Reason = Infallible;
@@ -60,7 +61,7 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
-        Cow::Borrowed(K::TEST_FUNCTIONS)
+        Cow::Borrowed(self.system.problem.test_functions())
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
@@ -108,7 +109,7 @@ impl<'a, K: LocusKind<'a>> Curve for LocusCurve<'a, K> {
         _before: &Solution<Inspection>,
         after: &Solution<Inspection>,
     ) -> Option<Ending<Infallible>> {
-        if K::KIND != Some(SpecialKind::BranchPoint) {
+        if self.system.problem.kind() != Some(SpecialKind::BranchPoint) {
             return None;
         }
         let perturbation = after.unknown[2 * self.states.len()];

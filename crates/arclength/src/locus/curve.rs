@@ -1,13 +1,13 @@
 //! The system of equations of a curve of special equilibria in two parameters, and its linear algebra.
 
 use super::codimension_two::CodimensionTwoPoint;
-use super::kind::{LocusKind, Monitor};
+use super::kind::Monitor;
+use super::system::LocusSystem;
 use crate::algebraic::{DenseSystem, Differentiator, grown};
 use crate::continuation::Settings;
 use crate::equilibrium::spectrum::Spectrum;
 use crate::error::Error;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
-use std::marker::PhantomData;
 
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
@@ -18,8 +18,8 @@ pub(super) struct Inspection {
 }
 
 /// The curve of one kind of special equilibria in two parameters.
-pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
-    pub system: DenseSystem<K>,
+pub(super) struct LocusCurve<'a> {
+    pub system: DenseSystem<LocusSystem<'a>>,
     pub settings: Settings,
     /// Sizes of the states.
     pub states: Vec<f64>,
@@ -31,11 +31,10 @@ pub(super) struct LocusCurve<'a, K: LocusKind<'a>> {
     pub(super) workspace: EigenvalueWorkspace,
     pub(super) matrix: Vec<f64>,
     pub(super) residual: Vec<f64>,
-    pub(super) lifetime: PhantomData<&'a ()>,
 }
 
-impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
-    pub(super) fn new(kind: K, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
+impl<'a> LocusCurve<'a> {
+    pub(super) fn new(kind: LocusSystem<'a>, states: Vec<f64>, ranges: [f64; 2], settings: Settings) -> Self {
         let n = states.len();
         let sizes = kind.sizes(&states, ranges);
         Self {
@@ -49,7 +48,6 @@ impl<'a, K: LocusKind<'a>> LocusCurve<'a, K> {
             workspace: EigenvalueWorkspace::new(n),
             matrix: Vec::new(),
             residual: vec![0.0; n],
-            lifetime: PhantomData,
         }
     }
 

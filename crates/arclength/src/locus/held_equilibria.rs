@@ -70,11 +70,18 @@ impl AlgebraicEquations for HeldSystem<'_> {
 }
 
 impl<'a> LocusKind<'a> for HeldSystem<'a> {
-    const KIND: Option<SpecialKind> = None;
-    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
-        TestFunction::new(SpecialKind::Fold).changing(&[1]).of_spectrum(),
-        TestFunction::new(SpecialKind::Hopf).changing(&[0, 2]).of_spectrum(),
-    ];
+    fn kind(&self) -> Option<SpecialKind> {
+        None
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        const {
+            &[
+                TestFunction::new(SpecialKind::Fold).changing(&[1]).of_spectrum(),
+                TestFunction::new(SpecialKind::Hopf).changing(&[0, 2]).of_spectrum(),
+            ]
+        }
+    }
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria

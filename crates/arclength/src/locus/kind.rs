@@ -1,7 +1,7 @@
 //! What the curves of folds, of Hopf points and of branch points have in common, and how they differ.
 
 use super::gauge::{PlaneGauge, combine, rewrite_vector};
-use crate::algebraic::{AlgebraicEquations, length};
+use crate::algebraic::length;
 use crate::branch::SpecialKind;
 use crate::continuation::events::TestFunction;
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
@@ -49,13 +49,13 @@ impl Monitor {
 }
 
 /// A kind of equilibria of which there are curves in two parameters.
-pub(super) trait LocusKind<'a>: AlgebraicEquations {
+pub(super) trait LocusKind<'a> {
     /// What the curve consists of; `None` for any equilibria.
-    const KIND: Option<SpecialKind>;
+    fn kind(&self) -> Option<SpecialKind>;
 
     /// Test functions of the points of codimension two on the curve; the directions counted are those of the eigenvalues that
     /// are not critical.
-    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>];
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>];
 
     /// The equilibrium problem in two parameters.
     fn equilibria(&self) -> &EquilibriumProblem<'a>;
@@ -107,12 +107,19 @@ pub(super) fn zero_test(eigenvalues: &[Complex64], largest: f64) -> f64 {
 }
 
 impl<'a> LocusKind<'a> for FoldSystem<'a> {
-    const KIND: Option<SpecialKind> = Some(SpecialKind::Fold);
-    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
-        TestFunction::new(SpecialKind::Cusp).changing(&[0]),
-        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
-        TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
-    ];
+    fn kind(&self) -> Option<SpecialKind> {
+        Some(SpecialKind::Fold)
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        const {
+            &[
+                TestFunction::new(SpecialKind::Cusp).changing(&[0]),
+                TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
+                TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
+            ]
+        }
+    }
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
@@ -188,13 +195,20 @@ fn products(one: &[f64], other: &[f64], scales: &[f64]) -> f64 {
 }
 
 impl<'a> LocusKind<'a> for HopfSystem<'a> {
-    const KIND: Option<SpecialKind> = Some(SpecialKind::Hopf);
-    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
-        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[0]),
-        TestFunction::new(SpecialKind::ZeroHopf).changing(&[1]).of_spectrum(),
-        TestFunction::new(SpecialKind::HopfHopf).changing(&[0, 2]).of_spectrum(),
-        TestFunction::new(SpecialKind::GeneralizedHopf).changing(&[0]),
-    ];
+    fn kind(&self) -> Option<SpecialKind> {
+        Some(SpecialKind::Hopf)
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        const {
+            &[
+                TestFunction::new(SpecialKind::BogdanovTakens).changing(&[0]),
+                TestFunction::new(SpecialKind::ZeroHopf).changing(&[1]).of_spectrum(),
+                TestFunction::new(SpecialKind::HopfHopf).changing(&[0, 2]).of_spectrum(),
+                TestFunction::new(SpecialKind::GeneralizedHopf).changing(&[0]),
+            ]
+        }
+    }
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria
@@ -297,11 +311,18 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
 }
 
 impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
-    const KIND: Option<SpecialKind> = Some(SpecialKind::BranchPoint);
-    const TEST_FUNCTIONS: &'static [TestFunction<SpecialKind>] = &[
-        TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
-        TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
-    ];
+    fn kind(&self) -> Option<SpecialKind> {
+        Some(SpecialKind::BranchPoint)
+    }
+
+    fn test_functions(&self) -> &'static [TestFunction<SpecialKind>] {
+        const {
+            &[
+                TestFunction::new(SpecialKind::BogdanovTakens).changing(&[1]).of_spectrum(),
+                TestFunction::new(SpecialKind::ZeroHopf).changing(&[0, 2]).of_spectrum(),
+            ]
+        }
+    }
 
     fn equilibria(&self) -> &EquilibriumProblem<'a> {
         &self.equilibria

@@ -4,7 +4,6 @@ use super::codimension_two::{
     BogdanovTakensSystem, CodimensionTwoPoint, CuspSystem, HopfHopfSystem, ZeroHopfSystem,
 };
 use super::curve::{Inspection, LocusCurve};
-use super::kind::LocusKind;
 use super::normal_form;
 use crate::algebraic::{AlgebraicEquations, ScaledLu, Solved, length, solve_square};
 use crate::branch::SpecialKind;
@@ -29,8 +28,8 @@ type Node = Solution<Inspection>;
 
 /// The point of codimension two between two neighbours; `None` if a test function has a pole there or the point is not of the
 /// kind sought (two real eigenvalues of opposite sign are no Hopf-Hopf point).
-pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
-    curve: &mut LocusCurve<'a, K>,
+pub(super) fn codimension_two(
+    curve: &mut LocusCurve<'_>,
     before: &Node,
     after: &Node,
     distance: f64,
@@ -38,8 +37,8 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
 ) -> Result<Option<Node>, Error> {
     // On a curve of branch points the defining systems of the others are singular; where a quantity is held the curve itself
     // says where a point lies.
-    let by_secant =
-        kind == SpecialKind::GeneralizedHopf || matches!(K::KIND, None | Some(SpecialKind::BranchPoint));
+    let by_secant = kind == SpecialKind::GeneralizedHopf
+        || matches!(curve.system.problem.kind(), None | Some(SpecialKind::BranchPoint));
     if !by_secant {
         for tolerance in BRACKETS {
             let near = near_zero(curve, before, after, tolerance, kind);
@@ -112,8 +111,8 @@ pub(super) fn codimension_two<'a, K: LocusKind<'a>>(
 const DEGENERATE: f64 = 0.25;
 
 /// A solution close to the zero of a test function.
-fn near_zero<'a, K: LocusKind<'a>>(
-    curve: &mut LocusCurve<'a, K>,
+fn near_zero(
+    curve: &mut LocusCurve<'_>,
     before: &Node,
     after: &Node,
     tolerance: f64,
@@ -132,11 +131,7 @@ fn near_zero<'a, K: LocusKind<'a>>(
 
 /// The solution of the curve at the equilibrium and the parameters in `unknown`, so that eigenvectors, frequency and test
 /// functions are those of the located point and not of its neighbour `near`.
-fn solution_at<'a, K: LocusKind<'a>>(
-    curve: &mut LocusCurve<'a, K>,
-    near: &Node,
-    unknown: &[f64],
-) -> Option<Node> {
+fn solution_at(curve: &mut LocusCurve<'_>, near: &Node, unknown: &[f64]) -> Option<Node> {
     let (n, end) = (curve.states.len(), unknown.len() - 2);
     // Of states and parameters the one that the curve moves most tells its points apart, also where both parameters turn.
     let speed = |place: usize| (near.tangent[place] / curve.system.scales[place]).abs();
@@ -150,8 +145,8 @@ fn solution_at<'a, K: LocusKind<'a>>(
 }
 
 /// The located point as a solution of the curve.
-fn complete<'a, K: LocusKind<'a>>(
-    curve: &mut LocusCurve<'a, K>,
+fn complete(
+    curve: &mut LocusCurve<'_>,
     near: Node,
     unknown: Vec<f64>,
     location_error: [f64; 2],
@@ -226,11 +221,7 @@ impl Newton {
 }
 
 /// Newton's method from a point close by.
-fn newton<'a, K: LocusKind<'a>>(
-    curve: &mut LocusCurve<'a, K>,
-    near: &Node,
-    kind: SpecialKind,
-) -> Result<Newton, Error> {
+fn newton(curve: &mut LocusCurve<'_>, near: &Node, kind: SpecialKind) -> Result<Newton, Error> {
     let n = curve.states.len();
     let matrix = curve.jacobian(&near.unknown).to_vec();
     let point = curve.equilibrium(&near.unknown);

@@ -21,6 +21,7 @@ mod locating;
 mod normal_form;
 mod request;
 mod run;
+mod system;
 
 pub use branch::{EquilibriumLocusBranch, LocusPoint};
 pub use codimension_two::CodimensionTwoPoint;

@@ -4,8 +4,8 @@ use super::branch::{EquilibriumLocusBranch, LocusPoint};
 use super::curve::{Inspection, LocusCurve};
 use super::held::Held;
 use super::held_equilibria::HeldSystem;
-use super::kind::LocusKind;
 use super::request::{TwoParameters, point_forward};
+use super::system::LocusSystem;
 use crate::algebraic::Differentiator;
 use crate::algebraic::scales::natural_scales;
 use crate::branch::{
@@ -195,7 +195,7 @@ impl<'a> Run<'a> {
                 check_length("null vector", &fold.null_vector, n, "the dimension of the field")?;
                 let unknown = [state, &fold.null_vector, &values].concat();
                 let kind = FoldSystem { equilibria, normal: fold.null_vector.clone(), left: Vec::new() };
-                self.follow(kind, unknown, scales, request, observer)
+                self.follow(LocusSystem::Fold(kind), unknown, scales, request, observer)
             }
             EquilibriumLocusStart::Hopf(hopf) => {
                 let pair = [1.0, -1.0].map(|sign| Complex64::new(0.0, sign * hopf.frequency));
@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
                         value: hopf.frequency.to_string(),
                         allowed: "a positive number".into(),
                     })?;
-                self.follow(kind, unknown, scales, request, observer)
+                self.follow(LocusSystem::Hopf(kind), unknown, scales, request, observer)
             }
             EquilibriumLocusStart::BranchPoint(_) => {
                 let failed = |_| Error::Eigenvalues { quantity: "null vector of the branch point" };
@@ -213,7 +213,7 @@ impl<'a> Run<'a> {
                 let left: Vec<f64> = left.iter().map(|entry| entry.re).collect();
                 let unknown = [state, &left, &[0.0], &values].concat();
                 let kind = BranchPointSystem { equilibria, normal: left, scales: scales.clone(), rate: 1.0 };
-                self.follow(kind, unknown, scales, request, observer)
+                self.follow(LocusSystem::BranchPoint(kind), unknown, scales, request, observer)
             }
             EquilibriumLocusStart::Held(held, ..) => {
                 let value = held.value().or_else(|| held.of(state, &self.parameters)).ok_or_else(|| {
@@ -224,7 +224,8 @@ impl<'a> Run<'a> {
                     )
                 })?;
                 let sizes = [&scales[..], &ranges].concat();
-                let kind = HeldSystem { equilibria, held: held.clone(), value, sizes, fastest: 0.0 };
+                let held = HeldSystem { equilibria, held: held.clone(), value, sizes, fastest: 0.0 };
+                let kind = LocusSystem::Held(held);
                 let unknown = self.with_held_value(&kind, point, &scales)?;
                 self.follow(kind, unknown, scales, request, observer)
             }
@@ -235,7 +236,7 @@ impl<'a> Run<'a> {
     /// that is possible, and both inside their ranges.
     fn with_held_value(
         &self,
-        kind: &HeldSystem<'a>,
+        kind: &LocusSystem<'a>,
         start: Vec<f64>,
         scales: &[f64],
     ) -> Result<Vec<f64>, Error> {
@@ -269,9 +270,9 @@ impl<'a> Run<'a> {
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "eigenvalues" }))
     }
 
-    fn follow<K: LocusKind<'a> + Clone>(
+    fn follow(
         &self,
-        kind: K,
+        kind: LocusSystem<'a>,
         mut unknown: Vec<f64>,
         scales: Vec<f64>,
         request: &Request<'_, Inspection>,
