@@ -18,6 +18,9 @@ const STRAIGHT: f64 = 10.0;
 /// A trial point keeps this part of the bracket away from its ends.
 const DISTANCE_FROM_ENDS: f64 = 0.01;
 
+/// A test function, behind a pointer so that brackets are compiled once for every curve.
+type Test<'t, C> = dyn FnMut(&mut C, &Solution<<C as Curve>::Point>) -> Option<f64> + 't;
+
 /// A change of the sign of a test function, bracketed ever more closely.
 pub(crate) struct Bracket<'a, P> {
     ends: [&'a Solution<P>; 2],
@@ -59,7 +62,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
         curve: &mut C,
         before: &'a Solution<P>,
         after: &'a Solution<P>,
-        mut test: impl FnMut(&mut C, &Solution<P>) -> Option<f64>,
+        test: &mut Test<'_, C>,
     ) -> Option<Self> {
         let (left, right) = (test(curve, before)?, test(curve, after)?);
         (left * right <= 0.0).then(|| Self {
@@ -91,7 +94,7 @@ impl<'a, P: Clone> Bracket<'a, P> {
         curve: &mut C,
         settings: &Settings,
         tolerance: f64,
-        mut test: impl FnMut(&mut C, &Solution<P>) -> Option<f64>,
+        test: &mut Test<'_, C>,
     ) -> Result<Option<&Solution<P>>, Error> {
         let [before, after] = self.ends;
         while self.trials < MOST_TRIALS
@@ -146,7 +149,7 @@ pub fn locate<C: Curve>(
     mut test: impl FnMut(&mut C, &Solution<C::Point>) -> Option<f64>,
 ) -> Result<Option<Solution<C::Point>>, Error> {
     let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
-    Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
+    Ok(bracket.narrow(curve, settings, tolerance, &mut test)?.cloned())
 }
 
 /// As [`locate`], for a test function that is smooth: a solution where its modulus is at most `negligible` is as good as its zero.
@@ -162,7 +165,7 @@ pub(super) fn locate_value<C: Curve>(
 ) -> Result<Option<Solution<C::Point>>, Error> {
     let Some(bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
     let mut bracket = Bracket { negligible, is_smooth: true, ..bracket };
-    Ok(bracket.narrow(curve, settings, tolerance, test)?.cloned())
+    Ok(bracket.narrow(curve, settings, tolerance, &mut test)?.cloned())
 }
 
 /// Parts of the distance between two solutions to which the zero of a test function is bracketed before Newton's method takes

@@ -65,19 +65,10 @@ impl Closure {
             return None;
         }
         let [here, there] = [current, advanced].map(|solution| self.beyond(curve, solution));
-        let change = |index: &usize| (there[*index] - here[*index]).abs();
-        let step: f64 = (0..here.len()).map(|index| change(&index).powi(2)).sum();
-        let beyond = here.iter().map(|entry| entry * entry).sum::<f64>();
-        // The first steps may be so short that they do not leave the start.
-        if beyond > (FAR * FAR) * step || beyond < (AWAY * AWAY) * (CLOSURE_TOLERANCE * CLOSURE_TOLERANCE) {
-            return None;
-        }
-        let passes = |index: &usize| here[*index] * there[*index] <= 0.0 && change(index) > 0.0;
-        let mut passing: Vec<usize> = (0..here.len()).filter(passes).collect();
-        passing.sort_by(|one, other| change(other).total_cmp(&change(one)));
-        let largest = (0..here.len()).map(|index| change(&index)).fold(0.0, f64::max);
-        passing.into_iter().take(MOST_COMPONENTS).find_map(|index| {
-            let slope = APART * largest / change(&index);
+        let changes: Vec<f64> = here.iter().zip(&there).map(|(here, there)| (there - here).abs()).collect();
+        let largest = changes.iter().copied().fold(0.0, f64::max);
+        passing(&here, &there).into_iter().take(MOST_COMPONENTS).find_map(|index| {
+            let slope = APART * largest / changes[index];
             let test = |curve: &mut C, solution: &Solution<C::Point>| {
                 let beyond = self.beyond(curve, solution);
                 let farthest = CLOSURE_TOLERANCE.max(slope * beyond[index].abs());
@@ -89,4 +80,19 @@ impl Closure {
             beyond.iter().all(|difference| difference.abs() <= CLOSURE_TOLERANCE).then_some(candidate)
         })
     }
+}
+
+/// The components that pass zero between two consecutive solutions, those that change most first; none where the step leads elsewhere.
+fn passing(here: &[f64], there: &[f64]) -> Vec<usize> {
+    let change = |index: &usize| (there[*index] - here[*index]).abs();
+    let step: f64 = (0..here.len()).map(|index| change(&index).powi(2)).sum();
+    let beyond = here.iter().map(|entry| entry * entry).sum::<f64>();
+    // The first steps may be so short that they do not leave the start.
+    if beyond > (FAR * FAR) * step || beyond < (AWAY * AWAY) * (CLOSURE_TOLERANCE * CLOSURE_TOLERANCE) {
+        return Vec::new();
+    }
+    let passes = |index: &usize| here[*index] * there[*index] <= 0.0 && change(index) > 0.0;
+    let mut passing: Vec<usize> = (0..here.len()).filter(passes).collect();
+    passing.sort_by(|one, other| change(other).total_cmp(&change(one)));
+    passing
 }

@@ -129,11 +129,11 @@ fn is_critical(floquet: &Floquet, kind: Kind) -> bool {
 /// change to its last digit, so that its extreme value is anywhere, but the integral of the divergence is known.
 fn passing_one(curve: &mut CycleCurve<'_>, [before, after]: [&Node; 2]) -> Result<Option<Located>, Error> {
     let settings = curve.settings;
-    let test = |_: &mut CycleCurve<'_>, solution: &Node| {
+    let mut test = |_: &mut CycleCurve<'_>, solution: &Node| {
         solution.point.floquet.nontrivial.first().map(|multiplier| multiplier.log_modulus)
     };
-    let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
-    let mut solution = match bracket.narrow(curve, &settings, PASSING, test) {
+    let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
+    let mut solution = match bracket.narrow(curve, &settings, PASSING, &mut test) {
         Ok(Some(solution)) if is_critical(&solution.point.floquet, Kind::Fold) => solution.clone(),
         Ok(_) | Err(Error::NotFound { .. }) => return Ok(None),
         Err(error) => return Err(error),
@@ -328,7 +328,7 @@ fn newton(
     let direction: Vec<f64> = before.tangent.iter().zip(&after.tangent).map(|(a, b)| 0.5 * (a + b)).collect();
     let length = along(curve, before, &after.unknown);
     let unperturbed = (UNPERTURBED_PART * curve.resolution.tolerance).max(UNPERTURBED);
-    let test = |curve: &mut CycleCurve<'_>, solution: &Node| {
+    let mut test = |curve: &mut CycleCurve<'_>, solution: &Node| {
         let point = &solution.point;
         match kind {
             Kind::Fold => Some(curve.certain_turn(solution)),
@@ -338,9 +338,9 @@ fn newton(
             Kind::Cycle => None,
         }
     };
-    let Some(mut bracket) = Bracket::new(curve, before, after, test) else { return Ok(None) };
+    let Some(mut bracket) = Bracket::new(curve, before, after, &mut test) else { return Ok(None) };
     for tolerance in START_TOLERANCES {
-        let converged = match bracket.narrow(curve, &settings, tolerance, test) {
+        let converged = match bracket.narrow(curve, &settings, tolerance, &mut test) {
             Ok(Some(start)) => converge(curve, &direction, start, kind)?,
             // Next to a branch point the equations of the branch are singular, but its ends are good starts.
             Ok(None) | Err(Error::NotFound { .. }) if kind == Kind::BranchPoint => {

@@ -91,10 +91,10 @@ fn degenerate(
     test: Test,
 ) -> Result<Node, Error> {
     let settings = curve.settings;
-    let sign = |curve: &mut EquilibriumCurve<'_>, solution: &Node| Some(test(curve, solution));
+    let mut sign = |curve: &mut EquilibriumCurve<'_>, solution: &Node| Some(test(curve, solution));
     let mut narrowed = None;
-    if let Some(mut bracket) = Bracket::new(curve, before, after, sign) {
-        narrowed = bracket.narrow(curve, &settings, LAST_BRACKET, sign).ok().flatten().cloned();
+    if let Some(mut bracket) = Bracket::new(curve, before, after, &mut sign) {
+        narrowed = bracket.narrow(curve, &settings, LAST_BRACKET, &mut sign).ok().flatten().cloned();
         if narrowed.is_some() && bracket.is_torn(curve) {
             narrowed = None;
         }

@@ -62,7 +62,10 @@ impl ChebyshevPartition {
         while let Some((left, right, tail_before)) = self.pieces.pop() {
             let half = 0.5 * (right - left);
             let fraction = |x: f64| left + (x + 1.0) * half;
-            let values: [f64; DEGREE + 1] = self.nodes.map(|x| function(fraction(x)));
+            let mut values = self.nodes;
+            for value in &mut values {
+                *value = function(fraction(*value));
+            }
             let mut coefficients = [0.0; DEGREE + 1];
             for (coefficient, row) in coefficients.iter_mut().zip(&self.matrix) {
                 *coefficient = row.iter().zip(&values).map(|(a, b)| a * b).sum();

@@ -127,15 +127,26 @@ impl EventLocator {
         crossings: &mut Vec<Crossing>,
     ) -> bool {
         stepper.prepare_dense_output();
+        let step = [stepper.previous_time(), stepper.time()];
+        self.locate_within(step, &|time, state| stepper.interpolate(time, state), events, crossings)
+    }
+
+    /// The same for the step between two times, on which `interpolate` writes the state at a time.
+    fn locate_within(
+        &mut self,
+        [start, end]: [f64; 2],
+        interpolate: &dyn Fn(f64, &mut [f64]),
+        events: &mut [Event],
+        crossings: &mut Vec<Crossing>,
+    ) -> bool {
         let first = crossings.len();
-        let (start, end) = (stepper.previous_time(), stepper.time());
         let scratch = &mut self.scratch;
         for (index, event) in events.iter_mut().enumerate() {
             let Event { function, direction, is_terminal, is_before } = event;
             let function = std::cell::RefCell::new((function, &mut *scratch));
             let evaluate = |time: f64| {
                 let (function, scratch) = &mut *function.borrow_mut();
-                stepper.interpolate(time, scratch);
+                interpolate(time, scratch);
                 function(time, scratch)
             };
             let at = |fraction: f64| if fraction == 1.0 { end } else { start + fraction * (end - start) };
@@ -175,7 +186,7 @@ impl EventLocator {
         }
         for crossing in &mut crossings[first..] {
             crossing.state.resize(scratch.len(), 0.0);
-            stepper.interpolate(crossing.time, &mut crossing.state);
+            interpolate(crossing.time, &mut crossing.state);
         }
         terminal.is_some()
     }

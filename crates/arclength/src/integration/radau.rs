@@ -144,9 +144,9 @@ impl Radau {
     }
 
     /// Tries a step; `end` becomes the state behind it.
-    pub(super) fn try_step<S: System>(
+    pub(super) fn try_step(
         &mut self,
-        system: &mut S,
+        system: &mut dyn System,
         settings: &Integrator,
         from: Origin<'_>,
         was_rejected: bool,
@@ -254,7 +254,7 @@ impl Radau {
         (growth / f64::from(counted)).exp()
     }
 
-    fn differentiate<S: System>(&mut self, system: &mut S, from: Origin<'_>) {
+    fn differentiate(&mut self, system: &mut dyn System, from: Origin<'_>) {
         system.jacobian(from.time, from.state, &mut self.jacobian);
         if !self.jacobian.iter().all(|entry| entry.is_finite()) {
             // Where a derivative is lost in an overflow, or infinite at a root of zero, an approximation does for Newton's method.
@@ -315,9 +315,9 @@ impl Radau {
     }
 
     /// Simplified Newton steps for the stages; says whether they converge.
-    fn find_stages<S: System>(
+    fn find_stages(
         &mut self,
-        system: &mut S,
+        system: &mut dyn System,
         settings: &Integrator,
         from: Origin<'_>,
         evaluations: &mut usize,
