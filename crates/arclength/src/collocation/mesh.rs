@@ -96,7 +96,7 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     let masses = masses(collocation.mesh(), errors, degree);
     let is_distorted = parts(&masses, &kept)
         .any(|(part, share)| part.len() as f64 > EXCESS_OF_A_PART * count_of_part(share, intervals) as f64);
-    if !too_coarse && !(is_distorted && !kept.is_empty()) && (intervals as f64) < EXCESS * wanted as f64 {
+    if !too_coarse && !is_distorted && (intervals as f64) < EXCESS * wanted as f64 {
         collocation.set_reference(unknown);
         return Ok((Adaptation::Unchanged, worst));
     }

@@ -318,6 +318,14 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_larger_of_a_number_and_none_is_none() {
+        let (one, none) = (Dual::<f64, 1>::variable(1.0, 0), Dual::<f64, 1>::constant(f64::NAN));
+        for result in [one.max(none), none.max(one), one.min(none), none.min(one)] {
+            assert!(result.value.is_nan());
+        }
+    }
+
+    #[test]
     fn derivatives_beside_overflow_and_of_powers_of_zero() {
         let x = Dual::<Dual<f64, 1>, 1>::variable(Dual::variable(1e4, 0), 0);
         let one = Dual::one();

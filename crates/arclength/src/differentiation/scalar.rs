@@ -103,13 +103,13 @@ pub trait Scalar:
         let value = self.value();
         Self::from(if value == 0.0 { 0.0 } else { value.signum() })
     }
-    /// The larger of two numbers.
+    /// The larger of two numbers; not a number where one of them is none.
     fn max(self, other: Self) -> Self {
-        if self.value() < other.value() { other } else { self }
+        if self.value() < other.value() || other.value().is_nan() { other } else { self }
     }
-    /// The smaller of two numbers.
+    /// The smaller of two numbers; not a number where one of them is none.
     fn min(self, other: Self) -> Self {
-        if other.value() < self.value() { other } else { self }
+        if other.value() < self.value() || other.value().is_nan() { other } else { self }
     }
     /// Largest whole number not above the value, without derivative.
     fn floor(self) -> Self {
