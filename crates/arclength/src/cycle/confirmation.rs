@@ -71,8 +71,13 @@ struct Level<'a> {
 
 impl<'a> Asked<'a> {
     /// Confirms the cycles at the parameter values that were asked for, and those at the ends, as far as they can be. (Where a
-    /// monitor has a value the parameter may be more sensitive than the cycle.)
-    pub(super) fn confirm(&self, branch: &mut CycleBranch, at: &[f64]) {
+    /// monitor has a value the parameter may be more sensitive than the cycle.) `renew` computes what depends on a cycle that became finer.
+    pub(super) fn confirm(
+        &self,
+        branch: &mut CycleBranch,
+        at: &[f64],
+        renew: &mut dyn FnMut(&mut CyclePoint),
+    ) {
         if branch.stops.iter().flatten().any(|stop| matches!(stop, Stop::Interrupted)) {
             return;
         }
@@ -84,6 +89,7 @@ impl<'a> Asked<'a> {
             };
             if is_shown && point.orbit.mesh.len() > 1 {
                 self.confirm_cycle(point);
+                renew(point);
             }
         }
     }

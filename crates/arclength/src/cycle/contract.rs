@@ -146,17 +146,20 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn measure(&mut self, solution: &mut Solution<CycleInspection>) {
-        let [fixed, across] = self.errors(&solution.unknown, &solution.tangent);
-        let fitted = self.fitted(&solution.unknown, &solution.tangent);
+        let mut errors = self.errors(&solution.unknown, &solution.tangent);
         let point = &mut solution.point;
-        point.error_across = across;
-        point.error_estimate = if point.is_neutral { across } else { fixed };
-        match fitted {
-            Ok(Some((fitted, ranges))) => (point.fitted, point.ranges) = (Some(fitted), ranges),
+        point.error_across = errors[1];
+        match self.fitted(&solution.unknown, &solution.tangent) {
+            Ok(Some(refitted)) => {
+                (point.fitted, point.ranges) = (Some(refitted.fitted), refitted.ranges);
+                errors = refitted.errors;
+            }
             Ok(None) => {}
             // Its polynomials go on beyond a border, nobody knows how far.
-            Err(_) => point.error_estimate = NOTHING_KNOWN,
+            Err(_) => errors = [NOTHING_KNOWN; 2],
         }
+        let [fixed, across] = errors;
+        point.error_estimate = if point.is_neutral { across } else { fixed };
     }
 
     fn resolves(&mut self, point: &CycleInspection) -> bool {

@@ -16,7 +16,7 @@ use crate::collocation::global_error::{GlobalError, largest};
 use crate::collocation::mesh::{SAME_TIME, error_profile, fit_jumps, jump_times, widen_beside_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::collocation::resolution::Resolution;
-use crate::continuation::{Adaptation, Curve, Settings, Solution, correct};
+use crate::continuation::{Adaptation, Curve, Equations, Settings, Solution, correct};
 use crate::error::{CorrectionFailure, Error};
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
@@ -87,6 +87,13 @@ impl CycleInspection {
 pub(crate) struct Fitted {
     pub mesh: Vec<f64>,
     pub states: Vec<f64>,
+}
+
+/// A cycle with mesh points at its borders, its extremes, and its errors as [`CycleCurve::errors`] tells them.
+pub(super) struct Refitted {
+    pub fitted: Fitted,
+    pub ranges: Vec<Range>,
+    pub errors: [f64; 2],
 }
 
 /// Times that mesh points are moved to the borders that a cycle passes, at most.
@@ -286,49 +293,74 @@ impl<'a> CycleCurve<'a> {
         first.filter(|_| !holds)
     }
 
-    /// The same cycle with mesh points at the borders, and its extremes; `None` where the mesh has them. The curve stays as it is.
+    /// The same cycle with mesh points at the borders; `None` where the mesh has them. The curve stays as it is.
     ///
     /// # Errors
     /// [`Error::NotFound`] where the cycle is not found with such mesh points.
-    pub(super) fn fitted(
-        &mut self,
-        unknown: &[f64],
-        tangent: &[f64],
-    ) -> Result<Option<(Fitted, Vec<Range>)>, Error> {
+    pub(super) fn fitted(&mut self, unknown: &[f64], tangent: &[f64]) -> Result<Option<Refitted>, Error> {
         if !self.collocation.problem.has_borders() {
             return Ok(None);
         }
         let kept = (self.collocation.mesh().to_vec(), self.collocation.problem.segments.clone());
-        let (mut moved, mut direction) = (unknown.to_vec(), tangent.to_vec());
-        if self.passes_borders_outside(unknown) {
-            self.keep_borders_inside(&mut moved, &mut [&mut direction]);
-        }
-        let amplitudes = self.amplitudes.clone();
-        widen_beside_jumps(&mut self.collocation, &amplitudes, &mut moved, &mut [&mut direction]);
-        let mut fits = 0;
-        let found = loop {
-            match fit_jumps(&mut self.collocation, &mut moved, &mut [&mut direction]) {
-                Some(distance) if distance <= SAME_TIME => break Ok(fits > 0),
-                Some(_) if fits < MOST_FITS => fits += 1,
-                _ => break Err(CorrectionFailure::Diverged),
-            }
-            let mut border = vec![0.0; direction.len()];
-            self.apply_metric(&direction, &mut border);
-            let settings = self.settings;
-            if let Err(cause) = correct(self, &mut moved, &border, &settings) {
-                break Err(cause);
-            }
+        let mut fitted = self.refitted(unknown, tangent, false);
+        let across = |found: &Result<Option<Refitted>, CorrectionFailure>| match found {
+            Ok(found) => found.as_ref().map_or(0.0, |refitted| refitted.errors[1]),
+            Err(_) => f64::INFINITY,
         };
-        let fitted = found.map(|is_moved| {
-            is_moved.then(|| {
-                let states = moved[..moved.len() - 2].to_vec();
-                let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
-                (Fitted { mesh: self.collocation.mesh().to_vec(), states }, ranges)
-            })
-        });
+        if across(&fitted) > self.resolution.tolerance {
+            self.collocation.problem.segments.clone_from(&kept.1);
+            self.collocation.set_mesh(kept.0.clone(), unknown);
+            let widened = self.refitted(unknown, tangent, true);
+            if across(&widened) < across(&fitted) {
+                fitted = widened;
+            }
+        }
         self.collocation.problem.segments = kept.1;
         self.collocation.set_mesh(kept.0, unknown);
         fitted.map_err(|cause| Error::NotFound { sought: "cycle with mesh points at its borders", cause })
+    }
+
+    /// As [`fitted`](Self::fitted), on the mesh as it is or, if `widened`, on one without narrow intervals beside borders. The mesh is left
+    /// where it ends.
+    fn refitted(
+        &mut self,
+        unknown: &[f64],
+        tangent: &[f64],
+        widened: bool,
+    ) -> Result<Option<Refitted>, CorrectionFailure> {
+        let (mut moved, mut direction) = (unknown.to_vec(), tangent.to_vec());
+        let mut border = vec![0.0; direction.len()];
+        let settings = self.settings;
+        if self.passes_borders_outside(unknown) {
+            self.keep_borders_inside(&mut moved, &mut [&mut direction]);
+        }
+        if widened {
+            let amplitudes = self.amplitudes.clone();
+            widen_beside_jumps(&mut self.collocation, &amplitudes, &mut moved, &mut [&mut direction]);
+        }
+        let mut fits = 0;
+        loop {
+            match fit_jumps(&mut self.collocation, &mut moved, &mut [&mut direction]) {
+                Some(distance) if distance <= SAME_TIME => break,
+                Some(_) if fits < MOST_FITS => fits += 1,
+                _ => return Err(CorrectionFailure::Diverged),
+            }
+            border.resize(direction.len(), 0.0);
+            self.apply_metric(&direction, &mut border);
+            correct(self, &mut moved, &border, &settings)?;
+        }
+        if fits == 0 {
+            return Ok(None);
+        }
+        let mut residual = vec![0.0; moved.len()];
+        if self.factorize(&moved, &border, &mut residual) == 0.0 {
+            return Err(CorrectionFailure::Singular);
+        }
+        let errors = self.errors(&moved, &direction);
+        let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
+        moved.truncate(moved.len() - 2);
+        let fitted = Fitted { mesh: self.collocation.mesh().to_vec(), states: moved };
+        Ok(Some(Refitted { fitted, ranges, errors }))
     }
 
     /// Counts the unit time from a mesh point on.

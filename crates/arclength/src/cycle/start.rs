@@ -189,7 +189,10 @@ impl<'a> Cycles<'a> {
             });
         keep_neutral_families(&mut branch);
         asked.refine_ends(&mut branch);
-        asked.confirm(&mut branch, at);
+        asked.confirm(&mut branch, at, &mut |point| {
+            point.monitors =
+                monitors.iter().map(|monitor| monitor.value(point).unwrap_or(f64::NAN)).collect();
+        });
         Ok(branch)
     }
 }
