@@ -5,8 +5,9 @@
 //! meshes, the parameter being the same, until they agree; the finest solution is the one that is told, with an error that was
 //! measured. What rounding leaves is measured too, by one more step of Newton's method.
 
+use super::borders::MOST_FITS;
 use super::branch::{CycleBranch, CyclePoint};
-use super::curve::{CycleCurve, MOST_FITS};
+use super::curve::CycleCurve;
 use super::floquet::{Floquet, multiplier_changes};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;

@@ -1,6 +1,7 @@
 //! Newton's method on the defining system of a special cycle.
 
-use super::curve::{CycleCurve, CycleInspection, Fitted, MOST_FITS};
+use super::borders::MOST_FITS;
+use super::curve::{CycleCurve, CycleInspection, Fitted};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
 use super::extrema::ranges;

@@ -1,6 +1,7 @@
 //! Limit cycles: collocation, meshes, Floquet multipliers, special points.
 
 mod along_orbit;
+mod borders;
 mod branch;
 mod confirmation;
 mod contract;
