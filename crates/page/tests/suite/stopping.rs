@@ -40,7 +40,9 @@ fn what_is_stopped_gives_what_there_is() {
     let result = Answer::of(&text).result();
     let result: Value = serde_json::from_str(&result).unwrap();
     assert!(result["ends"][1]["cause"].as_str().unwrap().contains("interrupted"), "{}", result["ends"]);
-    assert!(result["points"].as_array().unwrap().len() > 1);
+    // The stop may come before a second point is computed.
+    let told = text.matches("event: point\n").count();
+    assert!(told > 0 && result["points"].as_array().unwrap().len() >= told, "{told} points were told");
     assert_eq!(server.post("/api/stop", &json!({"run": number})).body, "false");
 }
 
