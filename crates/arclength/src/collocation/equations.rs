@@ -368,6 +368,20 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         carried
     }
 
+    /// Replaces the mesh and carries the unknowns, which become the reference, and other vectors over to it.
+    pub(crate) fn move_to_mesh(
+        &mut self,
+        mesh: Vec<f64>,
+        unknown: &mut Vec<f64>,
+        vectors: &mut [&mut Vec<f64>],
+    ) {
+        *unknown = self.carry(unknown, &mesh);
+        for vector in vectors.iter_mut() {
+            **vector = self.carry(vector, &mesh);
+        }
+        self.set_mesh(mesh, unknown);
+    }
+
     /// Replaces the mesh; vectors have to be [carried](Self::carry) before. The reference is carried here.
     pub fn set_mesh(&mut self, mesh: Vec<f64>, unknown: &[f64]) {
         self.mesh = mesh;

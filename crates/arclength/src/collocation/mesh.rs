@@ -92,11 +92,17 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     let needed = intervals_needed(errors, degree, TARGET * resolution.tolerance);
     let wanted = (needed.ceil() as usize).max(resolution.fewest_intervals);
     let too_coarse = worst > resolution.tolerance || intervals < resolution.fewest_intervals;
+    let is_fine = !too_coarse && (intervals as f64) < EXCESS * wanted as f64;
     let kept = collocation.jump_points();
+    // Without jumps there is one part, which has its share.
+    if is_fine && kept.is_empty() {
+        collocation.set_reference(unknown);
+        return Ok((Adaptation::Unchanged, worst));
+    }
     let masses = masses(collocation.mesh(), errors, degree);
     let is_distorted = parts(&masses, &kept)
         .any(|(part, share)| part.len() as f64 > EXCESS_OF_A_PART * count_of_part(share, intervals) as f64);
-    if !too_coarse && !is_distorted && (intervals as f64) < EXCESS * wanted as f64 {
+    if is_fine && !is_distorted {
         collocation.set_reference(unknown);
         return Ok((Adaptation::Unchanged, worst));
     }
@@ -107,11 +113,7 @@ pub(crate) fn fit_mesh<P: BoundaryValueEquations>(
     let count = wanted.min(2 * intervals);
     let count = if too_coarse { count.max(intervals + 1) } else { count };
     let mesh = equidistribute(collocation.mesh(), &masses, count, &kept);
-    *unknown = collocation.carry(unknown, &mesh);
-    for vector in vectors.iter_mut() {
-        **vector = collocation.carry(vector, &mesh);
-    }
-    collocation.set_mesh(mesh, unknown);
+    collocation.move_to_mesh(mesh, unknown, vectors);
     Ok((Adaptation::Changed, worst))
 }
 
@@ -136,11 +138,7 @@ pub(crate) fn widen_beside_jumps<P: BoundaryValueEquations>(
     errors.iter_mut().filter(|error| **error < ROUNDING).for_each(|error| *error = 0.0);
     let masses = masses(mesh, &errors, collocation.gauss().degree());
     let mesh = equidistribute(mesh, &masses, collocation.intervals(), &kept);
-    *unknown = collocation.carry(unknown, &mesh);
-    for vector in vectors.iter_mut() {
-        **vector = collocation.carry(vector, &mesh);
-    }
-    collocation.set_mesh(mesh, unknown);
+    collocation.move_to_mesh(mesh, unknown, vectors);
 }
 
 /// Number of intervals of an equidistributed mesh that would have the error `target`.

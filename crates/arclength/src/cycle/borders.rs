@@ -67,11 +67,7 @@ impl CycleCurve<'_> {
             *found = known;
         } else if let Some(segments) = found {
             let finer = with_points(&mesh, &segments.times);
-            *unknown = collocation.carry(unknown, &finer);
-            for vector in vectors.iter_mut() {
-                **vector = collocation.carry(vector, &finer);
-            }
-            collocation.set_mesh(finer, unknown);
+            collocation.move_to_mesh(finer, unknown, vectors);
         }
         let is_turned = self.keep_borders_inside(unknown, vectors) || is_turned;
         let is_moved = !(is_same || touches) || moved.is_none_or(|moved| moved > SAME_TIME);
@@ -94,11 +90,7 @@ impl CycleCurve<'_> {
         if !collocation.mesh().contains(&origin) {
             let mut finer = collocation.mesh().to_vec();
             finer.insert(finer.partition_point(|time| *time < origin), origin);
-            *unknown = collocation.carry(unknown, &finer);
-            for vector in vectors.iter_mut() {
-                **vector = collocation.carry(vector, &finer);
-            }
-            self.collocation.set_mesh(finer, unknown);
+            self.collocation.move_to_mesh(finer, unknown, vectors);
         }
         let origin = self.collocation.mesh().partition_point(|time| *time < origin);
         self.count_from(origin, unknown, vectors);

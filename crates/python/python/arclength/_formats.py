@@ -55,10 +55,6 @@ def of_casadi(system: Mapping[str, Any]) -> tuple[Function, list[str], list[str]
 def _casadi_rules(casadi: Any) -> dict[int, Callable[..., Any]]:
     import numpy as np
 
-    def expm1(a: Any) -> Any:
-        # Exact to rounding for small numbers, and finite for large negative ones.
-        return np.tanh(0.5 * a) * (np.exp(a) + 1.0)
-
     def log1p(a: Any) -> Any:
         # With what rounding of 1 + a has lost: no choice of formulas, which would be a kink.
         rounded = 1.0 + a
@@ -88,7 +84,7 @@ def _casadi_rules(casadi: Any) -> dict[int, Callable[..., Any]]:
         "FMIN": np.minimum,
         "FMAX": np.maximum,
         "LOG1P": log1p,
-        "EXPM1": expm1,
+        "EXPM1": np.expm1,
         "HYPOT": lambda a, b: np.sqrt(a * a + b * b),
     }
     same = {"EXP": "exp", "LOG": "log", "SQRT": "sqrt", "FLOOR": "floor", "CEIL": "ceil", "SIGN": "sign"}

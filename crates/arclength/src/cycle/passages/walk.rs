@@ -63,9 +63,9 @@ impl Along<'_> {
     ) -> Result<(), Error> {
         let end = end_of(stretch);
         let switches = self.pieces.thresholds().len();
+        let (first, known) = (standing.course.clone(), found.len());
         for (index, pair) in stretch.times.windows(2).enumerate() {
             let [mut from, until] = [pair[0], pair[1]];
-            let mut before: Option<Course> = None;
             while let Some((time, place, upwards)) = self.exit(standing, from, until, end) {
                 let state = self.state(time, end);
                 from = time;
@@ -92,17 +92,16 @@ impl Along<'_> {
                     }
                     continue;
                 }
-                let turns_back = found.last().is_some_and(|last| {
+                let turns_back = |last: &mut Passage| {
                     last.time == time && last.gate.place == place && last.gate.upwards != upwards
-                });
-                if turns_back && let Some(course) = before.take() {
+                };
+                if found.len() > known && found.pop_if(turns_back).is_some() {
                     // A visit of no length is rounding, and there might be no end of them.
-                    found.pop();
-                    standing.course = course;
+                    standing.course =
+                        found[known..].last().map_or_else(|| first.clone(), |last| last.course.clone());
                     from = 0.5 * (time + until);
                     continue;
                 }
-                before = Some(standing.course.clone());
                 let (next, left) = self.behind(&standing.course, place, upwards, &state);
                 let jumps = self.rate_jumps(&standing.course, &next, place, &state);
                 let gate = Gate { place, upwards, events: Vec::new() };
