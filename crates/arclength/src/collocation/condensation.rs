@@ -8,15 +8,14 @@
 
 use super::bidiagonal::{Bidiagonal, Blocks, Sizes};
 use super::gauss::Gauss;
+use super::interior::{Interior, LinearField, Structure};
 use super::polynomials::combine;
 use crate::lanes::{Kernel, run};
-use crate::linear::lu_in_lanes::{self, Exchange, LANES, Lanes};
-use std::borrow::Cow;
+use crate::linear::lane_entry::{LANES, Lanes};
 
 /// A linearised collocation system and its factors; memory is kept from one factorisation to the next.
 #[derive(Debug, Clone)]
 pub(crate) struct Condensation {
-    pub(crate) gauss: Cow<'static, Gauss>,
     /// Number of state components.
     n: usize,
     /// Number of scalars.
@@ -33,14 +32,9 @@ pub(crate) struct Condensation {
     pub(crate) gradients: Vec<f64>,
     /// Derivatives of the dense rows with respect to the scalars, row by row; to be filled in.
     pub(crate) corner: Vec<f64>,
-    /// For each group of intervals: LU factors of the interior systems, `m n` rows, and behind them the interior responses
-    /// to `u_j` and the scalars, `n + E` columns. Lanes behind the last interval repeat it.
-    systems: Vec<Lanes>,
-    /// Rows exchanged in the factorisations, and for each group whether there are any.
-    exchanges: Vec<Exchange>,
-    exchanged: Vec<bool>,
-    /// Derivatives of one group times the widths; gradients.
-    scaled: Vec<Lanes>,
+    interior: Interior,
+    /// Gradients of one group.
+    gradient: Vec<Lanes>,
     /// Interior values that belong to a right-hand side.
     particular: Vec<Lanes>,
     transfer: Vec<f64>,
@@ -78,9 +72,14 @@ impl Jump {
 }
 
 impl Condensation {
-    pub(crate) fn new(degree: usize, n: usize, scalars: usize, boundary_conditions: usize) -> Self {
+    /// For polynomials of a degree, numbers of components, scalars and boundary conditions, and what is known of the derivatives.
+    pub(crate) fn new(
+        degree: usize,
+        [n, scalars, boundary_conditions]: [usize; 3],
+        structure: Structure,
+    ) -> Self {
         Self {
-            gauss: Gauss::of(degree),
+            interior: Interior::new(degree, n, scalars, structure),
             n,
             scalars,
             boundary_conditions,
@@ -89,10 +88,7 @@ impl Condensation {
             boundary: Vec::new(),
             gradients: Vec::new(),
             corner: Vec::new(),
-            systems: Vec::new(),
-            exchanges: Vec::new(),
-            exchanged: Vec::new(),
-            scaled: vec![Lanes::ZERO; degree * n * (n + scalars)],
+            gradient: vec![Lanes::ZERO; degree * n],
             particular: Vec::new(),
             transfer: Vec::new(),
             scalar_columns: Vec::new(),
@@ -106,8 +102,7 @@ impl Condensation {
 
     /// Makes room for a mesh of `intervals` intervals and clears what is summed up.
     pub(crate) fn prepare(&mut self, intervals: usize) {
-        let (n, e, degree) = (self.n, self.scalars, self.gauss.degree());
-        let inner = degree * n;
+        let (n, e, inner) = (self.n, self.scalars, self.inner());
         self.intervals = intervals;
         let dense_rows = self.bidiagonal_sizes().dense_rows();
         self.derivatives.resize(intervals * inner * (n + e), 0.0);
@@ -116,9 +111,7 @@ impl Condensation {
         self.corner.clear();
         self.corner.resize(dense_rows * e, 0.0);
         let groups = intervals.div_ceil(LANES);
-        self.systems.resize(groups * inner * (inner + n + e), Lanes::ZERO);
-        self.exchanges.resize(groups * inner, [0; LANES]);
-        self.exchanged.resize(groups, false);
+        self.interior.prepare(groups);
         self.particular.resize(groups * inner, Lanes::ZERO);
         self.transfer.resize(intervals * n * n, 0.0);
         self.scalar_columns.resize(intervals * n * e, 0.0);
@@ -140,7 +133,7 @@ impl Condensation {
     /// Index among all equations of a condition, counted from the first boundary condition to the border: the first `n` take
     /// the place of the continuity at the end of the last interval.
     pub(crate) fn place_of_condition(&self, condition: usize) -> usize {
-        let (n, size) = (self.n, (self.gauss.degree() + 1) * self.n);
+        let (n, size) = (self.n, (self.gauss().degree() + 1) * self.n);
         if condition < n {
             (self.intervals - 1) * size + condition
         } else {
@@ -153,20 +146,23 @@ impl Condensation {
         &self.transfer
     }
 
-    /// Number of interior unknowns of an interval, and of numbers of the system of a group.
+    /// The Gauss points.
     #[inline(always)]
-    fn sizes(&self) -> (usize, usize) {
-        let inner = self.gauss.degree() * self.n;
-        (inner, inner * (inner + self.n + self.scalars))
+    pub(crate) fn gauss(&self) -> &Gauss {
+        self.interior.gauss()
+    }
+
+    /// Number of interior unknowns of an interval.
+    #[inline(always)]
+    fn inner(&self) -> usize {
+        self.gauss().degree() * self.n
     }
 
     /// Interior values of the linearised flow that starts with `start` at the left end of an interval.
     pub(crate) fn interior_response(&self, interval: usize, start: &[f64], interior: &mut [f64]) {
-        let (inner, system) = self.sizes();
         let (group, lane) = (interval / LANES, interval % LANES);
-        let response = &self.systems[group * system + inner * inner..];
         interior.fill(0.0);
-        for (column, factor) in response.chunks_exact(inner).zip(start) {
+        for (column, factor) in self.interior.response(group).chunks_exact(self.inner()).zip(start) {
             for (entry, value) in interior.iter_mut().zip(column) {
                 *entry += factor * value.0[lane];
             }
@@ -175,8 +171,9 @@ impl Condensation {
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
     pub(crate) fn factorize(&mut self, mesh: &[f64]) -> f64 {
-        for group in 0..self.exchanged.len() {
-            if !run(Elimination(self, group, mesh)) {
+        for group in 0..self.intervals.div_ceil(LANES) {
+            let field = LinearField { mesh, derivatives: &self.derivatives };
+            if !run(Elimination(&mut self.interior, group, field)) {
                 return 0.0;
             }
             run(Reduction(self, group));
@@ -204,73 +201,16 @@ impl Condensation {
         self.bidiagonal.factorize(blocks, sizes)
     }
 
-    /// Factorises the interior systems of a group of intervals and forms their responses.
-    #[inline(always)]
-    fn condense<const FUSED: bool>(&mut self, group: usize, mesh: &[f64]) -> bool {
-        let (inner, system) = self.sizes();
-        let (n, e, degree) = (self.n, self.scalars, self.gauss.degree());
-        let columns = n + e;
-        for lane in 0..LANES {
-            let interval = (group * LANES + lane).min(self.intervals - 1);
-            let width = mesh[interval + 1] - mesh[interval];
-            let derivatives = &self.derivatives[interval * inner * columns..(interval + 1) * inner * columns];
-            for (target, derivative) in self.scaled.iter_mut().zip(derivatives) {
-                target.0[lane] = width * derivative;
-            }
-        }
-        let matrix = &mut self.systems[group * system..(group + 1) * system];
-        let (square, response) = matrix.split_at_mut(inner * inner);
-        // Column (k, c) of the interior system: unit vector minus width a_ik df/dy_c at Gauss point k.
-        for (k, block) in square.chunks_exact_mut(n * inner).enumerate() {
-            for (component, target) in block.chunks_exact_mut(inner).enumerate() {
-                let slope = &self.scaled[(k * columns + component) * n..][..n];
-                for (i, entries) in target.chunks_exact_mut(n).enumerate() {
-                    let factor = -self.gauss.integration[i * degree + k];
-                    for (entry, value) in entries.iter_mut().zip(slope) {
-                        *entry = value.map(|value| factor * value);
-                    }
-                }
-                let diagonal = &mut target[k * n + component];
-                *diagonal = diagonal.map(|entry| 1.0 + entry);
-            }
-        }
-        response.fill(Lanes::ZERO);
-        let (to_states, to_scalars) = response.split_at_mut(n * inner);
-        for (component, target) in to_states.chunks_exact_mut(inner).enumerate() {
-            target.iter_mut().skip(component).step_by(n).for_each(|entry| *entry = Lanes::ONE);
-        }
-        for (scalar, target) in to_scalars.chunks_exact_mut(inner).enumerate() {
-            for (i, entries) in target.chunks_exact_mut(n).enumerate() {
-                for k in 0..degree {
-                    let slope = &self.scaled[(k * columns + n + scalar) * n..][..n];
-                    let factor = Lanes::from(self.gauss.integration[i * degree + k]);
-                    for (entry, value) in entries.iter_mut().zip(slope) {
-                        *entry = entry.plus::<FUSED>(factor, *value);
-                    }
-                }
-            }
-        }
-        let exchanges = &mut self.exchanges[group * inner..(group + 1) * inner];
-        match lu_in_lanes::factorize_and_solve::<FUSED>(matrix, inner, exchanges) {
-            Some(exchanged) => {
-                self.exchanged[group] = exchanged;
-                true
-            }
-            None => false,
-        }
-    }
-
     /// Forms the transfer blocks of a group of intervals from their responses.
     #[inline(always)]
     fn write_transfer<const FUSED: bool>(&mut self, group: usize) {
-        let (inner, system) = self.sizes();
-        let (n, e) = (self.n, self.scalars);
-        let response = &self.systems[group * system + inner * inner..(group + 1) * system];
-        for (column, interior) in response.chunks_exact(inner).enumerate() {
+        let (n, e, inner) = (self.n, self.scalars, self.inner());
+        let end = &self.interior.gauss().end;
+        for (column, interior) in self.interior.response(group).chunks_exact(inner).enumerate() {
             for row in 0..n {
-                let start = if row == column { self.gauss.end[0] } else { 0.0 };
+                let start = if row == column { end[0] } else { 0.0 };
                 let mut sum = Lanes::from(start);
-                for (value, weight) in interior[row..].iter().step_by(n).zip(&self.gauss.end[1..]) {
+                for (value, weight) in interior[row..].iter().step_by(n).zip(&end[1..]) {
                     sum = sum.plus::<FUSED>(*value, Lanes::from(*weight));
                 }
                 for (interval, lane) in lanes_of(group, self.intervals) {
@@ -287,19 +227,17 @@ impl Condensation {
     /// Expresses the dense rows in a group of intervals by the left ends and the scalars.
     #[inline(always)]
     fn reduce_rows<const FUSED: bool>(&mut self, group: usize) {
-        let (inner, system) = self.sizes();
-        let (n, e, intervals) = (self.n, self.scalars, self.intervals);
+        let (n, e, inner, intervals) = (self.n, self.scalars, self.inner(), self.intervals);
         let size = inner + n;
-        let response = &self.systems[group * system + inner * inner..(group + 1) * system];
         for row in 0..self.bidiagonal_sizes().dense_rows() {
-            let gradient = &mut self.scaled[..inner];
+            let gradient = &mut self.gradient;
             for (interval, lane) in lanes_of(group, intervals) {
                 let source = &self.gradients[(row * intervals + interval) * size + n..][..inner];
                 for (target, entry) in gradient.iter_mut().zip(source) {
                     target.0[lane] = *entry;
                 }
             }
-            for (column, interior) in response.chunks_exact(inner).enumerate() {
+            for (column, interior) in self.interior.response(group).chunks_exact(inner).enumerate() {
                 let mut sum = Lanes::ZERO;
                 for (entry, value) in gradient.iter().zip(interior) {
                     sum = sum.plus::<FUSED>(*entry, *value);
@@ -323,8 +261,7 @@ impl Condensation {
 
     #[inline(always)]
     fn solve_kernel<const FUSED: bool>(&mut self, right_hand_side: &mut [f64]) {
-        let (inner, system) = self.sizes();
-        let (n, intervals) = (self.n, self.intervals);
+        let (n, inner, intervals) = (self.n, self.inner(), self.intervals);
         let size = inner + n;
         for condition in 0..self.conditions.len() {
             let place = self.place_of_condition(condition);
@@ -340,13 +277,11 @@ impl Condensation {
                     target.0[lane] = *value;
                 }
             }
-            let factors = &self.systems[group * system..][..inner * inner];
-            let exchanges =
-                self.exchanged[group].then(|| &self.exchanges[group * inner..(group + 1) * inner]);
-            lu_in_lanes::solve::<FUSED>(factors, inner, exchanges, values);
+            self.interior.solve::<FUSED>(group, values);
+            let weights = &self.interior.gauss().end[1..];
             for component in 0..n {
                 let mut sum = Lanes::ZERO;
-                for (value, weight) in values[component..].iter().step_by(n).zip(&self.gauss.end[1..]) {
+                for (value, weight) in values[component..].iter().step_by(n).zip(weights) {
                     sum = sum.plus::<FUSED>(*value, Lanes::from(*weight));
                 }
                 for (lane, block) in here.chunks_exact(size).enumerate() {
@@ -376,8 +311,7 @@ impl Condensation {
         for (group, values) in self.particular.chunks_exact_mut(inner).enumerate() {
             let count = LANES.min(intervals - group * LANES);
             let starts = &self.states[group * LANES * n..][..count * n];
-            let response = &self.systems[group * system + inner * inner..(group + 1) * system];
-            for (column, interior) in response.chunks_exact(inner).enumerate() {
+            for (column, interior) in self.interior.response(group).chunks_exact(inner).enumerate() {
                 let coefficient = if column < n {
                     Lanes::from(std::array::from_fn(|lane| starts[lane.min(count - 1) * n + column]))
                 } else {
@@ -401,14 +335,14 @@ impl Condensation {
 
 /// The elimination of the interior of a group of intervals, with the vector instructions of the processor. Kernels are kept
 /// small: in a large one the loops have too few registers.
-struct Elimination<'a>(&'a mut Condensation, usize, &'a [f64]);
+struct Elimination<'a>(&'a mut Interior, usize, LinearField<'a>);
 
 impl Kernel for Elimination<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn run<const FUSED: bool>(self) -> bool {
-        self.0.condense::<FUSED>(self.1, self.2)
+        self.0.factorize::<FUSED>(self.1, self.2)
     }
 }
 

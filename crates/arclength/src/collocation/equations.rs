@@ -69,7 +69,11 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         let boundary_conditions = n + problem.scalars() - 1 - problem.integral_conditions();
         Self {
             has_jumps: !problem.jumps().is_empty(),
-            condensation: Condensation::new(degree, n, problem.scalars(), boundary_conditions),
+            condensation: Condensation::new(
+                degree,
+                [n, problem.scalars(), boundary_conditions],
+                problem.structure(),
+            ),
             problem,
             mesh,
             reference: vec![0.0; size],
@@ -104,7 +108,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
 
     /// Gauss points and coefficients.
     pub fn gauss(&self) -> &Gauss {
-        &self.condensation.gauss
+        self.condensation.gauss()
     }
 
     /// Number of unknowns of one interval: left end and interior values.

@@ -12,6 +12,7 @@
 
 use super::condensation::{Condensation, Jump};
 use super::gauss::Gauss;
+use super::interior::Structure;
 
 /// A function with `n` components on all nodes of a mesh: for every interval its left end and its Gauss points.
 pub(crate) type NodeFunction = Vec<f64>;
@@ -78,7 +79,7 @@ impl LinearProblem {
         let degree = nodes.gauss.degree();
         let intervals = nodes.mesh.len() - 1;
         let size = (degree + 1) * n;
-        let mut condensation = Condensation::new(degree, n, scalars, n);
+        let mut condensation = Condensation::new(degree, [n, scalars, n], Structure::Dense);
         condensation.prepare(intervals);
         for (component, sign) in signs.iter().enumerate() {
             condensation.boundary[component * (n + 1)] = 1.0;
@@ -118,7 +119,7 @@ impl LinearProblem {
         values: &[f64],
     ) -> Option<(NodeFunction, Vec<f64>)> {
         let n = self.components;
-        let degree = self.condensation.gauss.degree();
+        let degree = self.condensation.gauss().degree();
         let size = (degree + 1) * n;
         let mut unknown = vec![0.0; inhomogeneity.len()];
         for (interval, pair) in self.mesh.windows(2).enumerate() {
@@ -127,7 +128,7 @@ impl LinearProblem {
             let target = &mut unknown[interval * size + n..(interval + 1) * size];
             for (row, entry) in target.chunks_exact_mut(n).enumerate() {
                 for (column, value) in source.chunks_exact(n).enumerate() {
-                    let weight = width * self.condensation.gauss.integration[row * degree + column];
+                    let weight = width * self.condensation.gauss().integration[row * degree + column];
                     for (entry, value) in entry.iter_mut().zip(value) {
                         *entry += weight * value;
                     }

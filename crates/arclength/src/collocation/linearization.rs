@@ -3,6 +3,7 @@
 
 use super::condensation::Jump;
 use super::equations::Collocation;
+use super::interior::Structure;
 use super::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::JacobianScalar;
@@ -22,6 +23,20 @@ impl<const D: usize> DualWorkspace<D> {
             scalars: vec![Dual::zero(); scalars],
             values: vec![Dual::zero(); n],
             integrands: vec![Dual::zero(); integrals],
+        }
+    }
+
+    /// Sets a point and the directions of the derivatives, which are counted through states and scalars.
+    #[inline(always)]
+    fn seed(&mut self, directions: &[usize], state: &[f64], scalars: &[f64]) {
+        let n = state.len();
+        for (dual, value) in self.state.iter_mut().zip(state).chain(self.scalars.iter_mut().zip(scalars)) {
+            *dual = Dual::constant(*value);
+        }
+        for (index, &direction) in directions.iter().enumerate() {
+            let dual =
+                if direction < n { &mut self.state[direction] } else { &mut self.scalars[direction - n] };
+            dual.derivatives[index] = 1.0;
         }
     }
 }
@@ -60,9 +75,13 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         self.condensation.gradients[integrals.len() * intervals * size..]
             .copy_from_slice(&border[..intervals * size]);
         self.condensation.corner[integrals.len() * e..].copy_from_slice(&border[intervals * size..]);
-        let directions =
-            (0..n + e).filter(|&column| Some(column) != self.problem.factor().map(|index| n + index));
-        let directions: Vec<usize> = directions.collect();
+        let leading = self.problem.structure().leading(n);
+        let known: Vec<usize> = (0..e).filter(|&scalar| self.problem.is_known(scalar)).collect();
+        let of_field: Vec<usize> = (0..leading)
+            .chain((0..e).filter(|scalar| !known.contains(scalar)).map(|scalar| n + scalar))
+            .collect();
+        // Where the field is differentiated in fewer directions than the integrands, these are differentiated apart.
+        let apart: Vec<usize> = if leading < n { (0..n + e).collect() } else { Vec::new() };
         let few = self.problem.takes_few_directions();
         let most = if few { NARROW } else { WIDE };
         let mut narrow = DualWorkspace::<NARROW>::new(n, e, integrals.len());
@@ -74,22 +93,30 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 let state = &here[n * (point + 1)..n * (point + 2)];
                 let value = &mut values[point * n..(point + 1) * n];
                 let place = Place { interval, point };
-                for now in directions.chunks(most) {
+                for (chunk, now) in of_field.chunks(most).enumerate() {
                     // The values are the same in all chunks, so that only the first one counts them.
-                    let sums = if now[0] == directions[0] { &mut integrals[..] } else { &mut [] };
+                    let sums = if chunk == 0 { &mut integrals[..] } else { &mut [] };
+                    let sums = apart.is_empty().then_some(sums);
                     if now.len() <= NARROW {
-                        self.differentiate(place, now, state, scalars, &mut narrow, value, sums);
+                        narrow.seed(now, state, scalars);
+                        self.differentiate_field(place, now, &mut narrow, value);
+                        if let Some(sums) = sums {
+                            self.differentiate_integrands(place, now, &mut narrow, sums);
+                        }
                     } else {
-                        self.differentiate(place, now, state, scalars, &mut wide, value, sums);
+                        wide.seed(now, state, scalars);
+                        self.differentiate_field(place, now, &mut wide, value);
+                        if let Some(sums) = sums {
+                            self.differentiate_integrands(place, now, &mut wide, sums);
+                        }
                     }
                 }
-                if let Some(factor) = self.problem.factor() {
-                    let column = (interval * degree + point) * (n + e) + n + factor;
-                    let target = &mut self.condensation.derivatives[column * n..][..n];
-                    for (entry, value) in target.iter_mut().zip(value.iter()) {
-                        *entry = value / scalars[factor];
-                    }
+                for (chunk, now) in apart.chunks(WIDE).enumerate() {
+                    let sums = if chunk == 0 { &mut integrals[..] } else { &mut [] };
+                    wide.seed(now, state, scalars);
+                    self.differentiate_integrands(place, now, &mut wide, sums);
                 }
+                self.complete(place, &known, state, scalars, value);
             }
             self.interval_residual(interval, states, &values, &mut residual[interval * size..][..size]);
             if self.has_jumps
@@ -169,53 +196,83 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         }
     }
 
-    /// Derivatives of field and integrands at one Gauss point in some directions, with the values of the field; those of the
-    /// integrands are added up.
-    #[allow(clippy::too_many_arguments)] // The inner loop of `factorize`, apart to be readable.
-    fn differentiate<const D: usize>(
+    /// Derivatives of the field at one Gauss point that are known without differentiation: in carried components and in some scalars.
+    fn complete(&mut self, place: Place, known: &[usize], state: &[f64], scalars: &[f64], value: &[f64]) {
+        let (n, e) = (state.len(), scalars.len());
+        let node = place.interval * self.gauss().degree() + place.point;
+        let block = &mut self.condensation.derivatives[node * n * (n + e)..(node + 1) * n * (n + e)];
+        for &scalar in known {
+            let target = &mut block[(n + scalar) * n..(n + scalar + 1) * n];
+            self.problem.known_derivative(scalar, state, scalars, value, target);
+        }
+        let structure = self.problem.structure();
+        let leading = structure.leading(n);
+        for first in (leading..n).step_by(leading) {
+            for component in 0..leading {
+                let (source, target) = block.split_at_mut((first + component) * n);
+                target[..n].fill(0.0);
+                target[first..first + leading].copy_from_slice(&source[component * n..][..leading]);
+                if structure == Structure::Turning {
+                    let rotation = self.problem.rotation(scalars);
+                    let (row, sign) = if first == leading { (2 * leading, -1.0) } else { (leading, 1.0) };
+                    target[row + component] = sign * rotation;
+                }
+            }
+        }
+    }
+
+    /// Derivatives of the field at one Gauss point in the directions that were seeded, with its values.
+    #[inline(always)]
+    fn differentiate_field<const D: usize>(
         &mut self,
         place: Place,
         directions: &[usize],
-        state: &[f64],
-        scalars: &[f64],
         duals: &mut DualWorkspace<D>,
         values: &mut [f64],
-        integrals: &mut [f64],
     ) where
         Dual<f64, D>: JacobianScalar,
     {
-        let (n, e, intervals, size) = (state.len(), scalars.len(), self.intervals(), self.interval_size());
-        let columns = n + e;
+        let (n, columns) = (duals.state.len(), duals.state.len() + duals.scalars.len());
         let node = place.interval * self.gauss().degree() + place.point;
-        let weight =
-            (self.mesh[place.interval + 1] - self.mesh[place.interval]) * self.gauss().weights[place.point];
-        for (dual, value) in duals.state.iter_mut().zip(state).chain(duals.scalars.iter_mut().zip(scalars)) {
-            *dual = Dual::constant(*value);
-        }
-        for (index, &direction) in directions.iter().enumerate() {
-            let dual =
-                if direction < n { &mut duals.state[direction] } else { &mut duals.scalars[direction - n] };
-            dual.derivatives[index] = 1.0;
-        }
         let time = self.time(place.interval, place.point);
-        let reference = Reference {
-            time,
-            state: &self.reference[node * n..(node + 1) * n],
-            slope: &self.reference_slope[node * n..(node + 1) * n],
-        };
         self.problem.field(time, &duals.state, &duals.scalars, &mut duals.values);
-        self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
         for (entry, dual) in values.iter_mut().zip(&duals.values) {
             *entry = dual.value;
-        }
-        for (sum, dual) in integrals.iter_mut().zip(&duals.integrands) {
-            *sum += weight * dual.value;
         }
         for (index, &column) in directions.iter().enumerate() {
             let target = &mut self.condensation.derivatives[(node * columns + column) * n..][..n];
             for (entry, dual) in target.iter_mut().zip(&duals.values) {
                 *entry = dual.derivatives[index];
             }
+        }
+    }
+
+    /// Derivatives of the integrands at one Gauss point in the directions that were seeded; they and the values are added up.
+    #[inline(always)]
+    fn differentiate_integrands<const D: usize>(
+        &mut self,
+        place: Place,
+        directions: &[usize],
+        duals: &mut DualWorkspace<D>,
+        integrals: &mut [f64],
+    ) where
+        Dual<f64, D>: JacobianScalar,
+    {
+        let (n, e) = (duals.state.len(), duals.scalars.len());
+        let (intervals, size) = (self.intervals(), self.interval_size());
+        let node = place.interval * self.gauss().degree() + place.point;
+        let weight =
+            (self.mesh[place.interval + 1] - self.mesh[place.interval]) * self.gauss().weights[place.point];
+        let reference = Reference {
+            time: self.time(place.interval, place.point),
+            state: &self.reference[node * n..(node + 1) * n],
+            slope: &self.reference_slope[node * n..(node + 1) * n],
+        };
+        self.problem.integrands(&duals.state, &duals.scalars, reference, &mut duals.integrands);
+        for (sum, dual) in integrals.iter_mut().zip(&duals.integrands) {
+            *sum += weight * dual.value;
+        }
+        for (index, &column) in directions.iter().enumerate() {
             for (row, dual) in duals.integrands.iter().enumerate() {
                 let slope = weight * dual.derivatives[index];
                 if column < n {

@@ -6,7 +6,7 @@
 //! the Bratu problem is an example (`examples/bratu.rs`). Periodic orbits are the special case `y(1) = y(0)`; what is
 //! peculiar to them is in [`cycle`](crate::cycle).
 //!
-//! From the ground: `gauss` (points, weights, interpolation), `polynomials`, `problem`, `bidiagonal` and `condensation` (the linear
+//! From the ground: `gauss` (points, weights, interpolation), `polynomials`, `problem`, `bidiagonal`, `interior` and `condensation` (the linear
 //! algebra), `equations` and `linearization` ([`Collocation`]: residual and Jacobian), `mesh` (error estimate and adaptation), `global_error`, then
 //! `curve` and `fold`; `linear_problem` serves normal forms.
 
@@ -17,6 +17,7 @@ pub(crate) mod equations;
 mod fold;
 pub(crate) mod gauss;
 pub(crate) mod global_error;
+pub(crate) mod interior;
 pub(crate) mod linear_problem;
 mod linearization;
 pub(crate) mod mesh;
@@ -27,6 +28,7 @@ pub(crate) mod resolution;
 pub use curve::{BoundaryValueCurve, BoundaryValuePoint};
 pub use equations::Collocation;
 pub use gauss::Gauss;
+pub use interior::Structure;
 pub use polynomials::PiecewisePolynomial;
 pub use problem::{BoundaryValueEquations, BoundaryValueProblem, Reference};
 pub use resolution::Resolution;

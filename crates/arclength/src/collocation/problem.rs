@@ -1,5 +1,6 @@
 //! The contract of a boundary value problem that collocation can discretise.
 
+use super::interior::Structure;
 use crate::differentiation::Scalar;
 use crate::erased::JacobianScalar;
 
@@ -83,9 +84,31 @@ pub trait BoundaryValueEquations {
     /// As [`BoundaryValueProblem::integral_conditions`].
     fn integral_conditions(&self) -> usize;
 
-    /// Index of a scalar, not zero, that does nothing but multiply `g`, so that its derivative is known without differentiation.
-    fn factor(&self) -> Option<usize> {
-        None
+    /// What is known of the derivatives of `g` in the components.
+    fn structure(&self) -> Structure {
+        Structure::Dense
+    }
+
+    /// The rate at which functions [turn](Structure::Turning) into each other.
+    fn rotation(&self, _scalars: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Whether the derivative of `g` in a scalar is [known](Self::known_derivative) without differentiation. The integrands of a
+    /// [dense](Structure::Dense) problem must not depend on such a scalar.
+    fn is_known(&self, _scalar: usize) -> bool {
+        false
+    }
+
+    /// Writes the derivative of `g` in a scalar, given the `value` of `g`.
+    fn known_derivative(
+        &self,
+        _scalar: usize,
+        _state: &[f64],
+        _scalars: &[f64],
+        _value: &[f64],
+        _derivative: &mut [f64],
+    ) {
     }
 
     /// Whether the boundary conditions are linear, so that their derivatives never change.

@@ -156,7 +156,7 @@ pub fn locate<C: Curve>(
 ///
 /// # Errors
 /// As [`locate`].
-pub(super) fn locate_value<C: Curve>(
+pub(crate) fn locate_value<C: Curve>(
     curve: &mut C,
     [before, after]: [&Solution<C::Point>; 2],
     settings: &Settings,

@@ -135,6 +135,12 @@ pub trait Curve: Equations {
         None
     }
 
+    /// Rate of change of a test function per length of the curve, where it is known without further solutions, in the metric in which
+    /// the tangent has the length one.
+    fn test_rate(&self, _kind: Self::Kind, _solution: &Solution<Self::Point>) -> Option<f64> {
+        None
+    }
+
     /// How many of the signs at a solution may be rounding error, as they are if it is a special point itself.
     fn undecided(&self, _solution: &Solution<Self::Point>) -> usize {
         0

@@ -23,7 +23,7 @@ mod stop;
 
 pub use crate::error::CorrectionFailure;
 pub(crate) use both_ways::{BothWays, BothWaysOf, both_ways};
-pub(crate) use bracket::Bracket;
+pub(crate) use bracket::{Bracket, locate_value};
 pub use bracket::{locate, locate_by_defining_system};
 pub use corrector::{Correction, correct};
 pub(crate) use corrector::{finish, rounding_updates};
@@ -31,6 +31,7 @@ pub use curve::{Adaptation, Curve, Discretised, Ending, Equations, EventOf};
 pub(crate) use follow::exact_start;
 pub use follow::{Followed, FollowedCurve, Observer, Request, follow};
 pub(crate) use metric::{along, distance, metric_image, norm};
+pub(crate) use requested::fix;
 pub use requested::{Origin, Purpose, Target};
 pub use settings::Settings;
 pub use solution::{Bound, Solution};

@@ -252,7 +252,10 @@ fn insert_passages<C: Curve>(
 }
 
 /// The solution between two neighbours at which the unknown `from_end` has the given value.
-pub(super) fn fix<C: Curve>(
+///
+/// # Errors
+/// [`Error::NotFound`] where Newton's method does not lead to one, others where it cannot be inspected.
+pub(crate) fn fix<C: Curve>(
     curve: &mut C,
     before: &Solution<C::Point>,
     after: &Solution<C::Point>,

@@ -8,6 +8,7 @@
 
 use super::limit_cycle::phase_integrand;
 use super::segments::Segments;
+use crate::collocation::Structure;
 use crate::collocation::problem::{BoundaryValueEquations, Reference};
 use crate::differentiation::{Dual, Scalar};
 use crate::erased::{ErasedField, FieldScalar, JacobianScalar};
@@ -97,6 +98,62 @@ impl BoundaryValueEquations for Defining<'_> {
     #[inline]
     fn scalars(&self) -> usize {
         3 + self.kind.own_scalars()
+    }
+
+    fn structure(&self) -> Structure {
+        match self.kind {
+            Kind::Fold | Kind::Doubling => Structure::Carried,
+            Kind::Torus => Structure::Turning,
+            Kind::BranchPoint | Kind::Cycle => Structure::Dense,
+        }
+    }
+
+    fn rotation(&self, scalars: &[f64]) -> f64 {
+        if self.kind == Kind::Torus { scalars[1] } else { 0.0 }
+    }
+
+    /// All but the parameters, where functions are carried along.
+    fn is_known(&self, scalar: usize) -> bool {
+        self.structure() != Structure::Dense && scalar <= self.kind.own_scalars()
+    }
+
+    fn known_derivative(
+        &self,
+        scalar: usize,
+        state: &[f64],
+        scalars: &[f64],
+        value: &[f64],
+        derivative: &mut [f64],
+    ) {
+        let n = self.scales.len();
+        let period = scalars[0];
+        let (flow, carried) = value.split_at(n);
+        let (own, rest) = derivative.split_at_mut(n);
+        if scalar == 0 {
+            own.iter_mut().zip(flow).for_each(|(entry, value)| *entry = value / period);
+            for (index, (entry, value)) in rest.iter_mut().zip(carried).enumerate() {
+                let flow = flow[index % n] / period;
+                // What is not multiplied by the period.
+                let others = match self.kind {
+                    Kind::Fold => scalars[1] * flow,
+                    Kind::Torus if index < n => scalars[1] * state[2 * n + index] + scalars[2] * flow,
+                    Kind::Torus => scalars[3] * flow - scalars[1] * state[index],
+                    Kind::Doubling | Kind::BranchPoint | Kind::Cycle => 0.0,
+                };
+                *entry = (value - others) / period;
+            }
+            return;
+        }
+        own.fill(0.0);
+        for (index, entry) in rest.iter_mut().enumerate() {
+            let flow = flow[index % n] / period;
+            *entry = match (self.kind, scalar, index < n) {
+                (Kind::Fold, 1, _) | (Kind::Torus, 2, true) | (Kind::Torus, 3, false) => flow,
+                (Kind::Torus, 1, true) => state[2 * n + index],
+                (Kind::Torus, 1, false) => -state[index],
+                _ => 0.0,
+            };
+        }
     }
 
     #[inline]

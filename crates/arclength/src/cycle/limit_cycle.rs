@@ -63,9 +63,24 @@ impl BoundaryValueEquations for LimitCycle<'_> {
         1
     }
 
+    /// The period multiplies the field and does nothing else.
     #[inline(always)]
-    fn factor(&self) -> Option<usize> {
-        Some(0)
+    fn is_known(&self, scalar: usize) -> bool {
+        scalar == 0
+    }
+
+    #[inline(always)]
+    fn known_derivative(
+        &self,
+        _scalar: usize,
+        _state: &[f64],
+        scalars: &[f64],
+        value: &[f64],
+        derivative: &mut [f64],
+    ) {
+        for (entry, value) in derivative.iter_mut().zip(value) {
+            *entry = value / scalars[0];
+        }
     }
 
     #[inline(always)]

@@ -11,7 +11,7 @@ use super::eigenfunctions::{Eigenfunctions, Linearization};
 use super::limit_cycle::LimitCycle;
 use crate::collocation::equations::Collocation;
 use crate::collocation::linear_problem::{LinearProblem, NodeFunction};
-use crate::equilibrium::multilinear::MultilinearForms;
+use crate::equilibrium::multilinear::add_along;
 use crate::erased::ErasedField;
 
 /// A critical cycle.
@@ -48,21 +48,11 @@ impl<'a> CriticalCycle<'a> {
 
     /// `T` times a sum of multilinear forms at every Gauss point: every entry is a factor and its directions.
     fn forms(&self, terms: &[(f64, &[&[f64]])]) -> NodeFunction {
-        let n = self.linearization.scales.len();
         let mut values = vec![0.0; self.states.len()];
-        for (_, node, _) in self.linearization.nodes.gauss_points() {
-            let range = node * n..(node + 1) * n;
-            let forms = MultilinearForms {
-                field: self.field,
-                state: &self.states[range.clone()],
-                parameters: &self.parameters,
-            };
-            for (factor, directions) in terms {
-                let here: Vec<&[f64]> = directions.iter().map(|function| &function[range.clone()]).collect();
-                for (entry, value) in values[range.clone()].iter_mut().zip(forms.real(&here)) {
-                    *entry += self.period * factor * value;
-                }
-            }
+        for (factor, directions) in terms {
+            let points = self.linearization.nodes.gauss_points().map(|(_, node, _)| node);
+            let field = (self.field, &self.parameters[..]);
+            add_along(field, self.states, directions, self.period * factor, points, &mut values);
         }
         values
     }
@@ -219,30 +209,29 @@ impl<'a> CriticalCycle<'a> {
         let mut y = with_flow(second, beta_first / angle);
         let size = (linear.nodes.product(&x, &x) + linear.nodes.product(&y, &y)).sqrt();
         x.iter_mut().chain(&mut y).for_each(|value| *value /= size);
-        let (mixed, a) = self.periodic_response(&self.forms(&[(1.0, &[&x, &x]), (1.0, &[&y, &y])]))?;
+        let [xx, yy, xy] =
+            [[&x, &x], [&y, &y], [&x, &y]].map(|[one, other]| self.forms(&[(1.0, &[one, other])]));
+        let (mixed, a) = self.periodic_response(&combined(&xx, 1.0, &yy))?;
         // h20' = (T f_x - 2 i theta) h20 + T B(q, q)
         let double = self.rotating_matrices(2.0 * angle);
-        let source = interleave(
-            &self.forms(&[(1.0, &[&x, &x]), (-1.0, &[&y, &y])]),
-            &self.forms(&[(2.0, &[&x, &y])]),
-            n,
-        );
+        let source = interleave(&combined(&xx, -1.0, &yy), &combined(&xy, 1.0, &xy), n);
         let signs = vec![1.0; 2 * n];
         let mut problem = LinearProblem::new(linear.nodes, signs.clone(), &double, &[], &[])?;
         let (response, _) = problem.solve(&source, &[])?;
         let [h_x, h_y] = separate(&response, n);
         // h21' = (T f_x - i theta) h21 + T (2 B(q, h11) + B(conj q, h20) + C(q, q, conj q)) - 2 a q' - 2 d T q
+        let [with_x, with_y] = [1.0, -1.0].map(|sign| -> NodeFunction {
+            mixed.iter().zip(&h_x).map(|(mixed, h)| 2.0 * mixed + sign * h).collect()
+        });
         let mut real = self.forms(&[
-            (2.0, &[&x, &mixed]),
-            (1.0, &[&x, &h_x]),
+            (1.0, &[&x, &with_x]),
             (1.0, &[&y, &h_y]),
             (1.0, &[&x, &x, &x]),
             (1.0, &[&x, &y, &y]),
         ]);
         let mut imaginary = self.forms(&[
-            (2.0, &[&y, &mixed]),
+            (1.0, &[&y, &with_y]),
             (1.0, &[&x, &h_y]),
-            (-1.0, &[&y, &h_x]),
             (1.0, &[&x, &x, &y]),
             (1.0, &[&y, &y, &y]),
         ]);
@@ -287,6 +276,11 @@ impl<'a> CriticalCycle<'a> {
         }
         matrices
     }
+}
+
+/// A function plus a multiple of another.
+fn combined(one: &[f64], factor: f64, other: &[f64]) -> NodeFunction {
+    one.iter().zip(other).map(|(one, other)| one + factor * other).collect()
 }
 
 /// A function with real and imaginary parts of every state one after the other.

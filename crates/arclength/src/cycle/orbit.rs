@@ -323,6 +323,35 @@ impl Orbit {
         Ok(())
     }
 
+    /// The same orbit by polynomials of another degree; where that is lower, each interval becomes several.
+    pub(crate) fn with_degree(&self, degree: usize) -> Self {
+        if degree == self.degree {
+            return self.clone();
+        }
+        let parts = self.degree.div_ceil(degree);
+        let (from, gauss) = (Gauss::of(self.degree), Gauss::of(degree));
+        let polynomials =
+            Polynomials { mesh: &self.mesh, gauss: &from, n: self.dimension, states: &self.states };
+        let intervals = self.mesh.len() - 1;
+        let mut mesh = Vec::with_capacity(intervals * parts + 1);
+        let mut states = vec![0.0; intervals * parts * (degree + 1) * self.dimension];
+        let mut nodes = states.chunks_exact_mut(self.dimension);
+        for (interval, pair) in self.mesh.windows(2).enumerate() {
+            let point = |part: usize| pair[0] + (pair[1] - pair[0]) * part as f64 / parts as f64;
+            for part in 0..parts {
+                let (left, right) = (point(part), if part + 1 == parts { pair[1] } else { point(part + 1) });
+                mesh.push(left);
+                let inner = gauss.points.iter().map(|place| left + place * (right - left));
+                for (time, state) in std::iter::once(left).chain(inner).zip(&mut nodes) {
+                    polynomials.state_within(interval..interval + 1, time, state);
+                }
+            }
+        }
+        mesh.push(1.0);
+        drop(nodes);
+        Self { mesh, degree, dimension: self.dimension, states, period: self.period }
+    }
+
     /// Differences of the states from the middle of their ranges: the direction in which cycles grow.
     pub(super) fn deviation(&self) -> Vec<f64> {
         let middle: Vec<f64> = (0..self.dimension)
@@ -359,5 +388,33 @@ impl Orbit {
         let polynomials = Polynomials { mesh: &self.mesh, gauss, n: self.dimension, states: &self.states };
         polynomials.state(phase, &mut state);
         state
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polynomials_of_another_degree_are_the_same_orbit() {
+        let mesh = vec![0.0, 0.3, 0.5, 1.0];
+        let cubic = |t: f64| [1.0 + t * (2.0 - 3.0 * t * t), t * t];
+        let gauss = Gauss::of(6);
+        let states = mesh.windows(2).flat_map(|pair| {
+            let inner = gauss.points.iter().map(|place| pair[0] + place * (pair[1] - pair[0]));
+            std::iter::once(pair[0]).chain(inner).flat_map(cubic).collect::<Vec<f64>>()
+        });
+        let orbit =
+            Orbit { degree: 6, dimension: 2, states: states.collect(), period: 2.0, mesh: mesh.clone() };
+        for (degree, intervals) in [(8, 3), (6, 3), (4, 6), (3, 6)] {
+            let other = orbit.with_degree(degree);
+            assert!(other.check(2).is_ok());
+            assert_eq!(other.mesh.len(), intervals + 1);
+            for time in [0.0, 0.1, 0.6, 0.7, 1.3, 1.9] {
+                for (one, other) in orbit.state_at(time).iter().zip(other.state_at(time)) {
+                    assert!((one - other).abs() < 1e-14);
+                }
+            }
+        }
     }
 }

@@ -36,6 +36,53 @@ type Third = Dual<Second, 1>;
 type Fourth = Dual<Third, 1>;
 type Fifth = Dual<Fourth, 1>;
 
+/// Adds a multiple of a derivative along real directions in the space of states to `values` at many points: states, directions and
+/// values hold `n` numbers for each point, and `points` are the indices of those that are wanted.
+pub(crate) fn add_along(
+    (field, parameters): (ErasedField<'_>, &[f64]),
+    states: &[f64],
+    directions: &[&[f64]],
+    factor: f64,
+    points: impl Iterator<Item = usize>,
+    values: &mut [f64],
+) {
+    match directions.len() {
+        1 => add_nested::<First>((field, parameters), states, directions, factor, points, values),
+        2 => add_nested::<Second>((field, parameters), states, directions, factor, points, values),
+        3 => add_nested::<Third>((field, parameters), states, directions, factor, points, values),
+        4 => add_nested::<Fourth>((field, parameters), states, directions, factor, points, values),
+        _ => add_nested::<Fifth>((field, parameters), states, directions, factor, points, values),
+    }
+}
+
+fn add_nested<T: Nested + FieldScalar>(
+    (field, parameters): (ErasedField<'_>, &[f64]),
+    states: &[f64],
+    directions: &[&[f64]],
+    factor: f64,
+    points: impl Iterator<Item = usize>,
+    values: &mut [f64],
+) {
+    let n = field.dimension();
+    let mut slopes = vec![0.0; directions.len()];
+    let parameters: Vec<T> = parameters.iter().map(|&value| T::lift(value, &slopes)).collect();
+    let mut state = vec![T::zero(); n];
+    let mut image = vec![T::zero(); n];
+    for point in points {
+        for (component, entry) in state.iter_mut().enumerate() {
+            let place = point * n + component;
+            for (slope, direction) in slopes.iter_mut().zip(directions) {
+                *slope = direction[place];
+            }
+            *entry = T::lift(states[place], &slopes);
+        }
+        field.evaluate(&state, &parameters, &mut image);
+        for (entry, value) in values[point * n..].iter_mut().zip(&image) {
+            *entry += factor * value.mixed_derivative();
+        }
+    }
+}
+
 /// The derivatives of a field with respect to the state (and one parameter) at a point.
 #[derive(Clone, Debug)]
 pub(crate) struct MultilinearForms<'a> {

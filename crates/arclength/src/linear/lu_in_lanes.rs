@@ -6,17 +6,13 @@
 //! Duff, Erisman and Reid, *Direct Methods for Sparse Matrices*, 1986, section 5.4), because rows exchanged in one lane
 //! only are moved number by number.
 
+use super::lane_entry::{Entry, LANES, Lanes};
 use std::array::from_fn;
 
-/// Matrices that are factorised together.
-pub(crate) const LANES: usize = 4;
 /// Part of the largest entry below which the diagonal is not taken as pivot. Entries grow by at most `1 + 1/THRESHOLD` a step.
 const THRESHOLD: f64 = 0.1;
 /// Steps that are applied to the columns behind them together, so that these are read and written once for all.
 const BLOCK: usize = 4;
-
-/// One number for each matrix.
-pub(crate) type Lanes = crate::lanes::Lanes<LANES>;
 
 /// The rows exchanged at one step, by lane.
 pub(crate) type Exchange = [u32; LANES];
@@ -26,67 +22,65 @@ pub(crate) type Exchange = [u32; LANES];
 /// The reciprocals of the pivots are kept on the diagonal. Returns whether rows were exchanged in any lane, `None` if a matrix
 /// is singular or not finite.
 #[inline(always)]
-pub(crate) fn factorize_and_solve<const FUSED: bool>(
-    matrix: &mut [Lanes],
+pub(crate) fn factorize_and_solve<const FUSED: bool, E: Entry>(
+    matrix: &mut [E],
     rows: usize,
     exchanges: &mut [Exchange],
 ) -> Option<bool> {
     let full = rows - rows % BLOCK;
     let mut exchanged = false;
     for first in (0..full).step_by(BLOCK) {
-        exchanged |= eliminate_block::<FUSED, BLOCK>(matrix, rows, first, exchanges)?;
+        exchanged |= eliminate_block::<FUSED, BLOCK, E>(matrix, rows, first, exchanges)?;
     }
     exchanged |= match rows % BLOCK {
-        1 => eliminate_block::<FUSED, 1>(matrix, rows, full, exchanges)?,
-        2 => eliminate_block::<FUSED, 2>(matrix, rows, full, exchanges)?,
-        3 => eliminate_block::<FUSED, 3>(matrix, rows, full, exchanges)?,
+        1 => eliminate_block::<FUSED, 1, E>(matrix, rows, full, exchanges)?,
+        2 => eliminate_block::<FUSED, 2, E>(matrix, rows, full, exchanges)?,
+        3 => eliminate_block::<FUSED, 3, E>(matrix, rows, full, exchanges)?,
         _ => false,
     };
     let (factors, right_hand_sides) = matrix.split_at_mut(rows * rows);
     let mut pairs = right_hand_sides.chunks_exact_mut(2 * rows);
     for pair in &mut pairs {
         let (one, two) = pair.split_at_mut(rows);
-        substitute_back::<FUSED, 2>(factors, rows, [one, two]);
+        substitute_back::<FUSED, 2, E>(factors, rows, [one, two]);
     }
     for column in pairs.into_remainder().chunks_exact_mut(rows) {
-        substitute_back::<FUSED, 1>(factors, rows, [column]);
+        substitute_back::<FUSED, 1, E>(factors, rows, [column]);
     }
     Some(exchanged)
 }
 
 /// Solves for one more right-hand side with the factors; `exchanges` is `None` if no rows were exchanged.
 #[inline(always)]
-pub(crate) fn solve<const FUSED: bool>(
-    factors: &[Lanes],
+pub(crate) fn solve<const FUSED: bool, E: Entry>(
+    factors: &[E],
     rows: usize,
     exchanges: Option<&[Exchange]>,
-    column: &mut [Lanes],
+    column: &mut [E],
 ) {
     for (step, exchange) in exchanges.into_iter().flatten().enumerate() {
         for (lane, &row) in exchange.iter().enumerate() {
-            let entry = column[row as usize].0[lane];
-            column[row as usize].0[lane] = column[step].0[lane];
-            column[step].0[lane] = entry;
+            exchange_entries(column, row as usize, step, lane);
         }
     }
     let full = rows - rows % BLOCK;
     for first in (0..full).step_by(BLOCK) {
-        apply_block::<FUSED, BLOCK, 1>(&factors[first * rows..], rows, first, [&mut *column]);
+        apply_block::<FUSED, BLOCK, 1, E>(&factors[first * rows..], rows, first, [&mut *column]);
     }
     let rest = &factors[full * rows..];
     match rows % BLOCK {
-        1 => apply_block::<FUSED, 1, 1>(rest, rows, full, [&mut *column]),
-        2 => apply_block::<FUSED, 2, 1>(rest, rows, full, [&mut *column]),
-        3 => apply_block::<FUSED, 3, 1>(rest, rows, full, [&mut *column]),
+        1 => apply_block::<FUSED, 1, 1, E>(rest, rows, full, [&mut *column]),
+        2 => apply_block::<FUSED, 2, 1, E>(rest, rows, full, [&mut *column]),
+        3 => apply_block::<FUSED, 3, 1, E>(rest, rows, full, [&mut *column]),
         _ => {}
     }
-    substitute_back::<FUSED, 1>(factors, rows, [column]);
+    substitute_back::<FUSED, 1, E>(factors, rows, [column]);
 }
 
 /// `B` steps of the elimination, applied to all columns behind them. Returns whether rows were exchanged.
 #[inline(always)]
-fn eliminate_block<const FUSED: bool, const B: usize>(
-    matrix: &mut [Lanes],
+fn eliminate_block<const FUSED: bool, const B: usize, E: Entry>(
+    matrix: &mut [E],
     rows: usize,
     first: usize,
     exchanges: &mut [Exchange],
@@ -97,13 +91,10 @@ fn eliminate_block<const FUSED: bool, const B: usize>(
         let mut largest = Lanes::ZERO;
         for entry in &column[step..] {
             // `f64::max` would treat numbers that are not any, at twice the cost; the pivot's reciprocal shows them.
-            largest = Lanes::from(from_fn(|lane| {
-                let size = entry.0[lane].abs();
-                if size > largest.0[lane] { size } else { largest.0[lane] }
-            }));
+            largest = entry.sizes().zip(largest, |size, largest| if size > largest { size } else { largest });
         }
         exchanges[step] = [step as u32; LANES];
-        let pivot = column[step].map(f64::abs);
+        let pivot = column[step].sizes();
         if (0..LANES).any(|lane| pivot.0[lane] < THRESHOLD * largest.0[lane]) {
             exchanged = true;
             for lane in 0..LANES {
@@ -112,8 +103,8 @@ fn eliminate_block<const FUSED: bool, const B: usize>(
         }
         let (left, right) = matrix.split_at_mut((step + 1) * rows);
         let column = &mut left[step * rows..];
-        let reciprocal = column[step].map(|pivot| 1.0 / pivot);
-        if !reciprocal.0.iter().all(|entry| entry.is_finite() && *entry != 0.0) {
+        let reciprocal = column[step].reciprocal();
+        if !reciprocal.sizes().0.iter().all(|size| size.is_finite() && *size != 0.0) {
             return None;
         }
         column[step] = reciprocal;
@@ -131,41 +122,46 @@ fn eliminate_block<const FUSED: bool, const B: usize>(
     let mut pairs = right.chunks_exact_mut(2 * rows);
     for pair in &mut pairs {
         let (one, two) = pair.split_at_mut(rows);
-        apply_block::<FUSED, B, 2>(block, rows, first, [one, two]);
+        apply_block::<FUSED, B, 2, E>(block, rows, first, [one, two]);
     }
     for column in pairs.into_remainder().chunks_exact_mut(rows) {
-        apply_block::<FUSED, B, 1>(block, rows, first, [column]);
+        apply_block::<FUSED, B, 1, E>(block, rows, first, [column]);
     }
     Some(exchanged)
 }
 
 /// Brings the largest entry of a column to the diagonal, in one lane.
 #[cold]
-fn exchange_rows(matrix: &mut [Lanes], rows: usize, step: usize, lane: usize, exchange: &mut Exchange) {
+fn exchange_rows<E: Entry>(matrix: &mut [E], rows: usize, step: usize, lane: usize, exchange: &mut Exchange) {
     let column = &matrix[step * rows..(step + 1) * rows];
-    let size = |row: usize| column[row].0[lane].abs();
+    let size = |row: usize| column[row].sizes().0[lane];
     let row = (step + 1..rows).fold(step, |best, row| if size(row) > size(best) { row } else { best });
     exchange[lane] = row as u32;
     if row != step {
         for column in matrix.chunks_exact_mut(rows) {
-            let entry = column[row].0[lane];
-            column[row].0[lane] = column[step].0[lane];
-            column[step].0[lane] = entry;
+            exchange_entries(column, row, step, lane);
         }
     }
 }
 
+#[inline(always)]
+fn exchange_entries<E: Entry>(column: &mut [E], one: usize, other: usize, lane: usize) {
+    let (first, second) = (column[one], column[other]);
+    column[one].set_lane(lane, second);
+    column[other].set_lane(lane, first);
+}
+
 /// Applies `B` steps, whose columns of multipliers start at `block`, to some columns.
 #[inline(always)]
-fn apply_block<const FUSED: bool, const B: usize, const C: usize>(
-    block: &[Lanes],
+fn apply_block<const FUSED: bool, const B: usize, const C: usize, E: Entry>(
+    block: &[E],
     rows: usize,
     first: usize,
-    columns: [&mut [Lanes]; C],
+    columns: [&mut [E]; C],
 ) {
-    let mut heads = [[Lanes::ZERO; B]; C];
+    let mut heads = [[E::ZERO; B]; C];
     let middle = first + B;
-    let below: [&[Lanes]; B] = from_fn(|step| &block[step * rows + middle..(step + 1) * rows]);
+    let below: [&[E]; B] = from_fn(|step| &block[step * rows + middle..(step + 1) * rows]);
     let count = rows - middle;
     let mut rest = columns.map(|column| &mut column[first..rows]);
     for (head, column) in heads.iter_mut().zip(&rest) {
@@ -183,20 +179,24 @@ fn apply_block<const FUSED: bool, const B: usize, const C: usize>(
         column[..B].copy_from_slice(head);
     }
     let targets = rest.map(|column| &mut column[B..][..count]);
-    subtract_products::<FUSED, B, C>(below, heads, targets, count);
+    subtract_products::<FUSED, B, C, E>(below, heads, targets, count);
 }
 
 /// `target -= sum_k columns[k] factors[k]` for some targets of `count` entries.
 #[inline(always)]
-fn subtract_products<const FUSED: bool, const B: usize, const C: usize>(
-    columns: [&[Lanes]; B],
-    factors: [[Lanes; B]; C],
-    mut targets: [&mut [Lanes]; C],
+fn subtract_products<const FUSED: bool, const B: usize, const C: usize, E: Entry>(
+    columns: [&[E]; B],
+    factors: [[E; B]; C],
+    mut targets: [&mut [E]; C],
     count: usize,
 ) {
     let columns = columns.map(|column| &column[..count]);
     for row in 0..count {
-        let entries: [Lanes; B] = from_fn(|step| columns[step][row]);
+        // Not `from_fn`, which is not inlined for complex entries.
+        let mut entries = [E::ZERO; B];
+        for (entry, column) in entries.iter_mut().zip(&columns) {
+            *entry = column[row];
+        }
         for (target, factors) in targets.iter_mut().zip(&factors) {
             let mut entry = target[row];
             for step in 0..B {
@@ -209,33 +209,33 @@ fn subtract_products<const FUSED: bool, const B: usize, const C: usize>(
 
 /// Solves with the upper triangles.
 #[inline(always)]
-fn substitute_back<const FUSED: bool, const C: usize>(
-    factors: &[Lanes],
+fn substitute_back<const FUSED: bool, const C: usize, E: Entry>(
+    factors: &[E],
     rows: usize,
-    mut columns: [&mut [Lanes]; C],
+    mut columns: [&mut [E]; C],
 ) {
     let full = rows - rows % BLOCK;
     match rows % BLOCK {
-        1 => substitute_block::<FUSED, 1, C>(factors, rows, full, &mut columns),
-        2 => substitute_block::<FUSED, 2, C>(factors, rows, full, &mut columns),
-        3 => substitute_block::<FUSED, 3, C>(factors, rows, full, &mut columns),
+        1 => substitute_block::<FUSED, 1, C, E>(factors, rows, full, &mut columns),
+        2 => substitute_block::<FUSED, 2, C, E>(factors, rows, full, &mut columns),
+        3 => substitute_block::<FUSED, 3, C, E>(factors, rows, full, &mut columns),
         _ => {}
     }
     for first in (0..full).step_by(BLOCK).rev() {
-        substitute_block::<FUSED, BLOCK, C>(factors, rows, first, &mut columns);
+        substitute_block::<FUSED, BLOCK, C, E>(factors, rows, first, &mut columns);
     }
 }
 
 /// Solves for `B` entries and takes them out of those above.
 #[inline(always)]
-fn substitute_block<const FUSED: bool, const B: usize, const C: usize>(
-    factors: &[Lanes],
+fn substitute_block<const FUSED: bool, const B: usize, const C: usize, E: Entry>(
+    factors: &[E],
     rows: usize,
     first: usize,
-    columns: &mut [&mut [Lanes]; C],
+    columns: &mut [&mut [E]; C],
 ) {
-    let upper: [&[Lanes]; B] = from_fn(|step| &factors[(first + step) * rows..][..first + B]);
-    let mut heads = [[Lanes::ZERO; B]; C];
+    let upper: [&[E]; B] = from_fn(|step| &factors[(first + step) * rows..][..first + B]);
+    let mut heads = [[E::ZERO; B]; C];
     for (head, column) in heads.iter_mut().zip(columns.iter_mut()) {
         head.copy_from_slice(&column[first..first + B]);
         for step in (0..B).rev() {
@@ -246,8 +246,8 @@ fn substitute_block<const FUSED: bool, const B: usize, const C: usize>(
         }
         column[first..first + B].copy_from_slice(head);
     }
-    let targets: [&mut [Lanes]; C] = columns.each_mut().map(|column| &mut column[..first]);
-    subtract_products::<FUSED, B, C>(upper, heads, targets, first);
+    let targets: [&mut [E]; C] = columns.each_mut().map(|column| &mut column[..first]);
+    subtract_products::<FUSED, B, C, E>(upper, heads, targets, first);
 }
 
 #[cfg(test)]
@@ -284,9 +284,9 @@ mod tests {
             let mut later = matrix[rows * (rows + extra)..].to_vec();
             let mut dense = matrix.clone();
             let mut exchanges = vec![[0; LANES]; rows];
-            let exchanged = factorize_and_solve::<false>(&mut matrix[..rows * (rows + extra)], rows, &mut exchanges);
+            let exchanged = factorize_and_solve::<false, Lanes>(&mut matrix[..rows * (rows + extra)], rows, &mut exchanges);
             prop_assert!(exchanged.is_some());
-            solve::<false>(&matrix[..rows * rows], rows, Some(&exchanges), &mut later);
+            solve::<false, Lanes>(&matrix[..rows * rows], rows, Some(&exchanges), &mut later);
             for lane in 0..LANES {
                 // As accurate as partial pivoting, up to the growth allowed.
                 let (square, right) = dense.split_at_mut(rows * rows);
@@ -313,7 +313,7 @@ mod tests {
             let mut matrix: Vec<Lanes> =
                 [1.0, 0.0, 0.0, 1.0, 1.0, 1.0].map(|entry| Lanes::from([entry; LANES])).to_vec();
             matrix.iter_mut().zip(lane).for_each(|(entry, number)| entry.0[2] = number);
-            factorize_and_solve::<false>(&mut matrix, 2, &mut exchanges)
+            factorize_and_solve::<false, Lanes>(&mut matrix, 2, &mut exchanges)
         };
         assert_eq!(factorize([1.0, 0.0, 0.0, 1.0]), Some(false));
         assert_eq!(factorize([0.0, 1.0, 1.0, 0.0]), Some(true));

@@ -5,6 +5,7 @@ pub(crate) mod complex_lu;
 pub mod eigenvalues;
 pub mod eigenvectors;
 pub mod exponential;
+pub(crate) mod lane_entry;
 pub mod lu;
 pub(crate) mod lu_in_lanes;
 pub mod multiplier;

@@ -76,6 +76,12 @@ impl<C: Curve> Node<C> {
         self.rates.as_ref().and_then(Option::as_ref)
     }
 
+    /// Rate of a test function, where the curve knows it without further solutions.
+    pub(super) fn known_rate(&self, curve: &C, index: usize) -> Option<f64> {
+        let rate = curve.test_rate(curve.test_functions()[index].kind, &self.solution)?;
+        Some(rate / self.stretch(curve))
+    }
+
     /// Takes over rates that were computed at the same solution in the step before.
     pub(super) fn recall(&mut self, known: Option<Known>, curve: &C) {
         let Some(Known { unknown, stretch, mut rates }) = known else { return };

@@ -27,23 +27,30 @@ pub(super) fn suspicious<C: Curve>(
 ) -> Option<Suspicion> {
     turns_twice(curve, before, after, length).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
-        let own = !before.readings.is_empty()
-            && curve.test_functions().iter().any(|test| !test.of_spectrum && !test.is_turn);
-        if !rates_cost_nothing && !plausible(before, after, memory) {
-            return None;
+        let (known, unknown): (Vec<usize>, Vec<usize>) =
+            own_tests(curve).into_iter().partition(|&index| before.known_rate(curve, index).is_some());
+        if !rates_cost_nothing && !plausible(before, after, &known, memory) {
+            return tests_hide(curve, before, after, length, (&known, settings));
         }
-        if !rates_cost_nothing || own {
+        if !rates_cost_nothing || (!before.readings.is_empty() && !unknown.is_empty()) {
             // Both are computed before either is used, so that what is found does not depend on which is looked at first.
             before.rates(curve, length, settings)?;
             after.rates(curve, length, settings)?;
         }
+        let own: Vec<usize> = own_tests(curve);
         exponents_hide(curve, before, after, length, (most_crossings, settings))
-            .or_else(|| tests_hide(curve, before, after, length, settings))
+            .or_else(|| tests_hide(curve, before, after, length, (&own, settings)))
     })
 }
 
-/// Whether an exponent or a test function comes close to zero compared with its changes.
-fn plausible<C: Curve>(before: &Node<C>, after: &Node<C>, memory: &Memory) -> bool {
+/// Test functions that are not made of exponents.
+fn own_tests<C: Curve>(curve: &C) -> Vec<usize> {
+    let tests = curve.test_functions();
+    (0..tests.len()).filter(|&index| !tests[index].of_spectrum && !tests[index].is_turn).collect()
+}
+
+/// Whether an exponent or a test function, but for those whose rates are `known`, comes close to zero compared with its changes.
+fn plausible<C: Curve>(before: &Node<C>, after: &Node<C>, known: &[usize], memory: &Memory) -> bool {
     let indices = partners(&before.spectrum, &after.spectrum, None);
     let exponents =
         before.spectrum.exponents.iter().zip(indices).enumerate().map(|(index, (here, partner))| {
@@ -52,6 +59,9 @@ fn plausible<C: Curve>(before: &Node<C>, after: &Node<C>, memory: &Memory) -> bo
         });
     let readings = before.readings.iter().zip(&after.readings).enumerate().filter_map(|(index, pair)| {
         let (Some(here), Some(there)) = pair else { return None };
+        if known.contains(&index) {
+            return None;
+        }
         Some((here.value, there.value, memory.change_of_reading(index, here.value)))
     });
     exponents.filter(|(here, there, _)| *here > DEAD || *there > DEAD).chain(readings).any(
@@ -101,19 +111,19 @@ fn tests_hide<C: Curve>(
     before: &mut Node<C>,
     after: &mut Node<C>,
     length: f64,
-    settings: &Settings,
+    (indices, settings): (&[usize], &Settings),
 ) -> Option<Suspicion> {
-    let tests = curve.test_functions();
-    let own: Vec<usize> =
-        (0..tests.len()).filter(|&index| !tests[index].of_spectrum && !tests[index].is_turn).collect();
-    own.into_iter().find_map(|index| {
+    indices.iter().find_map(|&index| {
         let (here, there) = (before.readings[index]?, after.readings[index]?);
         let noise = here.noise.max(there.noise);
         if here.class != there.class || here.value.abs() <= noise || there.value.abs() <= noise {
             return None;
         }
-        let ahead = length * before.rates(curve, length, settings)?.readings[index]?;
-        let behind = length * after.rates(curve, length, settings)?.readings[index]?;
+        let mut rate = |node: &mut Node<C>| match node.known_rate(curve, index) {
+            Some(rate) => Some(rate),
+            None => node.rates(curve, length, settings)?.readings[index],
+        };
+        let [ahead, behind] = [length * rate(before)?, length * rate(after)?];
         Path::new([here.value, there.value], [ahead, behind]).suspicious()
     })
 }

@@ -10,9 +10,7 @@ use crate::collocation::mesh::{error_profile, fit_jumps, fit_mesh};
 use crate::collocation::polynomials::Polynomials;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
-use crate::continuation::{
-    Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate, metric_image,
-};
+use crate::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop};
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
 use crate::cycle::extrema::{Range, ranges};
@@ -34,31 +32,10 @@ use std::f64::consts::{PI, TAU};
 const EIGENFUNCTION_WEIGHT: f64 = 10.0;
 /// The sizes are measured anew when one has changed by this factor.
 const SIZE_CHANGE: f64 = 1.5;
-/// Part of a bracket to which a point of codimension two is located by the secant method.
-const LOCATION: f64 = 1e-12;
-/// A test function that is not this much smaller than at the ends of the bracket has a pole there and no zero.
-const POLE: f64 = 1e-3;
 
 /// A state counts as one that rests if its amplitude where the curve starts is below this part of the size that the
 /// nonlinearity of the field gives it.
 const RESTING: f64 = 1e-4;
-/// At a cusp both parameters turn: their speed there is at most this part of that at the ends of the bracket.
-const TURN: f64 = 1e-2;
-/// A coefficient this many times what it is at the ends of a bracket has a pole between them.
-const POLE_GROWTH: f64 = 30.0;
-
-/// What a change of sign of a test function turned out to be.
-enum Zero {
-    /// A point at which it vanishes, with error estimates of the two parameters.
-    At(Box<Solution<Inspection>>, [f64; 2]),
-    /// A coefficient goes through infinity.
-    Pole,
-    /// No point was located.
-    Missed,
-}
-
-/// A test function made of multipliers, which is at most one, is zero below this where the curve starts at a special point.
-const ZERO: f64 = 1e-10;
 /// Distance of the angle from that of a resonance within which it counts as there.
 const AT_RESONANCE: f64 = 1e-6;
 /// Samples for the difference of the halves of a doubled cycle.
@@ -89,7 +66,7 @@ pub(super) struct CycleLocusCurve<'a> {
     /// The cycle alone, for its multipliers and normal form.
     base: Collocation<LimitCycle<'a>>,
     resolution: Resolution,
-    settings: Settings,
+    pub(super) settings: Settings,
     states: usize,
     second: usize,
     sizes: StateSizes,
@@ -232,65 +209,8 @@ impl<'a> CycleLocusCurve<'a> {
         Ok(())
     }
 
-    /// The point at which a test function vanishes between two solutions.
-    fn zero(
-        &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
-        kind: SpecialKind,
-    ) -> Result<Zero, Error> {
-        let coefficient = monitor::is_coefficient(kind);
-        let zero = if coefficient { ZERO * after.point.natural_coefficient } else { ZERO };
-        let settings = self.settings;
-        let mut largest = 0.0_f64;
-        let test = |_: &mut Self, solution: &Solution<Inspection>| {
-            let value = test_value(solution, kind);
-            largest = value.map_or(largest, |value| largest.max(value.abs()));
-            value
-        };
-        let mut found = match locate(self, before, after, &settings, LOCATION, test) {
-            Ok(Some(found)) => found,
-            Ok(None) | Err(Error::NotFound { .. }) => return Ok(Zero::Missed),
-            Err(error) => return Err(error),
-        };
-        let value =
-            |solution: &Solution<Inspection>| test_value(solution, kind).map_or(f64::INFINITY, f64::abs);
-        let (ends, nearer) = (value(before).max(value(after)), value(before).min(value(after)));
-        let smallest = value(&found);
-        if smallest > POLE * nearer && smallest > zero {
-            return Ok(if coefficient && largest > POLE_GROWTH * ends { Zero::Pole } else { Zero::Missed });
-        }
-        if kind == SpecialKind::CuspOfCycles {
-            let speed = |solution: &Solution<Inspection>| {
-                let [one, other] = self.parameter_speeds(solution);
-                one.hypot(other)
-            };
-            if speed(&found) > TURN * speed(before).max(speed(after)) {
-                return Ok(Zero::Missed);
-            }
-        }
-        let border = metric_image(self, &found.tangent);
-        let mut residual = vec![0.0; found.unknown.len()];
-        if self.factorize(&found.unknown, &border, &mut residual) != 0.0 {
-            self.measure(&mut found);
-        }
-        // The parameters are known as well as the test function: its slope along the bracket gives the error.
-        let noise = if coefficient {
-            found.point.error_estimate * found.point.natural_coefficient
-        } else {
-            found.point.floquet.trivial_error
-        };
-        let end = found.unknown.len();
-        let part = LOCATION.max(smallest.max(noise) / ends.max(f64::MIN_POSITIVE)).min(1.0);
-        let error = [2, 1].map(|place| {
-            let change = (after.unknown[end - place] - before.unknown[end - place]).abs();
-            (part * change).max(f64::EPSILON * found.unknown[end - place].abs())
-        });
-        Ok(Zero::At(Box::new(found), error))
-    }
-
     /// Speeds of the two parameters over their ranges.
-    fn parameter_speeds(&self, solution: &Solution<Inspection>) -> [f64; 2] {
+    pub(super) fn parameter_speeds(&self, solution: &Solution<Inspection>) -> [f64; 2] {
         let last = solution.tangent.len() - 2;
         [0, 1].map(|index| solution.tangent[last + index] / self.system.parameter_scales[index])
     }
@@ -320,7 +240,7 @@ impl<'a> CycleLocusCurve<'a> {
     }
 
     /// The angle of a torus bifurcation as the curve counts it: past 0 and pi it goes on.
-    fn angle(&self, solution: &Solution<Inspection>) -> Option<f64> {
+    pub(super) fn angle(&self, solution: &Solution<Inspection>) -> Option<f64> {
         let end = solution.unknown.len() - self.system.collocation.problem.scalars();
         (self.kind() == Kind::Torus).then(|| solution.unknown[end + 1])
     }
@@ -374,7 +294,7 @@ pub(super) fn sizes_of_resting(sizes: &StateSizes, states: &[f64]) -> Vec<f64> {
     natural.iter().enumerate().map(size).collect()
 }
 
-fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
+pub(super) fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
     solution.point.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
 }
 
@@ -487,6 +407,16 @@ impl Curve for CycleLocusCurve<'_> {
         Some(Reading::exact(saturated).with_noise(self.resolution.tolerance))
     }
 
+    /// The tests for resonances are made of the angle, which is an unknown.
+    fn test_rate(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<f64> {
+        if !matches!(kind, SpecialKind::Resonance3 | SpecialKind::Resonance4) {
+            return None;
+        }
+        let place = solution.tangent.len() - self.system.collocation.problem.scalars() + 1;
+        let is_folded = self.angle(solution)?.rem_euclid(TAU) > PI;
+        Some(if is_folded { -solution.tangent[place] } else { solution.tangent[place] })
+    }
+
     fn spectrum(&self, solution: &Solution<Inspection>) -> Spectrum {
         let point = &solution.point;
         monitor::growth(self.kind(), &point.floquet, point.argument.unwrap_or(0.0))
@@ -497,23 +427,7 @@ impl Curve for CycleLocusCurve<'_> {
         kind: SpecialKind,
         [before, after]: [&Solution<Inspection>; 2],
     ) -> Result<Location<Inspection>, Error> {
-        let (mut solution, error) = match self.zero(before, after, kind)? {
-            Zero::At(solution, error) => (*solution, error),
-            Zero::Pole => return Ok(Location::Nothing),
-            Zero::Missed => return Ok(Location::Missed),
-        };
-        let multipliers: Vec<Complex64> =
-            solution.point.floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
-        if !monitor::is_genuine(kind, self.kind(), &multipliers) {
-            return Ok(Location::Nothing);
-        }
-        // At a point where the coefficient has a pole, rounding is all that is left of it.
-        let size = |solution: &Solution<Inspection>| solution.point.coefficient.map(f64::abs);
-        let ends = size(before).into_iter().chain(size(after)).fold(0.0, f64::max);
-        solution.point.coefficient =
-            solution.point.coefficient.filter(|value| value.abs() <= POLE_GROWTH * ends);
-        solution.point.location_error = Some(error);
-        Ok(Location::At(solution))
+        self.point_of_codimension_two(kind, [before, after])
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {

@@ -9,6 +9,7 @@ mod curve;
 mod end;
 mod ends;
 mod hold;
+mod locating;
 mod monitor;
 mod run;
 

@@ -140,6 +140,7 @@ impl<'a> CycleLocus<'a> {
         check_length("parameters of the start", &parameters, names.len(), "the number of parameters")?;
         orbit.check(self.field.dimension())?;
         self.start.resolution.validate()?;
+        let orbit = orbit.with_degree(self.start.resolution.degree);
         let asked = Asked {
             field: self.field,
             two: TwoParameters::checked(&active, &bounds, &names, &parameters)?,
