@@ -22,6 +22,10 @@ use crate::continuation::{
 };
 use crate::error::Error;
 
+/// Size, in periods, of the own scalars of a torus bifurcation: they say how much of the flow is taken out of the eigenfunction, which
+/// grows without bound where the cycle shrinks to a point, and are no distance along the curve.
+const GAUGE_SIZE: f64 = 1e6;
+
 /// A curve made of a defining system, as far as Newton's method needs it.
 pub(crate) struct DefiningCurve<'a> {
     pub collocation: Collocation<Defining<'a>>,
@@ -101,10 +105,10 @@ impl Curve for DefiningCurve<'_> {
         let scale = self.collocation.problem.period_scale;
         image[end] /= scale * scale;
         // The own scalars that multiply the flow are times.
-        let times = match self.collocation.problem.kind {
-            Kind::Fold => end + 1..end + 2,
-            Kind::Torus => end + 2..end + 4,
-            Kind::Doubling | Kind::BranchPoint | Kind::Cycle => end..end,
+        let (times, scale) = match self.collocation.problem.kind {
+            Kind::Fold => (end + 1..end + 2, scale),
+            Kind::Torus => (end + 2..end + 4, GAUGE_SIZE * scale),
+            Kind::Doubling | Kind::BranchPoint | Kind::Cycle => (end..end, scale),
         };
         image[times].iter_mut().for_each(|entry| *entry /= scale * scale);
         let last = vector.len() - 2;

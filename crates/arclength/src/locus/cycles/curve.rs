@@ -494,7 +494,11 @@ impl Curve for CycleLocusCurve<'_> {
         let crosses = from.min(to) < multiple * PI;
         // Cycles that a symmetry maps onto themselves half a period later have the squares of other multipliers: theirs go
         // through -1 together, and the curve goes on. At a resonance it comes back on itself.
-        if crosses && self.turns_back(before, after) {
+        if crosses
+            && self
+                .comes_back([before, after], multiple * PI)
+                .unwrap_or_else(|| self.turns_back(before, after))
+        {
             return Some(Ending::Approached(Stop::Problem(CycleLocusEnd::StrongResonance {
                 order: order(multiple),
             })));

@@ -19,6 +19,20 @@ pub enum CycleLocusEnd {
         /// Angular frequency there.
         frequency: f64,
     },
+    /// The amplitude went to zero: the curve of torus bifurcations ends at a Hopf-Hopf point.
+    HopfHopfPoint {
+        /// Values of the two parameters there.
+        values: [f64; 2],
+        /// Angular frequency of the cycles there.
+        frequency: f64,
+    },
+    /// The amplitude went to zero: the curve of torus bifurcations ends at a zero-Hopf point.
+    ZeroHopfPoint {
+        /// Values of the two parameters there.
+        values: [f64; 2],
+        /// Angular frequency of the cycles there.
+        frequency: f64,
+    },
     /// A curve of torus bifurcations ends at a strong resonance, where its multipliers meet.
     StrongResonance {
         /// 1 or 2: the power of the multipliers that is one.
@@ -33,6 +47,12 @@ impl WithParameters for CycleLocusEnd {
             Self::GeneralizedHopfPoint { values: [one, two], frequency } => {
                 Self::GeneralizedHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
             }
+            Self::HopfHopfPoint { values: [one, two], frequency } => {
+                Self::HopfHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            }
+            Self::ZeroHopfPoint { values: [one, two], frequency } => {
+                Self::ZeroHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            }
             end @ Self::StrongResonance { .. } => end,
         }
     }
@@ -40,14 +60,21 @@ impl WithParameters for CycleLocusEnd {
 
 impl Reason for CycleLocusEnd {
     fn explain(&self, wording: &Wording<'_>) -> Explanation {
-        match self {
-            Self::Cycle(end) => end.explain(wording),
-            Self::GeneralizedHopfPoint { values: [first, second], frequency } => Explanation::of(format!(
-                "the cycles shrink to a generalised Hopf point at {}, {} with angular frequency {}",
+        let shrink = |name: &str, [first, second]: &[f64; 2], frequency: f64| {
+            Explanation::of(format!(
+                "the cycles shrink to a {name} at {}, {} with angular frequency {}",
                 wording.at(0, *first),
                 wording.at(1, *second),
-                wording.frequency(*frequency)
-            )),
+                wording.frequency(frequency)
+            ))
+        };
+        match self {
+            Self::Cycle(end) => end.explain(wording),
+            Self::GeneralizedHopfPoint { values, frequency } => {
+                shrink("generalised Hopf point", values, *frequency)
+            }
+            Self::HopfHopfPoint { values, frequency } => shrink("Hopf-Hopf point", values, *frequency),
+            Self::ZeroHopfPoint { values, frequency } => shrink("zero-Hopf point", values, *frequency),
             Self::StrongResonance { order } => Explanation::of(format!(
                 "the curve of torus bifurcations ends at a 1:{order} resonance, where its multipliers meet"
             )),

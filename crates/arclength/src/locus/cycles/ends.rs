@@ -1,5 +1,5 @@
-//! The points in which curves of special cycles end: curves of torus bifurcations in strong resonances, curves of folds in
-//! generalised Hopf points and, of doubled cycles, in generalised period doublings. The continuation cannot reach them; other curves on which they are regular points pass them.
+//! The points in which curves of special cycles end: curves of torus bifurcations in strong resonances, Hopf-Hopf and zero-Hopf
+//! points, curves of folds in generalised Hopf points and, of doubled cycles, in generalised period doublings. The continuation cannot reach them; other curves on which they are regular points pass them.
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::end::CycleLocusEnd;
@@ -38,6 +38,12 @@ impl Asked<'_> {
                 .for_each(|(largest, size)| *largest = largest.max(size));
         }
         let is_fold = kind == Some(SpecialKind::FoldOfCycles);
+        // The points of codimension two on curves of Hopf points at which the curve may begin.
+        let origins: &[SpecialKind] = match kind {
+            Some(SpecialKind::FoldOfCycles) => &[SpecialKind::GeneralizedHopf],
+            Some(SpecialKind::Torus) => &[SpecialKind::HopfHopf, SpecialKind::ZeroHopf],
+            _ => &[],
+        };
         let solve = |stop: &mut Stop<CycleLocusEnd>, last: &CycleLocusPoint| -> Option<CycleLocusPoint> {
             let mut parameters = self.parameters.clone();
             active.iter().zip(last.values).for_each(|(&index, value)| parameters[index] = value);
@@ -47,15 +53,19 @@ impl Asked<'_> {
                 }
                 Stop::StepTooSmall { .. }
                 | Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::HopfPoint { .. }))
-                    if is_fold =>
+                    if !origins.is_empty() =>
                 {
                     let vanishing =
                         amplitudes(last).zip(&largest).all(|(size, largest)| size <= VANISHING * largest);
-                    let found = vanishing
-                        .then(|| self.generalized_hopf(last, &parameters, active, ranges))
+                    let (kind, found) = vanishing
+                        .then(|| self.hopf_of_codimension_two(origins, last, &parameters, ranges))
                         .flatten()?;
                     let (values, frequency) = (found.values, TAU / found.period);
-                    *stop = Stop::Problem(CycleLocusEnd::GeneralizedHopfPoint { values, frequency });
+                    *stop = Stop::Problem(match kind {
+                        SpecialKind::HopfHopf => CycleLocusEnd::HopfHopfPoint { values, frequency },
+                        SpecialKind::ZeroHopf => CycleLocusEnd::ZeroHopfPoint { values, frequency },
+                        _ => CycleLocusEnd::GeneralizedHopfPoint { values, frequency },
+                    });
                     Some(found)
                 }
                 Stop::Problem(CycleLocusEnd::Cycle(CycleEnd::PeriodDoubling { parameter, period }))
@@ -180,17 +190,20 @@ impl Asked<'_> {
         Orbit { mesh: orbit.mesh.clone(), states, period: 0.5 * orbit.period, ..*orbit }
     }
 
-    /// The generalised Hopf point in which a curve of folds ends behind its point `last`, located on the curve of Hopf points.
-    fn generalized_hopf(
+    /// The point of one of some kinds in which a curve ends behind its point `last`, located on the curve of Hopf points of the
+    /// frequency of the cycles.
+    fn hopf_of_codimension_two(
         &self,
+        kinds: &[SpecialKind],
         last: &CycleLocusPoint,
         parameters: &[f64],
-        active: [usize; 2],
         ranges: [f64; 2],
-    ) -> Option<CycleLocusPoint> {
+    ) -> Option<(SpecialKind, CycleLocusPoint)> {
         let mean: Vec<f64> = last.max.iter().zip(&last.min).map(|(max, min)| 0.5 * (max + min)).collect();
         let frequency = TAU / last.period;
-        let mut near = active
+        let mut near = self
+            .two
+            .active
             .iter()
             .filter_map(|&index| hopf_point_near(self.field, &mean, parameters, index, frequency));
         let hopf = near.next()?;
@@ -204,14 +217,24 @@ impl Asked<'_> {
         let distance = |values: [f64; 2]| distance(values, last.values, ranges);
         let found = curve
             .special_points()
-            .filter(|point| point.kind == SpecialKind::GeneralizedHopf && point.regular)
+            .filter(|point| kinds.contains(&point.kind) && point.regular)
             .min_by(|one, other| distance(one.values).total_cmp(&distance(other.values)))?;
-        let critical = found
-            .eigenvalues
-            .iter()
-            .filter(|value| value.im > 0.0)
-            .min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
+        let critical = found.eigenvalues.iter().filter(|value| value.im > 0.0).min_by(|a, b| {
+            let distance = |value: &Complex64| (value - Complex64::new(0.0, frequency)).norm();
+            distance(a).total_cmp(&distance(b))
+        })?;
         let period = TAU / critical.im;
+        // The multipliers of the torus that the cycles are about to leave: of the other critical eigenvalues.
+        let argument = match found.kind {
+            SpecialKind::ZeroHopf => Some(0.0),
+            SpecialKind::HopfHopf => {
+                let others = found.eigenvalues.iter().filter(|value| value.im > 0.0 && *value != critical);
+                let other = others.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
+                let angle = (other.im * period).rem_euclid(TAU);
+                Some(angle.min(TAU - angle))
+            }
+            _ => None,
+        };
         if distance(found.values) > NEAR || (period / last.period).ln().abs() > NEAR {
             return None;
         }
@@ -219,7 +242,7 @@ impl Asked<'_> {
             found.eigenvalues.iter().map(|value| (value * period).exp()).collect();
         multipliers.sort_by(|a, b| b.norm().total_cmp(&a.norm()));
         let nearest = multipliers.iter().map(|multiplier| (multiplier - 1.0).norm());
-        Some(CycleLocusPoint {
+        let point = CycleLocusPoint {
             values: found.values,
             period,
             max: found.state.clone(),
@@ -227,9 +250,9 @@ impl Asked<'_> {
             trivial_multiplier_error: nearest.fold(f64::INFINITY, f64::min),
             multipliers,
             error_estimate: 0.0,
-            argument: None,
+            argument,
             coefficient: None,
-            label: Some(Label { kind: SpecialKind::GeneralizedHopf, number: 1 }),
+            label: Some(Label { kind: found.kind, number: 1 }),
             location_error: Some(found.location_error),
             tests: Vec::new(),
             monitors: Vec::new(),
@@ -238,7 +261,8 @@ impl Asked<'_> {
                 period,
                 ..last.orbit.clone()
             },
-        })
+        };
+        Some((found.kind, point))
     }
 }
 

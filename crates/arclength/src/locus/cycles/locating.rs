@@ -24,6 +24,9 @@ const NEGLIGIBLE: f64 = 1e-2;
 /// At a cusp both parameters turn: their speed there is at most this part of that at the ends of the bracket.
 const TURN: f64 = 1e-2;
 
+/// Distance, in parts of their ranges, of the parameters of one point on two sides of a resonance.
+const SAME_PLACE: f64 = 1e-7;
+
 /// What a change of sign of a test function turned out to be.
 enum Zero {
     /// A point at which it vanishes, and the size that its test function has there: its value, or the noise in it.
@@ -108,6 +111,28 @@ impl CycleLocusCurve<'_> {
             Err(Error::NotFound { .. }) => Ok(None),
             Err(error) => Err(error),
         }
+    }
+
+    /// Whether a curve of torus bifurcations whose angle passes that of a strong resonance between two solutions comes back on itself
+    /// behind it, with the eigenfunctions conjugate: then the parameters are the same on both sides. `None` where it cannot be told.
+    pub(super) fn comes_back(
+        &mut self,
+        [before, after]: [&Solution<Inspection>; 2],
+        resonance: f64,
+    ) -> Option<bool> {
+        let (from, to) = (self.angle(before)?, self.angle(after)?);
+        let (nearer, angle) = if (from - resonance).abs() < (to - resonance).abs() {
+            (before, 2.0 * resonance - from)
+        } else {
+            (after, 2.0 * resonance - to)
+        };
+        let from_end = self.system.collocation.problem.scalars() - 1;
+        let settings = self.settings;
+        let mirrored = fix(self, before, after, from_end, angle, &settings).ok()?;
+        let end = mirrored.unknown.len();
+        Some([2, 1].into_iter().zip(self.system.parameter_scales).all(|(place, scale)| {
+            (mirrored.unknown[end - place] - nearer.unknown[end - place]).abs() < SAME_PLACE * scale
+        }))
     }
 
     /// The point at which a test function vanishes between two solutions.

@@ -10,31 +10,39 @@ use crate::cycle::floquet::Floquet;
 use num_complex::Complex64;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A number squeezed between minus one and one, its sign and its zeros kept.
-fn bounded(value: f64) -> f64 {
-    if value.is_finite() { value / (1.0 + value.abs()) } else { value.signum() }
+/// Distance to its target within which a multiplier counts where all that matters is whether it is there.
+const NARROW: f64 = 1e-2;
+/// The same where a test function is to be smooth over long steps.
+const WIDE: f64 = 1.0;
+
+/// A number squeezed into the unit circle, its direction and its zeros kept; linear within `width` of zero.
+fn squeezed(value: Complex64, width: f64) -> Complex64 {
+    let size = value.norm();
+    if size.is_finite() {
+        value / (width + size)
+    } else {
+        // Numbers too large for their directions are real or pairs, whose directions cancel.
+        Complex64::from(if value.im == 0.0 { value.re.signum() } else { 1.0 })
+    }
 }
 
-/// Product over `values` of the distance to the real number `target`, pairs of complex numbers counting once.
-fn distance(values: &[Complex64], target: f64) -> f64 {
-    values
-        .iter()
-        .filter(|value| value.im >= 0.0)
-        .map(
-            |value| {
-                if value.im > 0.0 { bounded((value - target).norm()) } else { bounded(value.re - target) }
-            },
-        )
-        .product()
+/// Product over `values` of the distance to a real number. Conjugate pairs give positive factors; where two real ones become a pair
+/// it stays smooth.
+fn distance(values: &[Complex64], target: f64, width: f64) -> f64 {
+    values.iter().map(|value| squeezed(value - target, width)).product::<Complex64>().re
 }
 
-/// Changes sign where another multiplier reaches `target`, at which one of them is already: of the two nearest ones the sum
-/// counts, which stays smooth where they collide.
-fn second_at(multipliers: &[Complex64], target: f64) -> Option<f64> {
-    let mut sorted = multipliers.to_vec();
-    sorted.sort_by(|a, b| (a - target).norm().total_cmp(&(b - target).norm()));
-    let [first, second, rest @ ..] = &sorted[..] else { return None };
-    Some(bounded((first + second).re - 2.0 * target) * distance(rest, target))
+/// The derivative of the polynomial that has the multipliers as zeros at one of them, `target`: it vanishes where another one arrives
+/// there, and stays smooth where they collide.
+fn second_at(multipliers: &[Complex64], target: f64, width: f64) -> Option<f64> {
+    let sum: Complex64 = (0..multipliers.len())
+        .map(|index| {
+            let others = multipliers.iter().enumerate().filter(|(other, _)| *other != index);
+            let weight = width / (width + (multipliers[index] - target).norm());
+            others.map(|(_, value)| squeezed(value - target, width)).product::<Complex64>() * weight
+        })
+        .sum();
+    (multipliers.len() > 1).then_some(sum.re)
 }
 
 /// The multipliers without the `count` that are nearest to `critical`.
@@ -60,7 +68,8 @@ fn pair_product(multipliers: &[Complex64]) -> Option<f64> {
         for other in &multipliers[..index] {
             let value = Complex64::from(1.0) - one * other;
             // Conjugate pairs of factors together are positive; a factor of its own is real.
-            product *= if value.im.abs() > 1e-14 * value.norm() { 1.0 } else { bounded(value.re) };
+            product *=
+                if value.im.abs() > 1e-14 * value.norm() { 1.0 } else { squeezed(value.re.into(), WIDE).re };
         }
     }
     Some(product)
@@ -82,31 +91,43 @@ pub(super) fn tests(
     match kind {
         Kind::Fold => {
             let rest = without(multipliers, &[one]);
-            add(SpecialKind::CuspOfCycles, coefficient);
-            add(SpecialKind::Resonance1, second_at(multipliers, 1.0));
-            add(SpecialKind::FoldFlip, (!rest.is_empty()).then(|| distance(&rest, -1.0)));
+            // The coefficient goes through infinity at a 1:1 resonance, its product with what vanishes there does not.
+            let regular = second_at(multipliers, 1.0, NARROW).unwrap_or(1.0);
+            add(SpecialKind::CuspOfCycles, coefficient.map(|value| value * regular));
+            add(SpecialKind::Resonance1, second_at(multipliers, 1.0, WIDE));
+            add(SpecialKind::FoldFlip, (!rest.is_empty()).then(|| distance(&rest, -1.0, WIDE)));
             add(SpecialKind::FoldTorus, pair_product(&rest));
         }
         Kind::Doubling => {
             let rest = without(multipliers, &[-one]);
-            add(SpecialKind::GeneralizedPeriodDoubling, coefficient);
-            add(SpecialKind::Resonance2, second_at(multipliers, -1.0));
-            add(SpecialKind::FoldFlip, (!rest.is_empty()).then(|| distance(&rest, 1.0)));
+            // Here at a 1:2 resonance and at a fold.
+            let regular = second_at(multipliers, -1.0, NARROW).unwrap_or(1.0) * distance(&rest, 1.0, NARROW);
+            add(SpecialKind::GeneralizedPeriodDoubling, coefficient.map(|value| value * regular));
+            add(SpecialKind::Resonance2, second_at(multipliers, -1.0, WIDE));
+            add(SpecialKind::FoldFlip, (!rest.is_empty()).then(|| distance(&rest, 1.0, WIDE)));
             add(SpecialKind::PeriodDoublingTorus, pair_product(&rest));
         }
         Kind::Torus => {
             let critical = Complex64::from_polar(1.0, angle);
             let rest = without(multipliers, &[critical, critical.conj()]);
-            add(SpecialKind::Chenciner, coefficient);
+            // And here at a fold and at the strong resonances.
+            let regular = distance(&rest, 1.0, NARROW) * angle.sin().powi(2);
+            add(SpecialKind::Chenciner, coefficient.map(|value| value * regular));
             add(SpecialKind::Resonance3, Some(angle - 2.0 * PI / 3.0));
             add(SpecialKind::Resonance4, Some(angle - FRAC_PI_2));
-            add(SpecialKind::FoldTorus, (!rest.is_empty()).then(|| distance(&rest, 1.0)));
-            add(SpecialKind::PeriodDoublingTorus, (!rest.is_empty()).then(|| distance(&rest, -1.0)));
+            add(SpecialKind::FoldTorus, (!rest.is_empty()).then(|| distance(&rest, 1.0, WIDE)));
+            add(SpecialKind::PeriodDoublingTorus, (!rest.is_empty()).then(|| distance(&rest, -1.0, WIDE)));
             add(SpecialKind::DoubleTorus, pair_product(&rest));
         }
         Kind::Cycle => {
-            add(SpecialKind::FoldOfCycles, (!multipliers.is_empty()).then(|| distance(multipliers, 1.0)));
-            add(SpecialKind::PeriodDoubling, (!multipliers.is_empty()).then(|| distance(multipliers, -1.0)));
+            add(
+                SpecialKind::FoldOfCycles,
+                (!multipliers.is_empty()).then(|| distance(multipliers, 1.0, WIDE)),
+            );
+            add(
+                SpecialKind::PeriodDoubling,
+                (!multipliers.is_empty()).then(|| distance(multipliers, -1.0, WIDE)),
+            );
             add(SpecialKind::Torus, pair_product(multipliers));
         }
         Kind::BranchPoint => {}
@@ -200,17 +221,43 @@ const NEAR_CIRCLE: f64 = 1e-5;
 mod unit {
     use super::*;
 
+    fn real(values: &[f64]) -> Vec<Complex64> {
+        values.iter().map(|&value| value.into()).collect()
+    }
+
     #[test]
-    fn the_second_multiplier_at_a_target_changes_the_sign_smoothly() {
-        let real = |values: &[f64]| -> Vec<Complex64> { values.iter().map(|&value| value.into()).collect() };
-        let before = second_at(&real(&[1.0, 0.99, 0.3]), 1.0).expect("two");
-        let after = second_at(&real(&[1.0, 1.01, 0.3]), 1.0).expect("two");
-        assert!(before * after < 0.0);
+    fn the_second_multiplier_at_a_target_changes_the_sign() {
+        let test = |values: &[Complex64]| second_at(values, 1.0, WIDE).expect("two");
+        assert!(test(&real(&[1.0, 0.99, 0.3])) * test(&real(&[1.0, 1.01, 0.3])) < 0.0);
         // Which of two others is the nearer one does not matter.
-        let one = second_at(&real(&[1.0, 0.5, 1.6]), 1.0).expect("two");
-        let other = second_at(&real(&[1.0, 0.4, 1.5]), 1.0).expect("two");
-        assert!(one * other > 0.0);
-        assert!(second_at(&real(&[1.0]), 1.0).is_none());
+        assert!(test(&real(&[1.0, 0.5, 1.6])) * test(&real(&[1.0, 0.4, 1.5])) > 0.0);
+        // Rounding makes a pair of two that are there.
+        let pair = [Complex64::new(1.0 - 1e-9, 1e-5), Complex64::new(1.0 - 1e-9, -1e-5)];
+        assert!((test(&pair) - test(&real(&[1.0, 1.0 - 2e-9]))).abs() < 1e-9);
+        assert!(second_at(&real(&[1.0]), 1.0, WIDE).is_none());
+    }
+
+    #[test]
+    fn a_pair_elsewhere_does_not_count_as_a_second_multiplier() {
+        // The real part passes 1.
+        let pair = |re: f64| {
+            let mut all = real(&[1.0]);
+            all.extend([Complex64::new(re, 1.5), Complex64::new(re, -1.5)]);
+            second_at(&all, 1.0, WIDE).expect("two")
+        };
+        assert!(pair(0.9) * pair(1.1) > 0.0);
+        // Two real ones become a pair.
+        let [before, after] = [
+            real(&[1.0, -0.95, -0.96]),
+            vec![1.0.into(), Complex64::new(-0.95, 0.1), Complex64::new(-0.95, -0.1)],
+        ];
+        assert!(
+            (second_at(&before, 1.0, WIDE).expect("two") - second_at(&after, 1.0, WIDE).expect("two")).abs()
+                < 0.01
+        );
+        // One of a pair that rounding made, its partner taken for the critical one, is real.
+        assert!(distance(&[Complex64::new(-1.0, -1e-8)], 1.0, WIDE) < 0.0);
+        assert!(distance(&[Complex64::new(-1.0, 1e-8)], 1.0, WIDE) < 0.0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Systems with a known cycle beside which something is known, and what a curve has found of it.
 
 use arclength::branch::SpecialKind;
+use arclength::cycle::{CycleBranch, CycleStart, Cycles, Orbit};
 use arclength::locus::CycleLocusBranch;
 use arclength::{Scalar, VectorField};
 
@@ -85,6 +86,51 @@ impl VectorField for DoublingBand {
         derivative[1] = radial * sin + x;
         derivative[2] = vertical;
     }
+}
+
+/// Circles of radius `exp(x / 2)` that turn with a speed `1 + 0.1 y`, where `(x, y)` are at rest: `x' = g_0`, `y' = g_1` with
+/// `g = c_0 p + c_1 q + (c_2 + c_3 p + c_4 q) x + (c_5 + c_6 p + c_7 q) y + c_8 x^2 + c_9 x y + c_10 y^2 - c_11 (x^2 + y^2) (x or y)`.
+/// Folds and torus bifurcations are folds and Hopf points of the plane, 1:1 resonances its Bogdanov-Takens points.
+pub(crate) struct CirclesOfPlane(pub [[f64; 12]; 2]);
+
+impl VectorField for CirclesOfPlane {
+    fn state_names(&self) -> Vec<String> {
+        names!["u", "v", "y"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["p", "q"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [u, v, y] = [state[0], state[1], state[2]];
+        let [p, q] = [parameters[0], parameters[1]];
+        let x = (u * u + v * v).ln();
+        let square = x * x + y * y;
+        let rate = |c: &[f64; 12], own: T| {
+            p * c[0]
+                + q * c[1]
+                + (p * c[3] + q * c[4] + c[2]) * x
+                + (p * c[6] + q * c[7] + c[5]) * y
+                + x * x * c[8]
+                + x * y * c[9]
+                + y * y * c[10]
+                - own * square * c[11]
+        };
+        let growth = rate(&self.0[0], x) * 0.5;
+        let speed = y * 0.1 + 1.0;
+        derivative[0] = growth * u - speed * v;
+        derivative[1] = growth * v + speed * u;
+        derivative[2] = rate(&self.0[1], y);
+    }
+}
+
+/// A branch along `p` from the unit circle, at rest where both parameters are zero.
+pub(crate) fn along_p(field: &CirclesOfPlane) -> CycleBranch {
+    let orbit = Orbit::from_time_history(field, &[0.0, 0.0], &[1.0, 0.0, 0.0], 7.0);
+    Cycles::of(field, CycleStart::Orbit(orbit.expect("a cycle")))
+        .parameters(&[0.0, 0.0])
+        .along("p", -2.0..=2.0)
+        .run()
+        .expect("exists")
 }
 
 pub(crate) fn found(branch: &CycleLocusBranch) -> Vec<(SpecialKind, [f64; 2])> {

@@ -1,6 +1,6 @@
 //! Curves of folds of cycles, their cusps, and where they end.
 
-use super::fields::{DoublingBand, Resonances, assert_at, found};
+use super::fields::{CirclesOfPlane, DoublingBand, Resonances, along_p, assert_at, found};
 use approx::assert_relative_eq;
 use arclength::branch::SpecialKind;
 use arclength::continuation::Stop;
@@ -271,4 +271,81 @@ fn folds_of_doubled_cycles_end_at_the_generalised_period_doubling() {
     assert_relative_eq!(end.period, 4.0 * std::f64::consts::PI, max_relative = 1e-8);
     assert_eq!(found(&folds).len(), 1, "{:?}", found(&folds));
     assert!(folds.points.iter().all(|point| (point.values[0] + 0.25 * point.values[1].powi(2)).abs() < 1e-8));
+}
+
+/// Circles with folds at `p = -q^2 / 4`, and beside them an oscillator that grows at the rate `0.4 q - 0.2` and turns slowly: its
+/// multipliers leave the unit circle at `q = 1 / 2`, and their real part passes one where they are elsewhere.
+struct SlowBeside;
+
+impl VectorField for SlowBeside {
+    fn state_names(&self) -> Vec<String> {
+        names!["u", "v", "x", "y"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["p", "q"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [u, v, x, y] = [state[0], state[1], state[2], state[3]];
+        let square = u * u + v * v;
+        let growth = parameters[0] + parameters[1] * square - square * square;
+        let rate = parameters[1] * 0.4 - 0.2 - (x * x + y * y);
+        derivative[0] = growth * u - v;
+        derivative[1] = growth * v + u;
+        derivative[2] = rate * x - y * 0.1;
+        derivative[3] = rate * y + x * 0.1;
+    }
+}
+
+#[test]
+fn a_pair_of_multipliers_with_the_real_part_one_is_no_resonance() {
+    let radius = 0.5_f64.sqrt();
+    let parameters = [-0.25, 1.0];
+    let orbit = Orbit::from_time_history(&SlowBeside, &parameters, &[radius, 0.0, 0.0, 0.0], 6.3);
+    let folds = CycleLocus::of(&SlowBeside)
+        .from_cycle(SpecialKind::FoldOfCycles, &orbit.expect("a cycle"), &parameters)
+        .along("p", -2.0..=1.0)
+        .and("q", -1.0..=2.0)
+        .run()
+        .expect("exists");
+    assert_at(&folds, SpecialKind::FoldTorus, [-0.0625, 0.5], 1e-8);
+    assert_at(&folds, SpecialKind::GeneralizedHopf, [0.0, 0.0], 1e-8);
+    assert_eq!(found(&folds).len(), 2, "{:?}", found(&folds));
+    assert!(folds.unlocated.is_empty(), "{:?}", folds.unlocated);
+}
+
+/// Circles with a cusp next to a 1:1 resonance, at which the coefficient of the folds goes through infinity.
+const CUSP_BESIDE_RESONANCE: CirclesOfPlane = CirclesOfPlane([
+    [-0.83, 0.943, 0.514, 0.421, -0.371, 0.883, 0.418, -0.669, 0.202, -1.14, -0.024, 0.527],
+    [-0.459, -0.48, 0.185, 0.199, -0.519, -0.362, 0.235, -0.528, -0.318, 1.043, 0.653, 0.539],
+]);
+
+#[test]
+fn a_cusp_next_to_a_resonance_is_found() {
+    let branch = along_p(&CUSP_BESIDE_RESONANCE);
+    let folds: Vec<_> = branch
+        .special()
+        .filter(|(kind, _)| *kind == SpecialKind::FoldOfCycles)
+        .map(|(_, point)| point)
+        .collect();
+    // By Newton's method on the plane.
+    let cusp = [0.2067155279, -0.1095549089];
+    let curves = folds.into_iter().map(|fold| {
+        CycleLocus::of(&CUSP_BESIDE_RESONANCE)
+            .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 0.0])
+            .along("p", -2.0..=2.0)
+            .and("q", -2.0..=2.0)
+            .run()
+            .expect("exists")
+    });
+    let with_resonance = curves
+        .filter(|curve| {
+            found(curve)
+                .iter()
+                .any(|(kind, values)| *kind == SpecialKind::Resonance1 && (values[0] - cusp[0]).abs() < 1e-3)
+        })
+        .collect::<Vec<_>>();
+    assert!(!with_resonance.is_empty());
+    for curve in &with_resonance {
+        assert_at(curve, SpecialKind::CuspOfCycles, cusp, 1e-8);
+    }
 }

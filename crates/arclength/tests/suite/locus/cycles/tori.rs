@@ -1,6 +1,6 @@
 //! Curves of torus bifurcations, their strong resonances, and where they end.
 
-use super::fields::{DoublingBand, Resonances, assert_at, found};
+use super::fields::{CirclesOfPlane, DoublingBand, Resonances, along_p, assert_at, found};
 use crate::common;
 use approx::assert_relative_eq;
 use arclength::branch::SpecialKind;
@@ -184,4 +184,129 @@ fn tori_go_on_where_their_multipliers_pass_through_minus_one() {
         assert_relative_eq!(point.argument.expect("an argument"), exact, epsilon = 1e-6);
     }
     assert!(tori.points.iter().any(|point| point.values[1] > 0.89));
+}
+
+/// Circles whose torus bifurcations end in two Bogdanov-Takens points of the plane, next to one of which the angle changes fast.
+const TWO_ENDS: CirclesOfPlane = CirclesOfPlane([
+    [0.844, 0.127, 0.52, 0.365, -0.181, -0.035, -0.155, 0.42, -0.333, 0.524, -0.638, 0.689],
+    [0.761, -0.439, -0.566, 0.236, 0.528, 0.321, -0.447, 0.14, 0.277, -0.168, -0.496, 0.421],
+]);
+
+#[test]
+fn a_curve_that_steps_over_a_resonance_ends_there() {
+    let branch = along_p(&TWO_ENDS);
+    let special = branch.special().find(|(kind, _)| *kind == SpecialKind::Torus);
+    let (_, start) = special.expect("a torus bifurcation");
+    let tori = CycleLocus::of(&TWO_ENDS)
+        .from_cycle(SpecialKind::Torus, &start.orbit, &[start.value, 0.0])
+        .along("p", -2.0..=2.0)
+        .and("q", -2.0..=2.0)
+        .run()
+        .expect("exists");
+    for stop in tori.stops.iter().flatten() {
+        let is_resonance = matches!(stop, Stop::Problem(CycleLocusEnd::StrongResonance { order: 1 }));
+        assert!(is_resonance, "{stop}");
+    }
+    // By Newton's method on the plane.
+    assert_at(&tori, SpecialKind::Resonance1, [-0.0775285131, -1.4633742542], 1e-8);
+    let resonances = found(&tori).into_iter().filter(|(kind, _)| *kind == SpecialKind::Resonance1);
+    assert_eq!(resonances.count(), 2);
+}
+
+/// Circles `s = u + i v` of radius `sqrt(p)` and an oscillator `c` beside them that grows at the rate `q - p / 2`, in the coordinate
+/// `s + c / 2`: torus bifurcations at `q = p / 2`, with the argument of `c` in the plane of the cycle.
+struct Mixed;
+
+impl VectorField for Mixed {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y", "c", "d"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["p", "q"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [c, d] = [state[2], state[3]];
+        let [u, v] = [state[0] - c * 0.5, state[1] - d * 0.5];
+        let (square, other) = (u * u + v * v, c * c + d * d);
+        let growth = parameters[0] - square + other * 0.4;
+        let rate = parameters[1] - square * 0.5 - other * 0.6;
+        let speed = square * 0.1 + 0.88;
+        let [du, dv] = [growth * u - speed * v, growth * v + speed * u];
+        let [dc, dd] = [rate * c - d * 0.586, rate * d + c * 0.586];
+        derivative[0] = du + dc * 0.5;
+        derivative[1] = dv + dd * 0.5;
+        derivative[2] = dc;
+        derivative[3] = dd;
+    }
+}
+
+#[test]
+fn tori_that_shrink_end_at_a_hopf_hopf_point() {
+    let parameters = [0.64, 0.32];
+    let orbit = Orbit::from_time_history(&Mixed, &parameters, &[0.8, 0.0, 0.0, 0.0], 7.0);
+    let tori = CycleLocus::of(&Mixed)
+        .from_cycle(SpecialKind::Torus, &orbit.expect("a cycle"), &parameters)
+        .along("p", -1.0..=2.0)
+        .and("q", -1.0..=2.0)
+        .run()
+        .expect("exists");
+    let Some(Stop::Problem(CycleLocusEnd::HopfHopfPoint { values, frequency })) = &tori.stops[0] else {
+        panic!("{:?}", tori.stops);
+    };
+    assert!(values.iter().all(|value| value.abs() < 1e-12), "{values:?}");
+    assert_relative_eq!(*frequency, 0.88, max_relative = 1e-9);
+    assert_eq!(found(&tori).len(), 1, "{:?}", found(&tori));
+    let end = tori.points[0].argument.expect("an argument");
+    let turned = std::f64::consts::TAU * (1.0 - 0.586 / 0.88);
+    assert_relative_eq!(end, turned, max_relative = 1e-9);
+    assert!(tori.points.len() < 60, "{}", tori.points.len());
+    for point in &tori.points {
+        assert!((point.values[1] - 0.5 * point.values[0]).abs() < 1e-9);
+    }
+}
+
+/// `r' = r (p - z + z^2)`, `z' = q + z^2 + r^2` in a coordinate that mixes them: torus bifurcations at `p = 0`, `q < 0`, from the
+/// zero-Hopf point at the origin on.
+struct ZeroHopf;
+
+impl VectorField for ZeroHopf {
+    fn state_names(&self) -> Vec<String> {
+        names!["x", "y", "z"]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        names!["p", "q"]
+    }
+    fn evaluate<T: Scalar>(&self, state: &[T], parameters: &[T], derivative: &mut [T]) {
+        let [u, v] = [state[0], state[1]];
+        let z = state[2] - u * 0.3;
+        let growth = parameters[0] - z + z * z;
+        let speed = z * 0.3 + 1.1;
+        let du = growth * u - speed * v;
+        derivative[0] = du;
+        derivative[1] = growth * v + speed * u;
+        derivative[2] = parameters[1] + z * z + u * u + v * v + du * 0.3;
+    }
+}
+
+#[test]
+fn tori_that_shrink_end_at_a_zero_hopf_point() {
+    let parameters = [0.0, -0.04];
+    let period = std::f64::consts::TAU / 1.1;
+    let orbit = Orbit::from_time_history(&ZeroHopf, &parameters, &[0.2, 0.0, 0.06], 6.0);
+    let tori = CycleLocus::of(&ZeroHopf)
+        .from_cycle(SpecialKind::Torus, &orbit.expect("a cycle"), &parameters)
+        .along("q", -0.1..=1.0)
+        .and("p", -1.0..=1.0)
+        .run()
+        .expect("exists");
+    let Some(Stop::Problem(CycleLocusEnd::ZeroHopfPoint { values, frequency })) = &tori.stops[1] else {
+        panic!("{:?}", tori.stops);
+    };
+    assert!(values.iter().all(|value| value.abs() < 1e-10), "{values:?}");
+    assert_relative_eq!(*frequency, 1.1, max_relative = 1e-8);
+    for point in &tori.points {
+        assert!(point.values[1].abs() < 1e-9);
+        let exact = (-2.0 * point.values[0].min(0.0)).sqrt() * period;
+        assert_relative_eq!(point.argument.expect("an argument"), exact, epsilon = 1e-6);
+    }
 }
