@@ -326,6 +326,8 @@ fn compare_curves(curve: &Curve) -> Result<Compared, String> {
     };
     let mut ours: Option<(f64, f64)> = None;
     for tolerance in TOLERANCES {
+        // The start is known as well as the curve is to be.
+        program.cycles(tolerance)?;
         let mut time = f64::INFINITY;
         for _ in 0..SHORT_RUNS {
             let (_, taken) = processor_time::of(Of::Children, || program.curve(curve, tolerance))?;
@@ -337,6 +339,7 @@ fn compare_curves(curve: &Curve) -> Result<Compared, String> {
         }
     }
     let (tolerance, _) = ours.ok_or("no tolerance reaches the accuracy")?;
+    program.cycles(tolerance)?;
     program.curve(curve, tolerance)?;
     let (found, points) = program.second_parameters(curve)?;
     let our_error = error(&found);

@@ -111,7 +111,8 @@ pub(super) fn tests(
             let critical = Complex64::from_polar(1.0, angle);
             let rest = without(multipliers, &[critical, critical.conj()]);
             // And here at a fold and at the strong resonances.
-            let regular = distance(&rest, 1.0, NARROW) * angle.sin().powi(2);
+            let resonant = angle.sin().powi(2);
+            let regular = distance(&rest, 1.0, NARROW) * (resonant / (resonant + NARROW)).powi(2);
             add(SpecialKind::Chenciner, coefficient.map(|value| value * regular));
             add(SpecialKind::Resonance3, Some(angle - 2.0 * PI / 3.0));
             add(SpecialKind::Resonance4, Some(angle - FRAC_PI_2));

@@ -316,7 +316,7 @@ fn a_pair_of_multipliers_with_the_real_part_one_is_no_resonance() {
 /// Circles with a cusp next to a 1:1 resonance, at which the coefficient of the folds goes through infinity.
 const CUSP_BESIDE_RESONANCE: CirclesOfPlane = CirclesOfPlane([
     [-0.83, 0.943, 0.514, 0.421, -0.371, 0.883, 0.418, -0.669, 0.202, -1.14, -0.024, 0.527],
-    [-0.459, -0.48, 0.185, 0.199, -0.519, -0.362, 0.235, -0.528, -0.318, 1.043, 0.653, 0.539],
+    [-0.459, -0.48, 0.185, 0.199, -0.519, -0.362, 0.235, -0.528, -0.159 * 2.0, 1.043, 0.653, 0.539],
 ]);
 
 #[test]
