@@ -3,6 +3,7 @@
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
 use super::end::CycleLocusEnd;
+use super::monitor::NEXT_TO;
 use super::run::{Asked, CycleLocus, CycleLocusProblem};
 use crate::branch::{Label, SpecialKind};
 use crate::collocation::equations::Collocation;
@@ -21,8 +22,6 @@ const STEPS: usize = 20;
 const NEAR: f64 = 0.2;
 /// Part of the largest amplitudes on the curve below which cycles may be about to vanish.
 const VANISHING: f64 = 0.3;
-/// Distance of the argument from that of a resonance within which the last point counts as the resonance.
-const NEXT_TO: f64 = 1e-2;
 
 impl Asked<'_> {
     /// Adds the ends of the curve that other curves lead to.

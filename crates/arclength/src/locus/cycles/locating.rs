@@ -155,12 +155,18 @@ impl CycleLocusCurve<'_> {
             Ok(None) | Err(Error::NotFound { .. }) => return Ok(Zero::Missed),
             Err(error) => return Err(error),
         };
-        let ends = [before, after].map(|solution| modulus(solution, kind));
-        let smallest = modulus(&found, kind);
-        if smallest > POLE * ends[0].min(ends[1]) && smallest > zero {
+        // The test function of a coefficient is small where its factors are: the coefficient itself has to be.
+        let size = |solution: &Solution<Inspection>| match solution.point.coefficient {
+            Some(value) if is_coefficient => value.abs(),
+            _ => modulus(solution, kind),
+        };
+        let ends = [size(before), size(after)];
+        if size(&found) > POLE * ends[0].min(ends[1]) && size(&found) > zero {
+            let ends = [before, after].map(|solution| modulus(solution, kind));
             let is_pole = is_coefficient && largest > POLE_GROWTH * ends[0].max(ends[1]);
             return Ok(if is_pole { Zero::Pole } else { Zero::Missed });
         }
+        let smallest = modulus(&found, kind);
         if kind == SpecialKind::CuspOfCycles {
             let speed = |solution: &Solution<Inspection>| {
                 let [one, other] = self.parameter_speeds(solution);

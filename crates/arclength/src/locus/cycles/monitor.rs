@@ -110,10 +110,10 @@ pub(super) fn tests(
         Kind::Torus => {
             let critical = Complex64::from_polar(1.0, angle);
             let rest = without(multipliers, &[critical, critical.conj()]);
-            // And here at a fold and at the strong resonances.
-            let resonant = angle.sin().powi(2);
-            let regular = distance(&rest, 1.0, NARROW) * (resonant / (resonant + NARROW)).powi(2);
-            add(SpecialKind::Chenciner, coefficient.map(|value| value * regular));
+            // And here at a fold. Next to a strong resonance rounding is all that is left of it.
+            let regular = distance(&rest, 1.0, NARROW);
+            let known = coefficient.filter(|_| angle.sin() > NEXT_TO);
+            add(SpecialKind::Chenciner, known.map(|value| value * regular));
             add(SpecialKind::Resonance3, Some(angle - 2.0 * PI / 3.0));
             add(SpecialKind::Resonance4, Some(angle - FRAC_PI_2));
             add(SpecialKind::FoldTorus, (!rest.is_empty()).then(|| distance(&rest, 1.0, WIDE)));
@@ -212,6 +212,8 @@ pub(super) fn is_genuine(sought: SpecialKind, kind: Kind, multipliers: &[Complex
     on_circle.count() > usize::from(kind == Kind::Torus)
 }
 
+/// Distance of the argument from that of a strong resonance within which a point counts as next to it.
+pub(super) const NEXT_TO: f64 = 1e-2;
 /// Logarithm of the modulus of a multiplier below which it is not decided on which side of the unit circle it is: next to another
 /// bifurcation multipliers are known to the root of their error only.
 const UNDECIDED: f64 = 1e-6;

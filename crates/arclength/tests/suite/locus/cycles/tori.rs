@@ -211,6 +211,9 @@ fn a_curve_that_steps_over_a_resonance_ends_there() {
     assert_at(&tori, SpecialKind::Resonance1, [-0.0775285131, -1.4633742542], 1e-8);
     let resonances = found(&tori).into_iter().filter(|(kind, _)| *kind == SpecialKind::Resonance1);
     assert_eq!(resonances.count(), 2);
+    // Next to them the coefficient is rounding.
+    assert!(found(&tori).iter().all(|(kind, _)| *kind != SpecialKind::Chenciner), "{:?}", found(&tori));
+    assert!(tori.unlocated.is_empty(), "{:?}", tori.unlocated);
 }
 
 /// Circles `s = u + i v` of radius `sqrt(p)` and an oscillator `c` beside them that grows at the rate `q - p / 2`, in the coordinate
