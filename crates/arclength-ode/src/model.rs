@@ -289,6 +289,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         .iter()
         .map(|equation| lowering.lower(equation, Scope::Field))
         .collect::<Result<Vec<_>, _>>()?;
+    let field = lowering.graph.with_norms(field);
     let conditions = declarations
         .events
         .iter()
