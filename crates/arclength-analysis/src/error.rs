@@ -1,7 +1,7 @@
 //! Why an analysis gives no result, as every face can tell it.
 
 use arclength::integration::IntegrationError;
-use arclength_ode::OdeError;
+use arclength_ode::{NotFinite, OdeError};
 use kingpin_report::ReportError;
 use std::path::PathBuf;
 
@@ -123,6 +123,18 @@ pub enum Error {
     /// A motion that cannot be followed to its end.
     #[error("the motion cannot be followed: {0}")]
     Integration(#[from] IntegrationError),
+    /// A motion that has no beginning.
+    #[error(
+        "the motion cannot be followed: at t = {time} {because}; start where it is finite: other initial values (x(0)=.. or init, \
+         or --start) or parameters (--set)\n{}",
+        because.place.snippet()
+    )]
+    NotFiniteAtStart {
+        /// Where it would begin.
+        time: f64,
+        /// What is not finite.
+        because: NotFinite,
+    },
 }
 
 impl Error {
@@ -142,7 +154,7 @@ impl AnalysisError for Error {
     fn is_bad_request(&self) -> bool {
         match self {
             Self::Continuation(error) => matches!(error, arclength::Error::Invalid { .. }),
-            Self::Integration(_) => false,
+            Self::Integration(_) | Self::NotFiniteAtStart { .. } => false,
             _ => true,
         }
     }

@@ -142,10 +142,24 @@ impl ChosenModel {
             return Err(Error::TimeDependent { model: self.stored.name.clone(), snippet: place.snippet() });
         }
         let index = self.parameter(fields, &interval.key)?;
+        self.check_parameters()?;
         if interval.start.is_finite() && interval.end.is_finite() {
             return Ok(index);
         }
         Err(Error::invalid(fields, interval.to_string(), "the interval is infinite", "two finite ends"))
+    }
+
+    /// That all parameters are finite, as equilibria and cycles need them.
+    fn check_parameters(&self) -> Result<(), Error> {
+        let Some(index) = self.parameters.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+        let (name, value) = (&self.model.parameters()[index], self.parameters[index]);
+        let is_default = self.model.default_parameters().get(index) == Some(&value);
+        let origin = match self.model.parameter_place(index).filter(|_| is_default) {
+            Some(place) => format!("the model has it in line {}", place.line),
+            None => "a named set or a result file has it".to_owned(),
+        };
+        let problem = format!("not a finite number, and {origin}");
+        Err(Error::invalid(&["set"], format!("{name}={value}"), problem, "a finite number"))
     }
 
     /// That the interval contains the value of the parameter where a computation starts.

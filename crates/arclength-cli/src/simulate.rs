@@ -23,7 +23,7 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     duration: Option<f64>,
 
-    /// Number of samples, at equal distances to the end [default: one for every @ dt of the model, or 1001]
+    /// Number of samples, at equal distances to the end [default: one for every @ dt of the model and one at the end, or 1001]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
     points: Option<u64>,
 

@@ -19,6 +19,22 @@ pub(crate) struct Value {
     pub value: f64,
 }
 
+/// What a state starts at.
+#[derive(Debug)]
+pub(crate) enum InitialValue {
+    /// `init x=1`
+    Number(f64),
+    /// `x(0)=2*a`
+    Formula(Expression),
+}
+
+/// What a list of names with values declares.
+#[derive(Clone, Copy, Debug)]
+enum Declares {
+    Parameter,
+    Initial,
+}
+
 /// `set name {...}` with its values not yet looked up.
 #[derive(Debug)]
 pub(crate) struct SetDefinition {
@@ -42,8 +58,8 @@ pub(crate) struct Declarations {
     pub equations: Vec<Expression>,
     pub parameters: Vec<Value>,
     pub auxiliaries: Vec<QuantityDefinition>,
-    pub initial_values: Vec<Value>,
-    pub initial_formulas: Vec<QuantityDefinition>,
+    /// In the order of the text: the last one of a state counts.
+    pub initial: Vec<(Name, InitialValue)>,
     pub events: Vec<EventDefinition>,
     pub sets: Vec<SetDefinition>,
     pub options: Options,
@@ -55,9 +71,21 @@ impl Declarations {
     /// Reads the text of a model.
     pub(crate) fn read(source: &str) -> Result<Self, OdeError> {
         let mut declarations = Self::default();
+        let mut of_matrix = 0;
         for line in &expanded_lines(source, &mut declarations.warnings)? {
-            if line.skip_blanks(0) < line.len() {
-                declarations.statement(line, classify(line)?)?;
+            if line.skip_blanks(0) == line.len() {
+                continue;
+            }
+            if of_matrix > 0 {
+                of_matrix -= 1;
+                continue;
+            }
+            match classify(line)? {
+                Statement::Refused(names, error, lines) => {
+                    of_matrix = lines;
+                    declarations.refused(names, &error)?;
+                }
+                statement => declarations.statement(line, statement)?,
             }
         }
         Ok(declarations)
@@ -105,7 +133,7 @@ impl Declarations {
             Statement::InitialFormula(name, right) => {
                 self.warn_of_leading_number(line, right);
                 let expression = self.expression(line, right)?;
-                self.initial_formulas.push(QuantityDefinition { name, expression });
+                self.initial.push((name, InitialValue::Formula(expression)));
             }
             Statement::Event(event) => {
                 let EventStatement { span, direction, condition: (start, end), assignments } = event;
@@ -121,7 +149,7 @@ impl Declarations {
             }
             Statement::Parameters(rest) => {
                 for assignment in assignments(line, rest, line.len())? {
-                    let value = self.value(line, &assignment)?;
+                    let value = self.value(line, &assignment, Declares::Parameter)?;
                     let symbol = Symbol::Parameter(self.parameters.len());
                     self.declare(&assignment.name, symbol)?;
                     self.symbols.constants.push((assignment.name.key(), symbol));
@@ -130,15 +158,15 @@ impl Declarations {
             }
             Statement::Numbers(rest) => {
                 for assignment in assignments(line, rest, line.len())? {
-                    let symbol = Symbol::Number(self.value(line, &assignment)?);
+                    let symbol = Symbol::Number(self.value(line, &assignment, Declares::Parameter)?);
                     self.declare(&assignment.name, symbol)?;
                     self.symbols.constants.push((assignment.name.key(), symbol));
                 }
             }
             Statement::Initial(rest) => {
                 for assignment in assignments(line, rest, line.len())? {
-                    let value = self.value(line, &assignment)?;
-                    self.initial_values.push(Value { name: assignment.name, value });
+                    let value = self.value(line, &assignment, Declares::Initial)?;
+                    self.initial.push((assignment.name, InitialValue::Number(value)));
                 }
             }
             Statement::Set(name, start, end) => {
@@ -153,9 +181,32 @@ impl Declarations {
                 self.sets.push(SetDefinition { name, entries });
             }
             Statement::Options(rest) => self.options.read(line, rest, &mut self.warnings)?,
+            Statement::Refused(names, error, _) => self.refused(names, &error)?,
             Statement::Ignored(span, message) => self.warnings.push(Warning::new(span, message)),
         }
         Ok(())
+    }
+
+    /// Declares what is refused where something depends on it. Where nothing does, the warning is what is told of it.
+    fn refused(&mut self, names: Vec<Name>, error: &OdeError) -> Result<(), OdeError> {
+        let OdeError::Unsupported { feature, .. } = error else { return Err(error.clone()) };
+        for name in names {
+            self.declare(&name, Symbol::Refused(self.symbols.refused.len()))?;
+            self.warnings.push(Warning::new(
+                name.span,
+                format!(
+                    "`{}` is left out: {feature} not supported, and no equation depends on it",
+                    name.text
+                ),
+            ));
+            self.symbols.refused.push(error.clone());
+        }
+        Ok(())
+    }
+
+    /// Whether a name stands for what is refused where something depends on it.
+    pub(crate) fn is_refused(&self, name: &Name) -> bool {
+        matches!(self.symbols.names.get(&name.key()), Some(Symbol::Refused(_)))
     }
 
     fn expression(&mut self, line: &Text, start: usize) -> Result<Expression, OdeError> {
@@ -175,7 +226,7 @@ impl Declarations {
 
     /// The number that an assignment gives. XPPAUT reads it up to the first character that does not
     /// belong to a number; here `1/3` is a third, with a warning that says both.
-    fn value(&mut self, line: &Text, assignment: &Assignment) -> Result<f64, OdeError> {
+    fn value(&mut self, line: &Text, assignment: &Assignment, declares: Declares) -> Result<f64, OdeError> {
         if !assignment.has_value() {
             let message = format!("`{}` is given no value: it is 0", assignment.name.text);
             self.warnings.push(Warning::new(assignment.name.span, message));
@@ -192,9 +243,13 @@ impl Declarations {
         let value = value.map_err(|error| match error {
             OdeError::NotConstant { .. } => {
                 let name = &assignment.name.text;
+                let instead = match declares {
+                    Declares::Parameter => format!("`!{name}={text}` for what follows other parameters"),
+                    Declares::Initial => format!("`{name}(0)={text}` for what follows parameters"),
+                };
                 let message = format!(
                     "`{text}` is no constant, and XPPAUT reads only the number at its beginning, {leading}; write that number, or \
-                     `!{name}={text}` for what follows other parameters"
+                     {instead}"
                 );
                 OdeError::syntax(line.span(start, end), message)
             }

@@ -284,7 +284,10 @@ fn suggest(nearest: &Option<String>) -> String {
 }
 
 fn because(variable: &Option<String>) -> String {
-    variable.as_ref().map(|name| format!(", but it depends on `{name}`")).unwrap_or_default()
+    match variable {
+        Some(name) => format!(", but it depends on `{name}`"),
+        None => "; declare what it depends on with `number` instead of `par`".to_owned(),
+    }
 }
 
 fn plural(count: usize) -> &'static str {

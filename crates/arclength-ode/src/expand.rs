@@ -164,7 +164,15 @@ fn substitute(line: &Text, index: Option<i64>, range: Option<&Range>) -> Result<
             return Err(OdeError::syntax(span, "the bracket [ is never closed"));
         }
         let inside = line.string(position + 1, close);
-        let value = index_value(&inside, index, range.is_some(), span)?;
+        let value = index_value(&inside, index, range.is_some(), span).map_err(|error| {
+            if is_behind_number(line, position) {
+                let message = format!(
+                    "`[{inside}]` has no meaning behind a number: brackets hold the index of an array; remove it"
+                );
+                return OdeError::syntax(span, message);
+            }
+            error
+        })?;
         if value < 0 && position > 0 && is_identifier_part(line.at(position - 1)) {
             return Err(OdeError::syntax(span, format!("the array index is {value}; it cannot be negative")));
         }
@@ -174,6 +182,13 @@ fn substitute(line: &Text, index: Option<i64>, range: Option<&Range>) -> Result<
         position = close + 1;
     }
     Ok(output)
+}
+
+/// Whether the word that ends at a place is a number.
+fn is_behind_number(line: &Text, end: usize) -> bool {
+    let is_part = |index: usize| is_identifier_part(line.at(index)) || line.at(index) == '.';
+    let start = (0..end).rev().find(|&index| !is_part(index)).map_or(0, |before| before + 1);
+    start < end && line.number_end(start) == end
 }
 
 /// Value of `j`, `j+n`, `j-n`, `j*n`, a number, or the range itself.

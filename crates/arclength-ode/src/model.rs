@@ -1,7 +1,7 @@
 //! A model: what the text declares, ready to evaluate.
 
 use crate::compile::{Lowering, Regions, Scope, Symbol};
-use crate::declarations::{Declarations, SetDefinition};
+use crate::declarations::{Declarations, InitialValue, SetDefinition};
 use crate::error::{OdeError, Place, Warning};
 use crate::event::Event;
 use crate::expression::parse_number;
@@ -20,6 +20,7 @@ pub struct Model {
     states: Vec<String>,
     parameters: Vec<String>,
     defaults: Vec<f64>,
+    parameter_places: Vec<Place>,
     auxiliaries: Vec<String>,
     /// Auxiliary quantities that are not supported, and why.
     left_out: Vec<(String, OdeError)>,
@@ -100,6 +101,11 @@ impl Model {
     /// Default values of the parameters, in their order.
     pub fn default_parameters(&self) -> &[f64] {
         &self.defaults
+    }
+
+    /// Where a parameter is declared, by its index.
+    pub fn parameter_place(&self, index: usize) -> Option<&Place> {
+        self.parameter_places.get(index)
     }
 
     /// Index of the state of that name, whatever its case.
@@ -289,6 +295,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         .iter()
         .map(|equation| lowering.lower(equation, Scope::Field))
         .collect::<Result<Vec<_>, _>>()?;
+    let field = lowering.graph.with_norms(field);
     let conditions = declarations
         .events
         .iter()
@@ -326,11 +333,14 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         .map(|index| lowering.derived_parameter(index))
         .collect::<Result<Vec<_>, _>>()?;
     let mut initial = vec![lowering.graph.constant(0.0); states];
-    for value in &declarations.initial_values {
-        initial[declarations.state(&value.name)?] = lowering.graph.constant(value.value);
-    }
-    for formula in &declarations.initial_formulas {
-        initial[declarations.state(&formula.name)?] = lowering.lower(&formula.expression, Scope::Initial)?;
+    for (name, value) in &declarations.initial {
+        if declarations.is_refused(name) {
+            continue;
+        }
+        initial[declarations.state(name)?] = match value {
+            InitialValue::Number(value) => lowering.graph.constant(*value),
+            InitialValue::Formula(expression) => lowering.lower(expression, Scope::Initial)?,
+        };
     }
 
     let first = declarations.symbols.states[0].span;
@@ -400,6 +410,11 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         source: source.to_owned(),
         states: symbols.states.into_iter().map(|name| name.text).collect(),
         defaults: declarations.parameters.iter().map(|parameter| parameter.value).collect(),
+        parameter_places: declarations
+            .parameters
+            .iter()
+            .map(|parameter| filled(parameter.name.span.into(), source_lines))
+            .collect(),
         parameters: declarations.parameters.into_iter().map(|parameter| parameter.name.text).collect(),
         auxiliaries,
         left_out,

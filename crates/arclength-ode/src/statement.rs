@@ -4,8 +4,10 @@
 //! `!k=`, `@`; otherwise its first word is a directive. What is not a smooth ordinary differential
 //! equation is refused here, by name.
 
+use crate::assignments::assignments;
 use crate::error::{OdeError, Span, nearest};
 use crate::expression::parse_number;
+use crate::look_alike;
 use crate::source::Text;
 use arclength::Direction;
 
@@ -52,6 +54,8 @@ pub(crate) enum Statement {
     Table(Name, TableRange, usize),
     /// `global 1 {x-1} {x=0;y=y+1}`
     Event(EventStatement),
+    /// Names of what is refused where something depends on them, with the refusal, and how many lines behind belong to it.
+    Refused(Vec<Name>, OdeError, usize),
     /// A line that has no meaning here, with what to say about it.
     Ignored(Span, String),
 }
@@ -132,6 +136,11 @@ pub(crate) fn classify(line: &Text) -> Result<Statement, OdeError> {
         // `b (x-1)` is a boundary condition, `f (x)=...` a function.
         '(' if next > end && !defines(line, next) => directive(line, name, next),
         '(' => with_parentheses(line, name, next),
+        mark if look_alike::is_prime(mark) && line.at(line.skip_blanks(next + 1)) == '=' => {
+            let message =
+                format!("`{}` makes no derivative{}", mark.escape_default(), look_alike::remedy(mark));
+            Err(OdeError::syntax(line.span(next, next + 1), message))
+        }
         _ => directive(line, name, next),
     }
 }
@@ -245,11 +254,15 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
         [b'g', b'r', ..] => refuse("a group is", "write its parts as plain equations"),
         [b'g', ..] => event(line, &word, rest),
         [b'w', ..] => {
-            refuse("noise (wiener) is", "remove the line and declare the noise as a parameter with value 0")
+            let remedy = "remove the line and declare the noise as a parameter with value 0";
+            let names = assignments(line, rest, line.len())?.into_iter().map(|assignment| assignment.name);
+            Ok(Statement::Refused(
+                names.collect(),
+                OdeError::unsupported(word.span, "noise (wiener) is", remedy),
+                0,
+            ))
         }
-        [b'm', b'a', ..] => {
-            refuse("a Markov variable is", "replace it by the differential equation of its mean")
-        }
+        [b'm', b'a', ..] => markov(line, &word, rest),
         _ if is_vectorizer => {
             refuse("an external library is", "write its function as a formula in the model")
         }
@@ -262,7 +275,12 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
             "solve the equation by hand, or give its variable fast dynamics of its own",
         ),
         _ if is_special => {
-            refuse("a network operator (special) is", "write it with sum(a,b)of(...) and shift(x,i')")
+            let remedy = "write it with sum(a,b)of(...) and shift(x,i')";
+            let error = OdeError::unsupported(word.span, "a network operator (special) is", remedy);
+            match name_at(line, rest) {
+                Ok((name, _)) => Ok(Statement::Refused(vec![name], error, 0)),
+                Err(_) => Err(error),
+            }
         }
         [b'e', b'x', ..] => refuse("an external library is", "write its function as a formula in the model"),
         _ => {
@@ -272,6 +290,17 @@ fn directive(line: &Text, word: Name, rest: usize) -> Result<Statement, OdeError
                 format!("`{}` begins no statement: the line is left out, as by XPPAUT{guess}", word.text);
             Ok(Statement::Ignored(word.span, message))
         }
+    }
+}
+
+/// `markov z 2`, and the rows of its matrix on as many lines.
+fn markov(line: &Text, word: &Name, rest: usize) -> Result<Statement, OdeError> {
+    let remedy = "replace it by the differential equation of its mean";
+    let error = OdeError::unsupported(word.span, "a Markov variable is", remedy);
+    let Ok((name, end)) = name_at(line, rest) else { return Err(error) };
+    match line.string(end, line.len()).trim().parse() {
+        Ok(rows) => Ok(Statement::Refused(vec![name], error, rows)),
+        Err(_) => Err(error),
     }
 }
 
@@ -286,13 +315,14 @@ fn table(line: &Text, word: &Name, rest: usize) -> Result<Statement, OdeError> {
     let (name, name_span) = next();
     let (kind, _) = next();
     if kind != "%" {
-        return Err(OdeError::unsupported(
+        let error = OdeError::unsupported(
             word.span,
             "a table that is read from a file is",
             format!(
                 "write the tabulated function as a formula, {name}(x)=..., or as a table of a formula, table {name} % POINTS LOW HIGH f(t)"
             ),
-        ));
+        );
+        return Ok(Statement::Refused(vec![Name { text: name, span: name_span }], error, 0));
     }
     let mut number = |what: &str| {
         let (text, span) = next();
@@ -384,7 +414,7 @@ fn name_at(line: &Text, position: usize) -> Result<(Name, usize), OdeError> {
     if end == start {
         let message = match line.at(start) {
             '\0' => "expected a name before the end of the line".to_owned(),
-            found => format!("expected a name, found `{found}`"),
+            found => format!("expected a name, found `{found}`{}", look_alike::remedy(found)),
         };
         return Err(OdeError::syntax(line.span(start, start + 1), message));
     }
@@ -398,7 +428,7 @@ fn after_equals(line: &Text, position: usize) -> Result<usize, OdeError> {
     }
     let message = match line.at(position) {
         '\0' => "expected = before the end of the line".to_owned(),
-        found => format!("expected =, found `{found}`"),
+        found => format!("expected =, found `{found}`{}", look_alike::remedy(found)),
     };
     Err(OdeError::syntax(line.span(position, position + 1), message))
 }

@@ -11,6 +11,9 @@ pub enum CorrectionFailure {
     /// An update was not finite: the vector field was evaluated outside its domain.
     #[error("the vector field is not finite there")]
     NotFinite,
+    /// The vector field has a value, but its derivatives have none, as at the tip of a cone.
+    #[error("the vector field has no derivatives there")]
+    NotDifferentiable,
     /// The updates did not become smaller.
     #[error("Newton's method does not converge")]
     Diverged,

@@ -45,7 +45,7 @@ pub struct SimulateRequest {
     /// How long it lasts, or the model's `total`, or [`default_duration`](Self::default_duration).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration: Option<f64>,
-    /// Number of samples, at equal distances to the end; or as many as the model's `dt` and `nout` ask for, or
+    /// Number of samples, at equal distances to the end; or one for every `dt` and `nout` of the model and one at the end, or
     /// [`default_points`](Self::default_points).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<u64>,
@@ -207,7 +207,7 @@ impl SimulateRequest {
 
         let duration = self.duration.or_else(|| file.number("total")).unwrap_or(Self::default_duration());
         if !(duration > 0.0 && duration.is_finite()) {
-            let problem = "the model does not say how long the motion lasts";
+            let problem = if duration == 0.0 { "that is the start alone" } else { "out of range" };
             return Err(Error::invalid(
                 &["duration"],
                 format!("(@ total={duration})"),
@@ -244,8 +244,14 @@ impl SimulateRequest {
         let of_file = file.points(end - first);
         let points = self.points.or(of_file).unwrap_or(Self::default_points());
         let last = (points - 1) as f64;
-        let mut times: Vec<f64> =
-            (0..points).map(|index| first + (end - first) * (index as f64 / last)).collect();
+        let distance = file.distance().filter(|_| self.points.is_none() && of_file.is_some());
+        // One for every distance, whose last is the shorter one that is left.
+        let uneven = distance.filter(|distance| !is_whole((end - first) / distance));
+        let time = |index: u64| match uneven {
+            Some(distance) => first + distance * index as f64,
+            None => first + (end - first) * (index as f64 / last),
+        };
+        let mut times: Vec<f64> = (0..points).map(time).collect();
         times[points as usize - 1] = end;
 
         let tighter = |name: &str, default: f64| {
@@ -283,6 +289,13 @@ impl SimulateRequest {
             section,
         })
     }
+}
+
+/// Whether a number of sampling times in a motion is whole, but for its rounding and that of decimal fractions.
+fn is_whole(number: f64) -> bool {
+    /// Part of a sampling time that counts as none.
+    const NONE: f64 = 1e-6;
+    (number - number.round()).abs() <= NONE
 }
 
 /// Refuses a value that was given and is not as it has to be.
@@ -323,10 +336,19 @@ impl FileSettings<'_> {
         }
     }
 
+    /// The distance of the samples that the step and the number of steps between outputs ask for.
+    fn distance(&self) -> Option<f64> {
+        let between = ["nout", "njmp"].iter().find_map(|name| self.number(name)).unwrap_or(1.0);
+        Some((self.number("dt")? * between).abs())
+    }
+
     /// The samples of a time that the step and the number of steps between outputs ask for.
     fn points(&self, time: f64) -> Option<u64> {
-        let between = ["nout", "njmp"].iter().find_map(|name| self.number(name)).unwrap_or(1.0);
-        let points = (time / (self.number("dt")? * between).abs()).round() + 1.0;
+        let distances = time / self.distance()?;
+        // What lasts less than half of one has as many as without it.
+        let distances =
+            if is_whole(distances) || distances < 0.5 { distances.round() } else { distances.ceil() };
+        let points = distances + 1.0;
         let range = SimulateRequest::POINTS;
         (*range.start() as f64 <= points && points <= *range.end() as f64).then_some(points as u64)
     }
@@ -354,7 +376,8 @@ impl SimulateAnalysis {
         let chosen = &self.chosen;
         let mut warnings = Vec::new();
         let section = self.section.as_ref().map(|(_, section)| section);
-        let motion = self.follow(&self.times, section, &mut warnings, control)?;
+        let motion = self.follow(&self.times, section, &mut warnings, control);
+        let motion = motion.map_err(|error| self.explained(error))?;
         if let Some((time, ending)) = motion.ending {
             self.tell(time, ending, motion.samples.times.is_empty(), &mut warnings)?;
         }
@@ -405,6 +428,21 @@ impl SimulateAnalysis {
         }
         let result = HistoryResult::new(chosen, times, &states, warnings);
         Ok(HistoryResult { plots, phase_planes, ..result })
+    }
+
+    /// An error of the integration, with what makes the right-hand side none where that happens at the start.
+    fn explained(&self, error: IntegrationError) -> Error {
+        let chosen = &self.chosen;
+        let because = match error {
+            IntegrationError::NotFinite { time } if time == self.start => {
+                chosen.model.not_finite(time, &chosen.start, &chosen.parameters)
+            }
+            _ => None,
+        };
+        match because {
+            Some(because) => Error::NotFiniteAtStart { time: self.start, because },
+            None => error.into(),
+        }
     }
 
     /// What is drawn of a motion.

@@ -14,10 +14,13 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn model() -> ModelRequest {
-    let source = "x' = p - x^2\npar p=1\ninit x=1\n".to_owned();
+    of_text("x' = p - x^2\npar p=1\ninit x=1\n")
+}
+
+fn of_text(source: &str) -> ModelRequest {
     ModelRequest::new(ModelSource::Text(StoredModel {
-        name: "fold.ode".to_owned(),
-        source,
+        name: "model.ode".to_owned(),
+        source: source.to_owned(),
         frozen_time: None,
     }))
 }
@@ -133,4 +136,97 @@ fn files_in_memory_are_the_only_ones_there_are() {
     // Neither is on the disk.
     assert!(request.validate().is_err());
     assert!(request.validate_among(&FilesInMemory::default()).is_err());
+}
+
+#[test]
+fn an_infinite_parameter_is_refused_by_its_name() {
+    let text = "x' = p - x^2\npar p=1\npar it2=inf\ninit x=1\nx2'=-x2*heav(it2-1)\n";
+    let request = EquilibriaRequest::new(of_text(text), Interval::new("p", 0.0, 1.0));
+    let error = request.validate().unwrap_err();
+    assert!(error.is_bad_request());
+    let right = "set it2=inf: not a finite number, and the model has it in line 3; allowed: a finite number";
+    assert_eq!(error.to_string(), right);
+}
+
+#[test]
+fn a_start_without_right_hand_side_is_told_by_equation_cause_and_remedy() {
+    let request = SimulateRequest::new(of_text("par a=1\nphase'=0\nk=a/phase\nx'=sin(k)\n"), 1.0);
+    let error = request.validate().unwrap().run().unwrap_err();
+    assert!(!error.is_bad_request());
+    let error = error.to_string();
+    let right = "the motion cannot be followed: at t = 0 the right-hand side of x is not finite: a division by zero in k (line 3); start";
+    assert!(error.starts_with(right), "{error}");
+    assert!(error.ends_with("3 | k=a/phase\n  | ^"), "{error}");
+}
+
+#[test]
+fn there_is_a_sample_for_every_dt_and_one_at_the_end() {
+    let times = |options: &str| {
+        let model = of_text(&format!("x'=1\n@ {options}\n"));
+        let result = SimulateRequest::of(model).validate().unwrap().run().unwrap();
+        let times = to_value(result).unwrap()["t"].clone();
+        from_value::<Vec<f64>>(times).unwrap()
+    };
+    let near = |found: &[f64], right: &[f64]| {
+        assert_eq!(found.len(), right.len(), "{found:?}");
+        assert!(found.iter().zip(right).all(|(found, right)| (found - right).abs() < 1e-12), "{found:?}");
+    };
+    near(&times("total=2,dt=.3"), &[0.0, 0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.0]);
+    near(&times("total=2,dt=.1,nout=8"), &[0.0, 0.8, 1.6, 2.0]);
+    near(&times("total=1,dt=.1,nout=5"), &[0.0, 0.5, 1.0]);
+    near(&times("total=1,dt=.7,trans=.3"), &[0.3, 1.0]);
+    // As many as without dt where that is beyond the motion.
+    assert_eq!(times("total=1,dt=5").len(), 1001);
+    let error = SimulateRequest::of(of_text("x'=1\n@ total=0\n")).validate().unwrap_err().to_string();
+    assert_eq!(error, "duration (@ total=0): that is the start alone; allowed: a positive time");
+}
+
+fn hopf_points(text: &str) -> Vec<serde_json::Value> {
+    let mut model = of_text(text);
+    model.start = NamedNumbers(vec![("x".to_owned(), 0.0), ("y".to_owned(), 0.0)]);
+    let request = EquilibriaRequest::new(model, Interval::new("l", -1.0, 1.0));
+    let stop = AtomicBool::new(false);
+    let result = request.validate().unwrap().run(&Control::unobserved(&stop)).unwrap();
+    let result = to_value(result).unwrap();
+    let points = result["points"].as_array().unwrap_or_else(|| panic!("{result}")).clone();
+    points
+        .into_iter()
+        .filter(|point| point["label"].as_str().is_some_and(|label| label.starts_with("HB")))
+        .collect()
+}
+
+#[test]
+fn a_radius_has_the_hopf_point_of_its_square() {
+    let of = |quantity: &str, growth: &str| {
+        hopf_points(&format!(
+            "par l=.5,w=1\n{quantity}\nx'=x*({growth})-w*y\ny'=y*({growth})+w*x\ninit x=.2,y=.1\n"
+        ))
+    };
+    let plain = of("r2=x^2+y^2", "l-r2");
+    assert_eq!(plain.len(), 1);
+    for radius in ["r=sqrt(x^2+y^2)", "r=(x^2+y^2)^.5"] {
+        assert_eq!(of(radius, "l-r^2"), plain);
+    }
+    // Where the field has no second derivatives there is no Lyapunov coefficient, and no sense is made up.
+    let [point] = &of("r=sqrt(x^2+y^2)", "l-r")[..] else { panic!("one Hopf point") };
+    assert!(point["value"].as_f64().unwrap().abs() < 1e-12);
+    for (eigenvalue, right) in
+        from_value::<Vec<[f64; 2]>>(point["eigenvalues"].clone()).unwrap().iter().zip([-1.0, 1.0])
+    {
+        assert!(eigenvalue[0].abs() < 1e-12 && (eigenvalue[1] - right).abs() < 1e-12, "{point}");
+    }
+    for claim in ["first_lyapunov", "c1_real", "criticality"] {
+        assert!(point["special"][claim].is_null(), "{point}");
+    }
+    assert_eq!(point["special"]["kind"], "degenerate", "{point}");
+}
+
+#[test]
+fn a_tip_of_a_cone_is_told_as_one() {
+    let mut model = of_text("par l=.5\nr=sqrt(x^2+y^2)\nx'=-x-l*r\ny'=-y-l*r\n");
+    model.start = NamedNumbers(vec![("x".to_owned(), 0.0), ("y".to_owned(), 0.0)]);
+    let request = EquilibriaRequest::new(model, Interval::new("l", 0.0, 1.0));
+    let stop = AtomicBool::new(false);
+    let error = request.validate().unwrap().run(&Control::unobserved(&stop)).unwrap_err().to_string();
+    assert!(error.contains("has no derivatives there"), "{error}");
 }

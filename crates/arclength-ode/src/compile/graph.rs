@@ -2,7 +2,8 @@
 //!
 //! Equal subexpressions get the same node (hash consing), so what two equations have in common is
 //! computed once. Rewrites are limited to those that are exact in floating-point arithmetic, except
-//! that multiplication by a literal zero gives zero and that `0/0` which is none is removed (`removable`).
+//! that multiplication by a literal zero gives zero, that `0/0` which is none is removed (`removable`) and that powers of roots of
+//! squares are powers of these (`norms`).
 
 use crate::expression::{BinaryOperation, UnaryOperation};
 use crate::tape::{apply_binary, apply_unary};
@@ -112,6 +113,11 @@ impl Graph {
                 _ => {}
             }
         }
+        if operation == UnaryOperation::SquareRoot
+            && let Some(node) = self.root(operand)
+        {
+            return node;
+        }
         self.insert(Operation::Unary(operation, operand))
     }
 
@@ -145,6 +151,11 @@ impl Graph {
         }
         if operation == Divide
             && let Some(node) = self.removable_quotient(a, b)
+        {
+            return node;
+        }
+        if operation == Multiply
+            && let Some(node) = self.product_of_roots(a, b)
         {
             return node;
         }
@@ -185,6 +196,9 @@ impl Graph {
         use BinaryOperation::Multiply;
         if exponent == 0.5 {
             return self.unary(UnaryOperation::SquareRoot, base);
+        }
+        if let Some(node) = self.power_of_root(base, exponent) {
+            return node;
         }
         if exponent.fract() != 0.0 || exponent.abs() > f64::from(i32::MAX) {
             return self.insert(Operation::Binary(BinaryOperation::Power, base, exponent_node));

@@ -24,6 +24,8 @@ pub(crate) enum Symbol {
     Fixed(usize),
     Function(usize),
     Table(usize),
+    /// What is not supported, where something depends on it.
+    Refused(usize),
 }
 
 impl Symbol {
@@ -37,6 +39,7 @@ impl Symbol {
             Self::Fixed(_) => "a quantity",
             Self::Function(_) => "a function",
             Self::Table(_) => "a table",
+            Self::Refused(_) => "a name of what is not supported",
         }
     }
 }
@@ -76,6 +79,8 @@ pub(crate) struct Symbols {
     pub fixed: Vec<QuantityDefinition>,
     pub functions: Vec<FunctionDefinition>,
     pub tables: Vec<TableDefinition>,
+    /// Why what is not supported is refused.
+    pub refused: Vec<OdeError>,
 }
 
 impl FunctionDefinition {
@@ -161,9 +166,9 @@ impl<'a> Lowering<'a> {
 
     /// Lowers fixed quantity number `index`, whether or not an equation uses it; nothing if it is refused, which an equation that
     /// uses it then is too.
-    pub(crate) fn fixed_quantity(&mut self, index: usize) -> Result<(), OdeError> {
+    pub(crate) fn fixed_quantity(&mut self, index: usize) -> Result<Option<NodeId>, OdeError> {
         let span = self.symbols.fixed[index].name.span;
-        self.unless_refused(|lowering| lowering.fixed(index, span, None)).map(|_| ())
+        self.unless_refused(|lowering| lowering.fixed(index, span, None)).map(Result::ok)
     }
 
     /// Adds an output, on which no equation depends, to the graph; or why it is refused, with a warning that it is left out.
@@ -317,6 +322,7 @@ impl<'a> Lowering<'a> {
         within: Environment,
     ) -> Result<NodeId, OdeError> {
         match (symbol, within.scope) {
+            (Symbol::Refused(index), _) => Err(self.symbols.refused[index].clone()),
             (Symbol::Number(value), _) => Ok(self.graph.constant(value)),
             (Symbol::State(index), Scope::Field) => Ok(self.graph.insert(Operation::State(index as u32))),
             (Symbol::Fixed(index), Scope::Field) => self.fixed(index, span, within.fixed),
@@ -398,6 +404,9 @@ impl<'a> Lowering<'a> {
         }
         if let Some(&Symbol::Table(index)) = self.symbols.names.get(name) {
             return self.table(index, span, arguments, within);
+        }
+        if let Some(&Symbol::Refused(index)) = self.symbols.names.get(name) {
+            return Err(self.symbols.refused[index].clone());
         }
         let Some(&Symbol::Function(index)) = self.symbols.names.get(name) else {
             if self.symbols.names.contains_key(name) {
@@ -540,6 +549,7 @@ impl<'a> Lowering<'a> {
                 let position = symbols.constants.iter().position(|(constant, _)| constant == name);
                 (position.unwrap_or(0), symbols.constants.len())
             }
+            Some(&Symbol::Refused(index)) => return Err(symbols.refused[index].clone()),
             Some(_) => {
                 let message = "the first argument of `shift` must be a state, quantity or parameter";
                 return Err(OdeError::syntax(span, message));
@@ -563,7 +573,7 @@ impl<'a> Lowering<'a> {
     fn constant(&self, node: NodeId, span: Span, what: &str) -> Result<f64, OdeError> {
         self.graph.constant_value(node).ok_or_else(|| OdeError::NotConstant {
             place: span.into(),
-            what: format!("{what} (declare what it depends on with `number` instead of `par`)"),
+            what: what.to_owned(),
             variable: None,
         })
     }

@@ -2,6 +2,7 @@
 
 mod graph;
 mod lower;
+mod norms;
 mod regions;
 mod removable;
 

@@ -44,6 +44,8 @@ pub(crate) enum BinaryOperation {
     Divide,
     Power,
     InverseTangent2,
+    /// The root of the first, a sum of squares. A sum of its terms, the second, tells where it varies.
+    Norm,
     Maximum,
     Minimum,
     Modulo,

@@ -1,6 +1,7 @@
 //! The words of an expression.
 
 use crate::error::{OdeError, Span};
+use crate::look_alike;
 use crate::source::Text;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +48,8 @@ pub(crate) fn tokenize(line: &Text, start: usize, end: usize) -> Result<Vec<(Tok
                 symbol.chars().enumerate().all(|(offset, expected)| line.at(position + offset) == expected)
             });
             let Some(symbol) = symbol else {
-                let message = format!("`{}` has no meaning in an expression", character.escape_default());
+                let (sign, remedy) = (character.escape_default(), look_alike::remedy(character));
+                let message = format!("`{sign}` has no meaning in an expression{remedy}");
                 return Err(OdeError::syntax(line.span(position, position + 1), message));
             };
             let after = position + symbol.len();

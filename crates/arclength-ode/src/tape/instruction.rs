@@ -2,7 +2,7 @@
 
 use super::registers::Registers;
 use super::special::{
-    bessel_j, bessel_y, complementary_error_function, error_function, relative_exponential,
+    bessel_j, bessel_y, complementary_error_function, error_function, norm, relative_exponential,
 };
 use crate::expression::{BinaryOperation, UnaryOperation};
 use arclength::Scalar;
@@ -274,6 +274,7 @@ pub(crate) fn apply_binary<T: Scalar>(operation: BinaryOperation, a: T, b: T) ->
         B::Divide => a / b,
         B::Power => a.powf(b),
         B::InverseTangent2 => a.atan2(b),
+        B::Norm => norm(a, b),
         B::Maximum => a.max(b),
         B::Minimum => a.min(b),
         B::Modulo => modulo(a, b),

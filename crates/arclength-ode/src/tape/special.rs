@@ -73,6 +73,11 @@ pub(super) fn relative_exponential<T: Scalar>(x: T) -> T {
     taylor(x, derivatives)
 }
 
+/// The root of a sum of squares, which stands in products that vanish with it: at its kink, see [`Scalar::kink`].
+pub(super) fn norm<T: Scalar>(square: T, trace: T) -> T {
+    if square.value() == 0.0 { trace.kink(0) } else { square.sqrt() }
+}
+
 /// Derivatives of a Bessel function of the first or second kind (Abramowitz and Stegun, 9.1.31):
 /// 2^k C_n^(k) = sum over i of (-1)^i binomial(k, i) C_{n-k+2i}.
 fn bessel_derivatives(order: i32, x: f64, bessel: fn(i32, f64) -> f64) -> [f64; DEGREE + 1] {

@@ -258,3 +258,82 @@ fn other_quotients_are_left_alone() {
     }
     assert!(!value_and_slope("(v+1)/(1-exp(-v))", 0.0).0.is_finite());
 }
+
+/// Derivatives along two directions one after the other, and their product.
+type Second = Dual<Dual<f64, 3>, 3>;
+
+/// The fields of x and y at the origin with the parameter `l`: Jacobian, rows one after another, and mixed second derivatives by
+/// the first of them, with l as the third.
+fn at_the_origin(right_hand_sides: &str) -> ([[f64; 2]; 2], [[[f64; 3]; 3]; 2]) {
+    let model = Model::parse(&format!("par l=.5\nr=sqrt(x^2+y^2)\n{right_hand_sides}")).unwrap();
+    let seed = |value: f64, index: usize| Second::variable(Dual::variable(value, index), index);
+    let mut image = [Second::from(0.0); 2];
+    model.evaluate(&[seed(0.0, 0), seed(0.0, 1)], &[seed(0.5, 2)], &mut image);
+    assert_eq!(image.map(|f| f.value.value), [0.0, 0.0], "the origin is an equilibrium");
+    let jacobian = image.map(|f| [f.derivatives[0].value, f.derivatives[1].value]);
+    (jacobian, image.map(|f| f.derivatives.map(|row| row.derivatives)))
+}
+
+#[test]
+fn squares_of_a_radius_are_the_sum_itself() {
+    let plain = at_the_origin("x'=x*(l-(x^2+y^2))-y\ny'=y*(l-(x^2+y^2))+x\n");
+    for text in [
+        "x'=x*(l-r^2)-y\ny'=y*(l-r^2)+x\n",
+        "x'=x*(l-r*r)-y\ny'=y*(l-r**2)+x\n",
+        "q=(x^2+y^2)^.5\nx'=x*(l-q^2)-y\ny'=l*y-y*q*q+x\n",
+        "x'=x*(l-r^4/(x^2+y^2+1))-y\ny'=y*(l-r^6)+x\n",
+    ] {
+        let found = at_the_origin(text);
+        assert_eq!(found.0, plain.0, "{text}");
+        assert_eq!(found.1, plain.1, "{text}");
+    }
+    let count = |text: &str| Model::parse(text).unwrap().instruction_count();
+    assert_eq!(count("r=sqrt(x^2+y^2)\nx'=x*r^2\ny'=y*r^2\n"), count("r=x^2+y^2\nx'=x*r\ny'=y*r\n"));
+}
+
+#[test]
+fn a_radius_in_a_product_that_vanishes_with_it_leaves_the_jacobian() {
+    for text in [
+        "x'=x*(l-r)-y\ny'=y*(l-r)+x\n",
+        "x'=l*x-y-x*r\ny'=x+l*y-y*r\n",
+        "q=(x^2+y^2)^.5\nx'=x*(l-q)-y\ny'=y*(l-q)+x\n",
+        "x'=x*(l-r^3)-y\ny'=y*(l-(x^2+y^2)^1.5)+x\n",
+        "x'=l*x-y+2*x*cos(1+r)-2*x*cos(1)\ny'=l*y+x\n",
+    ] {
+        let (jacobian, second) = at_the_origin(text);
+        assert_eq!(jacobian, [[0.5, -1.0], [1.0, 0.5]], "{text}");
+        // By the state and the parameter they exist.
+        assert_eq!([second[0][0][2], second[1][1][2], second[0][1][2]], [1.0, 1.0, 0.0], "{text}");
+    }
+    // Those by the state twice do not, along no two directions.
+    let (_, second) = at_the_origin("x'=x*(l-r)-y\ny'=y*(l-r)+x\n");
+    for row in second {
+        assert!(row[..2].iter().all(|row| row[..2].iter().all(|second| second.is_nan())), "{row:?}");
+    }
+}
+
+#[test]
+fn a_radius_with_a_kink_has_no_derivatives_there() {
+    for text in ["x'=-x+3*r\ny'=-y\n", "x'=x*(l-r)-r\ny'=y*(l-r)\n", "x'=y*sqrt(x^2)+sqrt(r)\ny'=-y\n"] {
+        let (jacobian, _) = at_the_origin(text);
+        assert!(jacobian[0].iter().any(|entry| !entry.is_finite()), "{text}{jacobian:?}");
+    }
+}
+
+#[test]
+fn roots_of_squares() {
+    let slopes = |text: &str, x: f64| {
+        let model = Model::parse(&format!("x'={text}\n")).unwrap();
+        let mut image = [Dual::<f64, 1>::zero()];
+        model.evaluate(&[Dual::variable(x, 0)], &[], &mut image);
+        (image[0].value, image[0].derivatives[0])
+    };
+    // Of what is negative nowhere it is that itself.
+    assert_eq!(slopes("(x^4)^.5", 0.0), (0.0, 0.0));
+    assert_eq!(slopes("sqrt(exp(x)^2)", 0.0), (1.0, 1.0));
+    // With a kink in a product that has none.
+    assert_eq!(slopes("2*x-x*(x^2)^.5", 0.0), (0.0, 2.0));
+    assert_eq!(slopes("x*sqrt(x^2)", -1.5), (-2.25, 3.0));
+    assert!(!slopes("2*x-sqrt(x^2)", 0.0).1.is_finite());
+    assert!(slopes("sqrt(x)^2", -1.0).0.is_nan(), "a root of a negative number stays none");
+}

@@ -397,3 +397,59 @@ fn what_no_equation_depends_on_is_left_out_where_it_is_not_supported() {
     assert!(model.quantity("x+ran(1)", &[]).is_err_and(|error| error.to_string().contains("random numbers")));
     assert_eq!(model.quantity("x+a", &["a"]).map(|quantity| quantity.value(&[1.0], &[1.0], &[5.0])), Ok(6.0));
 }
+
+#[test]
+fn the_last_initial_value_counts() {
+    let start = |text: &str| read(&format!("x'=-x\npar a=3\n{text}")).initial_state(&[3.0]);
+    assert_eq!(start("x(0)=2\ninit x=5\n"), [5.0]);
+    assert_eq!(start("init x=5\nx(0)=2\n"), [2.0]);
+    assert_eq!(start("x(0)=a\ninit x=5\n"), [5.0]);
+    assert_eq!(start("init x=5\nx(0)=a\ninit x=7\nX(0)=a+1\n"), [4.0]);
+}
+
+#[test]
+fn what_is_not_supported_and_not_used_is_left_out_with_a_warning() {
+    for (line, name) in [
+        ("wiener w", "w"),
+        ("markov z 2\n{0} {x+1}\n{1} {0}\ninit z=1", "z"),
+        ("special k=conv(even,3,1,w,x0)", "k"),
+        ("table f weights.tab", "f"),
+    ] {
+        let model = read(&format!("{line}\nx'=2-x\n"));
+        assert_eq!((field(&model), model.states().len()), (vec![2.0], 1), "{line}");
+        let message = &model.warnings()[0].message;
+        assert_eq!((model.warnings().len(), model.warnings()[0].place.line), (1, 1), "{line}");
+        assert!(message.starts_with(&format!("`{name}` is left out")), "{message}");
+        assert!(message.ends_with("not supported, and no equation depends on it"), "{message}");
+    }
+    // What only a quantity without use, or an output, depends on.
+    let model = read("wiener v,w\nx'=2-x\nunused=3*v\naux noise=w\n");
+    assert!(model.auxiliary_names().is_empty());
+    assert_eq!(model.warnings().len(), 3, "{:?}", model.warnings());
+}
+
+#[test]
+fn a_right_hand_side_that_is_not_finite_is_told_with_its_cause() {
+    let told = |text: &str| {
+        let model = read(text);
+        let state = model.initial_state(model.default_parameters());
+        model.not_finite(0.0, &state, model.default_parameters()).map(|found| found.to_string())
+    };
+    let of = |text: &str| told(text).unwrap();
+    assert_eq!(told("x'=1/(x+1)\n"), None);
+    assert_eq!(of("x'=1/x\n"), "the right-hand side of x is not finite: a division by zero (line 1)");
+    assert_eq!(
+        of("par a=0\nx'=-x\nq=3*x\nk=exp(x)+1/a\nm=2*k\ny'=m-y\n"),
+        "the right-hand side of y is not finite: a division by zero in k (line 4)"
+    );
+    // 0 times an infinite phase.
+    assert_eq!(
+        of("p'=0\ndbs(t)=sin(6.28*t/p)\nx'=0*dbs(t)+x*dbs(t+1)\n"),
+        "the right-hand side of x is not finite: a division by zero (line 3)"
+    );
+    assert!(of("x'=ln(x)\n").contains("the logarithm of a number that is not positive"));
+    assert!(of("x'=sqrt(x-1)\n").contains("the root of a negative number"));
+    assert!(of("x'=(x-1)^1.5\n").contains("a power of a negative number"));
+    assert!(of("x'=exp(1000+x)\n").contains("a number too large"));
+    assert!(of("par a=inf\nx'=a*x\n").contains("a parameter is infinite"));
+}

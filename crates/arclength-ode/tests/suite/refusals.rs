@@ -26,6 +26,8 @@ fn what_is_not_an_ordinary_differential_equation() {
     refused("x'=y\n0=x+y^3\n", 2, 1, "algebraic equations");
     refused("x'=y\nsolve y=1\n", 2, 1, "algebraic");
     refused("wiener n\nx'=n\n", 1, 1, "noise");
+    refused("x'=k\nk=2*n\nwiener m,n\n", 3, 1, "noise");
+    refused("x'=1\nwiener n\nglobal 1 {x-n} {x=0}\n", 2, 1, "noise");
     refused("x'=ran(1)\n", 1, 4, "random numbers");
     refused("table w weights.tab\nx'=w(x)\n", 1, 1, "as a formula, w(x)=...");
     refused("x'=1\nbndry x-1\n", 2, 1, "boundary conditions are not supported; remove the lines");
@@ -98,8 +100,27 @@ fn slips_of_the_pen() {
     refused("x'=1\npar a=one\n", 2, 7, "unknown name `one`");
     refused("x'=1\npar a=\n", 2, 6, "expected a value");
     refused("x'=1\n@ total=long\n", 2, 9, "takes a number");
+    refused("x'=1\nv(0)=-60.00[-90,0]\n", 2, 12, "`[-90,0]` has no meaning behind a number");
+    refused("x'=shift(x,n)\npar n=0\n", 1, 4, "`shift` must be a constant; declare what it depends on");
     assert_eq!(refusal("par a=1\n"), OdeError::NoEquations);
     assert_eq!(refusal(""), OdeError::NoEquations);
+}
+
+#[test]
+fn signs_that_only_look_like_those_of_the_language() {
+    refused("x'=1\ninit x=\u{2212}1.04\n", 2, 8, "`\\u{2212}` has no meaning in an expression; write -");
+    refused("x'=2\u{d7}x\n", 1, 5, "; write *");
+    refused("x'=x\u{b2}\n", 1, 5, "; write ^2");
+    refused("x'=if(x\u{2265}1)then(0)else(1)\n", 1, 8, "; write >=");
+    refused("x\u{2019}=1\n", 1, 2, "makes no derivative; write '");
+    refused("x\u{2032} = 1\n", 1, 2, "makes no derivative; write '");
+    refused("x'\u{ff1d}1\n", 1, 3, "expected =, found `\u{ff1d}`; write =");
+}
+
+#[test]
+fn an_initial_value_that_follows_a_parameter_is_refused_with_what_works() {
+    refused("x'=1\npar vl=-60\ninit x=vl\n", 3, 8, "write that number, or `x(0)=vl` for");
+    assert_eq!(Model::parse("x'=1\npar vl=-60\nx(0)=vl\n").unwrap().initial_state(&[-60.0]), [-60.0]);
 }
 
 #[test]

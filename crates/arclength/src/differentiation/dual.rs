@@ -299,6 +299,14 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
         }
         (self.ln() * exponent).exp()
     }
+    fn kink(self, directions: u32) -> Self {
+        let mut result = Self::constant(self.value.kink(directions));
+        for direction in 0..N {
+            let varies = self.derivatives[direction].value() != 0.0;
+            result.derivatives[direction] = self.value.kink(directions + u32::from(varies));
+        }
+        result
+    }
     #[inline]
     fn is_constant(&self) -> bool {
         self.value.is_constant()
@@ -337,6 +345,23 @@ mod tests {
         for (power, slope) in [(2.5, 0.0), (1.0, 1.0), (3.0, 0.0)] {
             let found = base.powf(Dual::variable(power, 1));
             assert_eq!((found.value, found.derivatives), (0.0, [slope, 0.0]));
+        }
+    }
+
+    #[test]
+    fn a_kink_has_first_derivatives_and_those_along_one_direction_that_varies() {
+        // x in direction 0, y in direction 1, nothing in direction 2.
+        let at = |value: f64, direction: usize| {
+            Dual::<Dual<f64, 3>, 3>::variable(Dual::variable(value, direction), direction)
+        };
+        let trace = at(0.0, 0) + at(0.0, 1) * 2.0;
+        let norm = trace.kink(0);
+        assert_eq!((norm.value.value, norm.value.derivatives), (0.0, [0.0; 3]));
+        for (first, row) in norm.derivatives.iter().enumerate() {
+            assert_eq!(row.value, 0.0);
+            for (second, derivative) in row.derivatives.iter().enumerate() {
+                assert_eq!(derivative.is_nan(), first < 2 && second < 2, "{first} {second}: {derivative}");
+            }
         }
     }
 

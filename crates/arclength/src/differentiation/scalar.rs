@@ -111,6 +111,12 @@ pub trait Scalar:
     fn min(self, other: Self) -> Self {
         if other.value() < self.value() || other.value().is_nan() { other } else { self }
     }
+    /// The number zero as the value of a norm where all that it is made of vanishes, for products with a factor that vanishes there,
+    /// too: its first derivatives are zero; higher ones along two or more directions in which `self` varies do not exist and are no
+    /// numbers. `directions` are how many such directions were taken already.
+    fn kink(self, directions: u32) -> Self {
+        Self::from(if directions < 2 { 0.0 } else { f64::NAN })
+    }
     /// Largest whole number not above the value, without derivative.
     fn floor(self) -> Self {
         Self::from(self.value().floor())

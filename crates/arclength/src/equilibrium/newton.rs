@@ -97,10 +97,11 @@ impl<'a> Search<'a> {
     fn linearize(&mut self, state: &[f64]) -> Result<(), CorrectionFailure> {
         let n = state.len();
         self.differentiator.jacobian(&self.problem, state, &mut self.residual, &mut self.matrix, n);
-        if self.residual.iter().chain(&self.matrix).all(|entry| entry.is_finite()) {
-            Ok(())
-        } else {
-            Err(CorrectionFailure::NotFinite)
+        let finite = |entries: &[f64]| entries.iter().all(|entry| entry.is_finite());
+        match (finite(&self.residual), finite(&self.matrix)) {
+            (true, true) => Ok(()),
+            (true, false) => Err(CorrectionFailure::NotDifferentiable),
+            (false, _) => Err(CorrectionFailure::NotFinite),
         }
     }
 
