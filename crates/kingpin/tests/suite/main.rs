@@ -7,6 +7,7 @@ mod contact;
 mod control;
 mod cycles;
 mod dry_friction;
+mod ends_of_motions;
 mod forces;
 mod identification;
 mod judge;
