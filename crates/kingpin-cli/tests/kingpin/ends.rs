@@ -6,6 +6,8 @@ use crate::branches::number;
 const TURNS_BACKWARDS: &str = include_str!("../../../kingpin/tests/wheels/turns_backwards.toml");
 const ENDS: &str = include_str!("../../../kingpin/tests/wheels/ends_on_the_circle.toml");
 const FOLDS: &str = include_str!("../../../kingpin/tests/wheels/folds_on_the_circle.toml");
+const NARROW: &str = include_str!("../../../kingpin/tests/wheels/narrow_window.toml");
+const SEVERAL: &str = include_str!("../../../kingpin/tests/wheels/several_changes.toml");
 const WEAK: &str = include_str!("../../../kingpin/tests/wheels/weak_change.toml");
 const LATERAL: &str = include_str!("../../../kingpin/tests/wheels/lateral_on_a_circle.toml");
 
@@ -45,6 +47,19 @@ fn cycles_are_followed_where_the_motion_ends() {
     assert!(!run.messages.contains("start given"), "{}", run.messages);
     assert_eq!(run.exit_code, 0, "{}", run.messages);
     assert!(run.output.contains("turns at v = 5.3000088 m/s"), "{}", run.output);
+}
+
+#[test]
+fn stability_tells_every_change_and_what_was_looked_at() {
+    for (name, toml) in [
+        ("stability_in_a_narrow_window", NARROW),
+        ("stability_that_changes_often", SEVERAL),
+        ("stability_that_changes_weakly", WEAK),
+    ] {
+        let run = wheel(toml).succeed("stability --wheel wheel.toml");
+        assert!(!run.output.contains("at every speed"), "{}", run.output);
+        insta::assert_snapshot!(name, run.output);
+    }
 }
 
 #[test]

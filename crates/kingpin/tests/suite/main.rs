@@ -16,6 +16,7 @@ mod lateral_branches;
 mod linear_stability;
 mod paper_form;
 mod random_wheels;
+mod stability_over_speed;
 mod tyre;
 mod tyre_equations;
 mod tyre_kicks;
