@@ -79,3 +79,9 @@ fn blows_to_a_wheel_with_lateral_elasticity_only_on_a_circle() {
         assert!(run.output.contains("ends in"), "{}", run.output);
     }
 }
+
+#[test]
+fn the_law_of_the_tyre_is_among_the_keys() {
+    let run = Folder::new().run("steady -s foo=1");
+    assert!(run.messages.contains("and `tyre`, which is a word"), "{}", run.messages);
+}
