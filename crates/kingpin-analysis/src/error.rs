@@ -83,6 +83,9 @@ pub enum Error {
     /// Nothing was found where something was sought.
     #[error("{0}")]
     NothingFound(String),
+    /// From no Hopf point a branch of cycles could be followed.
+    #[error("{0}; try a shorter interval around the Hopf point, or shorter steps from it (--finer 10)")]
+    NoBranch(String),
     /// Eigenvalues did not converge.
     #[error(transparent)]
     Eigenvalues(#[from] arclength::linear::eigenvalues::EigenvalueError),
@@ -227,6 +230,7 @@ impl AnalysisError for Error {
             | Self::Integration(_)
             | Self::NothingFound(_)
             | Self::Eigenvalues(_)
+            | Self::NoBranch(_)
             | Self::BranchEnds { .. }
             | Self::Figure(_)
             | Self::Interrupted { .. }

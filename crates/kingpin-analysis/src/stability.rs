@@ -4,8 +4,9 @@ use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
+use arclength_analysis::Control;
 use arclength_analysis::branch::stability;
-use kingpin::{Key, Wheel};
+use kingpin::{Key, SpeedPart, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::{Deserialize, Serialize};
@@ -28,7 +29,11 @@ impl StabilityRequest {
     pub fn run(&self) -> Result<StabilityResult, Error> {
         let wheel = self.wheel.read()?;
         let motion = wheel.uniform_motion()?;
-        let critical = wheel.critical_speed();
+        let over_speed = wheel.stability_over_speed(&Control::none())?;
+        // A window that is narrower than the scan of the critical speed has changes all the same.
+        let critical = wheel.critical_speed().map(|critical| critical.speed);
+        let critical = critical.or(over_speed.changes.first().copied());
+        let yaw_rate = |speed: f64| speed / wheel.get(Key::TurningRadius);
         Ok(StabilityResult {
             eigenvalues: motion
                 .eigenvalues()
@@ -37,8 +42,12 @@ impl StabilityRequest {
                 .collect(),
             growth_rate: motion.growth_rate(),
             stable: motion.is_stable(),
-            critical_speed: critical.map(|critical| critical.speed),
-            critical_yaw_rate: critical.map(|critical| critical.yaw_rate),
+            critical_speed: critical,
+            critical_yaw_rate: critical.map(yaw_rate),
+            searched: over_speed.searched,
+            speeds: over_speed.parts.iter().map(StabilityPart::from).collect(),
+            closed_form: over_speed.is_complete,
+            not_followed: over_speed.not_followed,
             swing_factor: wheel.swing_factor(),
             critical_speed_with_friction: wheel.critical_speed_with_friction(),
             resting_angles: wheel.resting_angles()?,
@@ -46,6 +55,23 @@ impl StabilityRequest {
             largest_resting_angle_while_sliding: wheel.largest_resting_angle_while_sliding(),
             wheel,
         })
+    }
+}
+
+/// Speeds at which the uniform motion has one stability.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StabilityPart {
+    /// Lowest speed in m/s.
+    pub from: f64,
+    /// Highest speed in m/s.
+    pub to: f64,
+    /// Nothing where rounding of the parameters could decide it either way.
+    pub stable: Option<bool>,
+}
+
+impl From<&SpeedPart> for StabilityPart {
+    fn from(part: &SpeedPart) -> Self {
+        Self { from: part.from, to: part.to, stable: part.stable }
     }
 }
 
@@ -61,10 +87,19 @@ pub struct StabilityResult {
     pub growth_rate: f64,
     /// Whether it is negative; nothing where rounding could decide that either way.
     pub stable: Option<bool>,
-    /// Speed in m/s at which the stability changes.
+    /// Lowest speed in m/s at which a change of the stability was found.
     pub critical_speed: Option<f64>,
     /// Yaw rate in rad/s there.
     pub critical_yaw_rate: Option<f64>,
+    /// Lowest and highest speed in m/s that was looked at.
+    pub searched: [f64; 2],
+    /// The stability over these speeds; where parts do not touch no uniform motion was found between them.
+    pub speeds: Vec<StabilityPart>,
+    /// Whether the speeds at which it changes are known in closed form, so that there are no others.
+    pub closed_form: bool,
+    /// Speeds in m/s between which the motion could not be followed: there changes close together may be missed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_followed: Vec<[f64; 2]>,
     /// Towed straight, the factor by which each swing multiplies the caster angle with dry friction about the king pin.
     pub swing_factor: Option<f64>,
     /// Towed straight, the speed in m/s beyond which small motions grow in spite of dry friction; it does not depend on how much
@@ -115,6 +150,7 @@ impl Report for StabilityResult {
                 readable(speed),
                 readable(yaw_rate)
             ),
+            _ if !self.closed_form => writeln!(out, "no critical speed was found"),
             _ if self.stable.is_none() => {
                 writeln!(
                     out,
@@ -127,6 +163,7 @@ impl Report for StabilityResult {
                 writeln!(out, "no critical speed: {always} at every speed{where_it_is}")
             }
         }?;
+        self.write_speeds(out)?;
         self.write_dry_friction(out)
     }
 
@@ -140,6 +177,36 @@ impl Report for StabilityResult {
 }
 
 impl StabilityResult {
+    /// The stability over the speed, unless the critical speed tells it all.
+    fn write_speeds(&self, out: &mut dyn Write) -> io::Result<()> {
+        let changes_once = self.speeds.len() <= 2;
+        if self.closed_form && changes_once {
+            return Ok(());
+        }
+        let told = |part: &StabilityPart| {
+            let word = match part.stable {
+                Some(true) => "stable",
+                Some(false) => "unstable",
+                None => "undecided",
+            };
+            format!("{word} from {} to {} m/s", readable(part.from), readable(part.to))
+        };
+        let told: Vec<String> = self.speeds.iter().map(told).collect();
+        let [low, high] = self.searched.map(readable);
+        let is_everywhere = self.speeds.windows(2).all(|pair| pair[0].to == pair[1].from)
+            && self.speeds.first().is_some_and(|part| part.from == self.searched[0])
+            && self.speeds.last().is_some_and(|part| part.to == self.searched[1]);
+        let elsewhere = if is_everywhere { "" } else { "; no uniform motion was found at other speeds" };
+        writeln!(out, "looked at from {low} to {high} m/s: {}{elsewhere}", told.join(", "))?;
+        for [low, high] in self.not_followed.iter().map(|speeds| speeds.map(readable)) {
+            writeln!(
+                out,
+                "from {low} to {high} m/s the motion could not be followed: changes close together may be missed there"
+            )?;
+        }
+        Ok(())
+    }
+
     /// What dry friction about the king pin makes of small motions.
     fn write_dry_friction(&self, out: &mut dyn Write) -> io::Result<()> {
         let moment = self.wheel.get(Key::MF);

@@ -10,7 +10,7 @@ use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
 
 /// Smallest speed in m/s at which a change of stability is looked for.
-const SLOWEST: f64 = 1e-3;
+pub(crate) const SLOWEST: f64 = 1e-3;
 /// Number of speeds, in geometric progression, between which changes of stability are looked for.
 const SPEEDS: usize = 400;
 /// The interval of the critical speed is halved until it is this small, relative to the speed.
@@ -42,18 +42,27 @@ impl Wheel {
     /// On a circle, but for the plain wheel, and with a tyre the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
     /// exists, and at its extrema between them; its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
-        let radius = self.get(Key::TurningRadius);
-        let speed = if radius.is_infinite() && self.tyre() == Tyre::Rigid {
-            // The stability of a plain wheel does not depend on the speed there.
-            self.critical_speeds_straight().into_iter().find(|&speed| self.changes_stability_at(speed))
-        } else if self.is_plain() {
-            let speed = radius * self.critical_yaw_rate()?;
-            self.changes_stability_at(speed).then_some(speed)
-        } else {
-            self.seek_critical_speed()
+        let speed = match self.changes_in_closed_form() {
+            Some(speeds) => speeds.first().copied(),
+            None => self.changes_sought().next(),
         }?;
         let residual = self.growth_rate_at(speed)?.abs();
-        Some(CriticalSpeed { speed, yaw_rate: speed / radius, residual })
+        Some(CriticalSpeed { speed, yaw_rate: speed / self.get(Key::TurningRadius), residual })
+    }
+
+    /// All speeds at which the stability changes, in ascending order, where they are known in closed form.
+    pub(crate) fn changes_in_closed_form(&self) -> Option<Vec<f64>> {
+        let radius = self.get(Key::TurningRadius);
+        let mut speeds = if radius.is_infinite() && self.tyre() == Tyre::Rigid {
+            // The stability of a plain wheel does not depend on the speed there.
+            self.critical_speeds_straight()
+        } else if self.is_plain() {
+            self.critical_yaw_rate().map(|yaw_rate| radius * yaw_rate).into_iter().collect()
+        } else {
+            return None;
+        };
+        speeds.retain(|&speed| self.changes_stability_at(speed));
+        Some(speeds)
     }
 
     fn growth_rate_at(&self, speed: f64) -> Option<f64> {
@@ -66,7 +75,7 @@ impl Wheel {
 
     /// Whether the uniform motion is certain to be stable on one side of the speed and unstable on the other, and its growth rate
     /// passes through zero there: where it jumps, one uniform motion only takes the place of another.
-    fn changes_stability_at(&self, speed: f64) -> bool {
+    pub(crate) fn changes_stability_at(&self, speed: f64) -> bool {
         let sides = |part: f64| {
             let [below, above] = [1.0 - part, 1.0 + part].map(|factor| self.is_stable_at(speed * factor));
             Some((part, below? != above?))
@@ -97,17 +106,22 @@ impl Wheel {
         roots
     }
 
-    fn seek_critical_speed(&self) -> Option<f64> {
+    /// Speeds in ascending order at which the growth rate is looked at, up to the largest one at which the motion exists.
+    pub(crate) fn scanned_speeds(&self) -> Vec<f64> {
         let radius = self.get(Key::TurningRadius);
         let body = self.body();
         let limit = (body.lateral_stiffness * body.caster_length / body.static_moment).sqrt() * radius;
         let fastest = Key::V.allowed().highest;
         let fastest = if limit < fastest { limit } else { fastest };
         let ratio = (fastest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
+        (0..SPEEDS).map(|index| SLOWEST * ratio.powi(index as i32)).collect()
+    }
+
+    /// Speeds in ascending order at which the growth rate between those that are looked at passes through zero.
+    pub(crate) fn changes_sought(&self) -> impl Iterator<Item = f64> {
         let rate = |speed: f64| self.growth_rate_at(speed);
         let mut before: [Option<(f64, f64)>; 2] = [None, None];
-        for index in 0..SPEEDS {
-            let speed = SLOWEST * ratio.powi(index as i32);
+        self.scanned_speeds().into_iter().flat_map(move |speed| {
             let here = rate(speed).map(|rate| (speed, rate));
             let mut places = Vec::new();
             if let [Some(first), Some(middle)] = before
@@ -119,14 +133,11 @@ impl Wheel {
             if let (Some(slower), Some(faster)) = (before[1], here) {
                 places.push([slower, faster]);
             }
+            before = [before[1], here];
             let changes = places.into_iter().filter(|[one, other]| (one.1 < 0.0) != (other.1 < 0.0));
             let speeds = changes.filter_map(|[one, other]| bisect(one.0, one.1, other.0, rate));
-            if let Some(speed) = speeds.into_iter().find(|&speed| self.changes_stability_at(speed)) {
-                return Some(speed);
-            }
-            before = [before[1], here];
-        }
-        None
+            speeds.filter(|&speed| self.changes_stability_at(speed)).collect::<Vec<_>>()
+        })
     }
 }
 

@@ -366,7 +366,10 @@ fn told(given: &str, suggestions: &[Key]) -> String {
     let tyre = is_tyre.then(|| format!("`{}` (law of the tyre: rigid, linear, brush)", Tyre::KEY));
     let keys = suggestions.iter().map(|key| format!("`{key}` ({}, {})", key.meaning(), key.unit()));
     match tyre.into_iter().chain(keys).collect::<Vec<_>>().as_slice() {
-        [] => format!("the keys are {}", Key::ALL.map(Key::name).join(", ")),
+        [] => {
+            let keys = Key::ALL.map(Key::name).join(", ");
+            format!("the keys are {keys}, and `{}`, which is a word (rigid, linear, brush)", Tyre::KEY)
+        }
         [nearest] => format!("the nearest known key is {nearest}"),
         several => format!("it may be {}", several.join(", or ")),
     }

@@ -140,6 +140,14 @@ impl RollingModel {
         }
     }
 
+    /// The forward speed of a wheel with a tyre at a state of this vector field, as a part of the towing speed.
+    pub(crate) fn speed_ratio(&self, free: &[f64], parameters: &[f64]) -> Option<f64> {
+        match self {
+            Self::Elastic(_) | Self::Lateral(_) => None,
+            Self::Tyre(wheel) => Some(wheel.speed_ratio(free, parameters)),
+        }
+    }
+
     /// That the wheel rolls forwards all along a cycle of this vector field, if it has a tyre.
     pub(crate) fn check_forwards(&self, orbit: &Orbit, parameters: &[f64]) -> Result<(), KingpinError> {
         let Self::Tyre(wheel) = self else { return Ok(()) };

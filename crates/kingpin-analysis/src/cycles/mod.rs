@@ -6,7 +6,8 @@ mod point;
 mod request;
 mod result;
 
-pub(crate) use followed::from_hopf_points;
+pub use followed::NotFollowed;
+pub(crate) use followed::{Followed, from_hopf_points};
 pub use point::CyclePointResult;
 pub use request::{CyclesAnalysis, CyclesRequest};
 pub use result::{BranchResult, CyclesResult};

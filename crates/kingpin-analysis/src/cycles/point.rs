@@ -97,7 +97,7 @@ pub(super) fn at_cycle(
 /// The Hopf point as a cycle of no amplitude: its multipliers are the exponentials of the eigenvalues.
 pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<CyclePointResult, Error> {
     let period = TAU / hopf.frequency;
-    let motion = hopf.wheel.uniform_motion()?;
+    let motion = hopf.motion();
     let eigenvalues = motion.eigenvalues();
     let multipliers: Vec<Complex64> =
         eigenvalues.iter().map(|eigenvalue| (eigenvalue * period).exp()).collect();

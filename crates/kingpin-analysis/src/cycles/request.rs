@@ -1,9 +1,10 @@
 //! What branches of limit cycles are asked for by, and how they are followed.
 
-use super::followed::{FollowedBranch, from_hopf_points};
+use super::followed::{Followed, FollowedBranch, from_hopf_points};
 use super::result::CyclesResult;
 use crate::along::along;
 use crate::error::Error;
+use crate::hopf::course::course_of;
 use crate::hopf::search::{same_value, search};
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::wheel_request::WheelRequest;
@@ -185,7 +186,8 @@ impl CyclesAnalysis {
     /// there is up to there.
     ///
     /// # Errors
-    /// [`Error::NothingFound`] where there is no Hopf point to start from; [`Error::Wheel`].
+    /// [`Error::NothingFound`] where there is no Hopf point to start from, [`Error::NoBranch`] where none has a branch;
+    /// [`Error::Wheel`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
         let along = self.along;
         // The most steps are those along a branch of cycles.
@@ -198,15 +200,18 @@ impl CyclesAnalysis {
             control.at(&format!("{found} cycles, {} = {value}, period {period} s", along.key()));
             control.flow()
         };
-        let branches = match &self.start {
+        let mut course = Vec::new();
+        let followed = match &self.start {
             Start::Cycle { origin, start } => {
                 let (origin, start) = (origin.clone(), start.clone());
                 let cycles = self.wheel.cycles_from(start, along, &self.options, &mut observer)?;
-                vec![FollowedBranch { origin, hopf: None, reached: None, cycles }]
+                let branches = vec![FollowedBranch { origin, hopf: None, reached: None, cycles }];
+                Followed { branches, not_followed: Vec::new() }
             }
             Start::HopfPoints => {
-                let points = search(&self.wheel, along, settings, control)?.hopf_points;
-                from_hopf_points(&points, None, along, &self.options, &mut observer)?
+                let branch = search(&self.wheel, along, settings, control)?;
+                course = course_of(&branch);
+                from_hopf_points(&branch.hopf_points, None, along, &self.options, &mut observer)?
             }
             Start::HopfPoint { label } => {
                 // The point of an earlier search is found again along the parameter that now varies, on the way from one end:
@@ -225,8 +230,8 @@ impl CyclesAnalysis {
                 from_hopf_points(&points, Some(only), along, &self.options, &mut observer)?
             }
         };
-        let missed = self.missed(&branches);
-        CyclesResult::new(self.wheel, along, branches, missed)
+        let missed = self.missed(&followed.branches);
+        Ok(CyclesResult { course, ..CyclesResult::new(self.wheel, along, followed, missed)? })
     }
 
     /// The values asked for at which there is no cycle.

@@ -1,6 +1,6 @@
 //! Branches of limit cycles as a result.
 
-use super::followed::FollowedBranch;
+use super::followed::{Followed, NotFollowed};
 use super::picture;
 use super::point::{CyclePointResult, ROLLING_LIMIT, ROLLING_LIMIT_NAME, at_cycle, at_hopf, cells};
 use crate::along::{along, varying};
@@ -14,7 +14,7 @@ use arclength::branch::LabelCounter;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::Along;
+use kingpin::branches::{Along, HopfPoint};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::{counted, readable};
@@ -66,6 +66,13 @@ pub struct CyclesResult {
     pub along: VaryingParameter,
     /// The branches.
     pub branches: Vec<BranchResult>,
+    /// Hopf points from which no branch could be followed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub not_followed: Vec<NotFollowed>,
+    /// Where the uniform motion on which Hopf points were sought turns or ends inside the interval, and changes of its stability that
+    /// were not located, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub course: Vec<String>,
     /// Values that were asked for at which there is no cycle.
     #[serde(skip)]
     pub missed: Vec<f64>,
@@ -82,6 +89,10 @@ struct StoredCycles {
     parameters: Parameters,
     along: VaryingParameter,
     branches: Vec<BranchResult>,
+    #[serde(default)]
+    not_followed: Vec<NotFollowed>,
+    #[serde(default)]
+    course: Vec<String>,
     points: Vec<CyclePointResult>,
 }
 
@@ -98,6 +109,8 @@ impl TryFrom<StoredCycles> for CyclesResult {
             dry_friction: NeglectedDryFriction::of(&wheel, &[interval.key()]),
             along: stored.along,
             branches: stored.branches,
+            not_followed: stored.not_followed,
+            course: stored.course,
             missed: Vec::new(),
             points: stored.points,
         })
@@ -115,7 +128,7 @@ impl CyclesResult {
     pub(super) fn new(
         wheel: Wheel,
         interval: Along,
-        followed: Vec<FollowedBranch>,
+        Followed { branches: followed, not_followed }: Followed,
         missed: Vec<f64>,
     ) -> Result<Self, Error> {
         let along = varying(&interval);
@@ -157,14 +170,9 @@ impl CyclesResult {
             let monitors: Vec<String> = border.iter().map(|(words, _)| (*words).to_owned()).collect();
             let first = match (first, &branch.hopf) {
                 (Some(stop), _) => End::monitored(Some(stop), varying, &monitors, last(points.first())),
-                (None, Some(hopf)) => End {
-                    cause: format!(
-                        "starts at the {} Hopf point {}",
-                        criticality(hopf.criticality),
-                        branch.origin
-                    ),
-                    ..End::start(last(points.first()))
-                },
+                (None, Some(hopf)) => {
+                    End { cause: birth(hopf, &branch.origin), ..End::start(last(points.first())) }
+                }
                 (None, None) => {
                     End { cause: format!("starts at {}", branch.origin), ..End::start(last(points.first())) }
                 }
@@ -181,16 +189,27 @@ impl CyclesResult {
             all.extend(points);
         }
         let dry_friction = NeglectedDryFriction::of(&wheel, &[interval.key()]);
-        Ok(Self { wheel, interval, along, branches, missed, points: all, dry_friction })
+        Ok(Self {
+            wheel,
+            interval,
+            along,
+            branches,
+            not_followed,
+            course: Vec::new(),
+            missed,
+            points: all,
+            dry_friction,
+        })
     }
 
-    /// What was detected but not located, and what was asked for and not found.
+    /// From where no branch could be followed, what was asked for and not found, and what was detected but not located.
     pub fn warnings(&self) -> Vec<String> {
         let unlocated: Vec<UnlocatedResult> =
             self.branches.iter().flat_map(|branch| branch.unlocated.iter().cloned()).collect();
         let missed = |value: &f64| format!("no cycle at {}: no branch passes there", self.missing(*value));
         let missed = self.missed.iter().map(missed);
-        missed.chain(warnings(&unlocated, &self.along)).collect()
+        let not_followed = self.not_followed.iter().map(|point| point.text(&self.interval));
+        not_followed.chain(missed).chain(warnings(&unlocated, &self.along)).collect()
     }
 
     fn missing(&self, value: f64) -> String {
@@ -199,6 +218,18 @@ impl CyclesResult {
 
     fn points_of(&self, branch: &BranchResult) -> Vec<&CyclePointResult> {
         self.points.iter().filter(|point| point.branch == branch.branch).collect()
+    }
+}
+
+/// Of what kind the Hopf point is at which a branch starts.
+fn birth(hopf: &HopfPoint, label: &str) -> String {
+    let kind = criticality(hopf.criticality);
+    if hopf.psi_max_slope.is_some() {
+        format!(
+            "starts at the Hopf point {label}, {kind} by the growth of its cycles (no first Lyapunov coefficient exists)"
+        )
+    } else {
+        format!("starts at the {kind} Hopf point {label}")
     }
 }
 
@@ -213,6 +244,9 @@ impl Report for CyclesResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(out, "limit cycles at {}", description::of(&self.wheel, &[self.interval.key()]))?;
+        for sentence in &self.course {
+            writeln!(out, "{sentence}")?;
+        }
         for branch in &self.branches {
             let points = self.points_of(branch);
             let count = counted(points.len(), "point", "points");

@@ -5,7 +5,7 @@
 //! known dies: in the range, where an isola shrinks to a point, or at its end (Takács, Stépán and Hogan, SIAM Journal on Applied
 //! Dynamical Systems, 2009). A closed branch that no Hopf point and no fold leads to is not found.
 
-use crate::cycles::from_hopf_points;
+use crate::cycles::{Followed, from_hopf_points};
 use crate::error::{Error, unless_stopped};
 use crate::last_fold::LastFold;
 use arclength::branch::SpecialKind;
@@ -215,7 +215,7 @@ impl<'a> Search<'a> {
         for index in 0..search.points.len() {
             let branches =
                 from_hopf_points(&search.points, Some(index), speeds, &options, |_| self.observer());
-            let Some(branches) = self.followed(branches)? else { continue };
+            let Some(Followed { branches, .. }) = self.followed(branches)? else { continue };
             self.found.branches += branches.len();
             for point in branches.iter().flat_map(|branch| &branch.cycles.points) {
                 let kind = point.label.map(|label| label.kind);

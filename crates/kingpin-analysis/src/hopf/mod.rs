@@ -1,5 +1,6 @@
 //! Hopf points of the uniform motion along a parameter: where shimmy is born.
 
+pub(crate) mod course;
 mod motion;
 mod request;
 mod result;

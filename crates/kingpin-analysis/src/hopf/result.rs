@@ -1,5 +1,6 @@
 //! Hopf points of the uniform motion as a result.
 
+use super::course::course_of;
 use super::motion::{BracketedResult, MotionResult, named_tests};
 use super::search::label;
 use crate::along::{along, varying};
@@ -14,7 +15,7 @@ use arclength_analysis::branch::pairs;
 use arclength_analysis::course::{self, ToldPoint};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::{Along, HopfPoint, MotionBranch};
+use kingpin::branches::{Along, FORWARD_MONITOR, HopfPoint, MotionBranch};
 use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
@@ -46,7 +47,7 @@ pub struct HopfPointResult {
     /// Where there is none: slope of the largest caster angle of the cycles in the parameter, negative where they lie below.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub psi_max_slope: Option<f64>,
-    /// Why there is none.
+    /// Why there is none, and whether the uniform motion is another one than `steady` gives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
     /// What moves farthest: `longitudinal` or `lateral`, the king pin, or `yaw`, the wheel about it.
@@ -94,13 +95,16 @@ pub struct HopfResult {
     /// Part of the interval in which the uniform motion was followed.
     #[serde(with = "kingpin_report::number")]
     pub searched: [f64; 2],
-    /// Whether the uniform motion is stable at the ends of that part.
+    /// Whether the uniform motion is stable where it was followed no further, below and above.
     pub stable_at_ends: [Option<bool>; 2],
     /// Why it was followed no further, below and above.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ends: Option<[End; 2]>,
     /// What was detected but only bracketed.
     pub unlocated: Vec<BracketedResult>,
+    /// Where the uniform motion turns or ends inside the interval, and changes of its stability that were not located, in words.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub course: Vec<String>,
     /// The Hopf points by ascending value.
     pub points: Vec<HopfPointResult>,
     /// The uniform motions that were computed on the way.
@@ -122,6 +126,8 @@ struct StoredHopfPoints {
     ends: Option<[End; 2]>,
     #[serde(default)]
     unlocated: Vec<BracketedResult>,
+    #[serde(default)]
+    course: Vec<String>,
     points: Vec<HopfPointResult>,
     #[serde(default)]
     motions: Vec<MotionResult>,
@@ -143,6 +149,7 @@ impl TryFrom<StoredHopfPoints> for HopfResult {
             stable_at_ends: stored.stable_at_ends,
             ends: stored.ends,
             unlocated: stored.unlocated,
+            course: stored.course,
             points: stored.points,
             motions: stored.motions,
             dry_friction,
@@ -166,20 +173,20 @@ impl HopfResult {
             let state = motion.iter().flat_map(|motion| motion.state.0.iter().cloned());
             NamedNumbers(value.into_iter().chain(state).collect())
         };
-        let ends = [
-            End::of_either(branch.stops[0].as_ref(), std::slice::from_ref(&along), last(motions.first())),
-            End::of_either(branch.stops[1].as_ref(), std::slice::from_ref(&along), last(motions.last())),
-        ];
-        let end =
-            |motion: Option<&MotionResult>| motion.map_or((f64::NAN, None), |end| (end.value, end.stable));
-        let [low, high] = [end(motions.first()), end(motions.last())];
+        let monitors = [FORWARD_MONITOR.to_owned()];
+        let end = |stop: &Option<_>, motion: Option<&MotionResult>| {
+            End::monitored(stop.as_ref(), std::slice::from_ref(&along), &monitors, last(motion))
+        };
+        let ends = [end(&branch.stops[0], motions.first()), end(&branch.stops[1], motions.last())];
+        let stable = |motion: Option<&MotionResult>| motion.and_then(|motion| motion.stable);
         Ok(Self {
             wheel,
             interval,
-            searched: [low.0, high.0],
-            stable_at_ends: [low.1, high.1],
+            searched: branch.searched(),
+            stable_at_ends: [stable(motions.first()), stable(motions.last())],
             ends: Some(ends),
             unlocated: branch.motions.iter().filter_map(BracketedResult::at).collect(),
+            course: course_of(branch),
             points: (0..)
                 .zip(&branch.hopf_points)
                 .map(|(index, point)| hopf_point(index, point, interval.key(), branch))
@@ -196,8 +203,18 @@ impl HopfResult {
     }
 }
 
-/// Why a Hopf point has no first Lyapunov coefficient, and what it has instead.
+/// Caster angles in rad that differ by less are those of the same uniform motion.
+const SAME_ANGLE: f64 = 1e-6;
+
+/// What else is to be known of a Hopf point.
 fn remark(point: &HopfPoint, key: Key) -> Option<String> {
+    let remarks: Vec<String> =
+        [no_first_lyapunov(point, key), elsewhere(point)].into_iter().flatten().collect();
+    (!remarks.is_empty()).then(|| remarks.join("; "))
+}
+
+/// Why a Hopf point has no first Lyapunov coefficient, and what it has instead.
+fn no_first_lyapunov(point: &HopfPoint, key: Key) -> Option<String> {
     let straight = point.wheel.towing_yaw_rate() == 0.0;
     if point.first_lyapunov.is_some() || !straight || point.wheel.tyre() != Tyre::Brush {
         return None;
@@ -210,6 +227,24 @@ fn remark(point: &HopfPoint, key: Key) -> Option<String> {
         format!("; psi_max grows by {} rad{unit} {side} it", readable(slope.abs()))
     });
     Some(reason.to_owned() + &slope.unwrap_or_default())
+}
+
+/// That the uniform motion is another one than the wheel has by itself, as behind a fold.
+fn elsewhere(point: &HopfPoint) -> Option<String> {
+    let motion = point.motion();
+    let backwards = if motion.forward_speed() < 0.0 { ", and rolls backwards" } else { "" };
+    match point.wheel.uniform_motion() {
+        Ok(steady) if (steady.psi() - motion.psi()).abs() < SAME_ANGLE => None,
+        Ok(steady) => Some(format!(
+            "the uniform motion has psi = {} rad{backwards}; `steady` gives another one here, with psi = {} rad",
+            readable(motion.psi()),
+            readable(steady.psi())
+        )),
+        Err(_) => Some(format!(
+            "the uniform motion has psi = {} rad{backwards}; `steady` finds none here",
+            readable(motion.psi())
+        )),
+    }
 }
 
 impl HopfPointResult {
@@ -249,7 +284,7 @@ fn hopf_point(
         unstable_after,
         psi_max_squared_slope: point.birth.psi_max_squared_slope,
         friction_slope: point.birth.friction_slope,
-        forces: point.wheel.uniform_motion()?.forces()?.into(),
+        forces: point.motion().forces()?.into(),
         first_lyapunov_error: point.detail.first_lyapunov_error,
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
@@ -268,7 +303,8 @@ impl Report for HopfResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let key = self.interval.key();
-        let [low, high] = self.searched.map(readable);
+        let (low, high) = self.interval.ends();
+        let [low, high] = [low, high].map(readable);
         writeln!(out, "uniform motion at {}", description::of(&self.wheel, &[key]))?;
         writeln!(out, "Hopf points for {key} from {low} to {high} {}\n", key.unit())?;
         let mut table = Table::new([
@@ -298,6 +334,9 @@ impl Report for HopfResult {
             self.points.iter().filter_map(|point| Some((&point.label, point.remark.as_ref()?)))
         {
             writeln!(out, "{label}: {remark}")?;
+        }
+        for sentence in &self.course {
+            writeln!(out, "{sentence}")?;
         }
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }

@@ -1,5 +1,6 @@
 //! The search for Hopf points, which must find one.
 
+use super::course::{ends, unlocated_changes};
 use crate::description;
 use crate::error::{Error, unless_stopped};
 use arclength::continuation::Settings;
@@ -56,11 +57,12 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
         stability(high_stable),
         description::quantity(along.key(), high),
     );
-    for (reached, wanted, stop) in [(low, start, &branch.stops[0]), (high, end, &branch.stops[1])] {
-        if reached != wanted {
-            let why = stop.as_ref().map_or_else(String::new, |stop| format!(" ({stop})"));
-            message += &format!("; beyond {} it could not be followed{why}", readable(reached));
-        }
+    for sentence in ends(branch) {
+        message += &format!("; {sentence}");
+    }
+    let changes: Vec<String> = unlocated_changes(branch).collect();
+    if !changes.is_empty() {
+        return format!("{message}; {}", changes.join("; "));
     }
     message += &if does_not_act(wheel, along.key(), [low, high]) {
         format!(

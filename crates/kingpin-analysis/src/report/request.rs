@@ -192,12 +192,14 @@ impl ReportAnalysis {
         let own = if own_radius.is_finite() { &circle } else { &straight };
         let mut found = Found::default();
         let mut stable_here = None;
+        let mut hopf_points = Vec::new();
         for (subject, radius) in [(&straight, f64::INFINITY), (&circle, radius)] {
             let speeds = self
                 .with_radius(radius)
                 .and_then(|wheel| Speeds::follow(&wheel, self.fastest, &control.part(MOTIONS)));
             if radius == own_radius {
                 stable_here = speeds.as_ref().ok().and_then(|speeds| speeds.at(self.wheel.get(Key::V)));
+                hopf_points = speeds.as_ref().map_or_else(|_| Vec::new(), Speeds::hopf_points);
             }
             let speeds = speeds.map(|speeds| Found {
                 findings: vec![speeds.finding(format!("stability, {subject}"))],
@@ -232,7 +234,8 @@ impl ReportAnalysis {
         });
         found.take(subject, damped)?;
         let subject = format!("limit cycles, {own}");
-        let followed = self.cycles(&subject, stable_here, large_cycles, &control.part(FOLLOWED));
+        let followed =
+            self.cycles(&subject, (stable_here, &hopf_points), large_cycles, &control.part(FOLLOWED));
         found.take(&subject, followed.map(|cycles| self.without_dry_friction(cycles)))?;
         unless_stopped(control)?;
         let subject = format!("blow, {own}");
@@ -338,7 +341,7 @@ impl ReportAnalysis {
     fn cycles(
         &self,
         subject: &str,
-        stable: Option<bool>,
+        uniform_motion: (Option<bool>, &[f64]),
         large_cycles: &str,
         control: &Control<'_>,
     ) -> Result<Found, Error> {
@@ -349,8 +352,8 @@ impl ReportAnalysis {
             None => None,
         };
         let finding = match &cycles {
-            Some(cycles) => cycles::finding(subject.to_owned(), cycles, speeds[0], stable),
-            None => cycles::none_is_born(subject.to_owned(), self.fastest, large_cycles),
+            Some(cycles) => cycles::finding(subject.to_owned(), cycles, speeds[0], uniform_motion),
+            None => cycles::none_is_born(subject.to_owned(), self.fastest, uniform_motion.1, large_cycles),
         };
         Ok(Found { findings: vec![finding], illustrations: illustration.into_iter().collect() })
     }

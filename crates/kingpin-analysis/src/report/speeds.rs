@@ -66,6 +66,11 @@ impl Speeds {
         Ok(Self { wheel: *wheel, branch, parts })
     }
 
+    /// The speeds of the Hopf points.
+    pub(super) fn hopf_points(&self) -> Vec<f64> {
+        self.branch.hopf_points.iter().map(|hopf| hopf.value).collect()
+    }
+
     /// Whether the motion is stable at a speed.
     pub(super) fn at(&self, speed: f64) -> Option<bool> {
         self.parts.iter().find(|part| part.from < speed && speed <= part.to).and_then(|part| part.stable)
@@ -106,7 +111,8 @@ impl Speeds {
         if let [_, Some(stop)] = &self.branch.stops
             && !matches!(stop, Stop::RangeEnd { .. })
         {
-            text += &format!("; beyond, it could not be followed ({stop})");
+            let why = self.branch.end_in_words(1).unwrap_or_else(|| stop.to_string());
+            text += &format!("; beyond, it could not be followed ({why})");
         }
         text + "."
     }

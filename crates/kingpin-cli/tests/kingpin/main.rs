@@ -6,6 +6,7 @@ mod branches;
 mod curves;
 mod damper;
 mod dry_friction;
+mod ends;
 mod files;
 mod fit;
 mod forces;

@@ -127,29 +127,46 @@ impl Disturbance {
             let rolling = [u, q, psi, speed, 0.0, yaw, speed];
             Ok::<_, SimulationError>(motion.tyre_state().unwrap_or(rolling))
         };
-        match self {
+        let (wheel, state) = match self {
             Disturbance::Impulse => {
                 let mut state = start(wheel)?;
                 let [lateral, yaw] = wheel.velocity_change(magnitude, model)?;
                 state[4] += lateral;
                 state[5] += yaw;
-                Ok((*wheel, state))
+                (*wheel, state)
             }
             Disturbance::ReleaseAngle => {
                 let mut state = start(wheel)?;
                 state[2] += magnitude;
-                Ok((*wheel, state))
+                (*wheel, state)
             }
-            Disturbance::Jolt => Ok((*wheel, start(&wheel.with(Key::V, wheel.get(Key::V) - magnitude)?)?)),
+            Disturbance::Jolt => (*wheel, start(&wheel.with(Key::V, wheel.get(Key::V) - magnitude)?)?),
             Disturbance::StepSteer => {
                 let state = start(&wheel.with(Key::Curvature, 0.0)?)?;
-                Ok((wheel.with(Key::Curvature, magnitude)?, state))
+                (wheel.with(Key::Curvature, magnitude)?, state)
             }
+        };
+        match model {
+            ContactModel::Rolling => Ok((wheel, wheel.with_states_that_follow(state)?)),
+            ContactModel::Sliding => Ok((wheel, state)),
         }
     }
 }
 
 impl Wheel {
+    /// A state of the rolling wheel as [`Disturbance::apply`] gives it, in which the states that are not free are those that follow
+    /// from the free ones: with `k_u = inf` the speed changes with the angle and the yaw rate.
+    fn with_states_that_follow(&self, state: [f64; 7]) -> Result<[f64; 7], KingpinError> {
+        let model = self.rolling_model(&[])?;
+        let [u, q, psi, speed, _, yaw, _] = state;
+        let all = if self.tyre() == Tyre::Rigid { vec![u, q, psi, speed, yaw] } else { state.to_vec() };
+        let all = model.full_state(&model.free_state(&all), &[]);
+        Ok(match all[..] {
+            [u, q, psi, speed, yaw] => [u, q, psi, speed, 0.0, yaw, speed],
+            _ => std::array::from_fn(|index| all[index]),
+        })
+    }
+
     /// What a sideways blow in N s on the rim of the wheel, `R` ahead of its centre, changes `V2` (m/s) and `Omega` (rad/s) of the uniform
     /// motion by. In ideal rolling the ground takes the sideways momentum, and the support what it is rigid against; a wheel that may
     /// slide, or that has a tyre, moves sideways as far as its king pin lets it.

@@ -1,13 +1,11 @@
 //! Hopf points of the uniform motion: where shimmy is born.
 
-use super::Along;
 use super::birth::Birth;
-#[cfg(doc)]
-use crate::UniformMotion;
+use super::{Along, FORWARD_MONITOR, STANDING};
 use crate::tyre::Onset;
-use crate::{KingpinError, Wheel};
-use arclength::branch::Criticality;
-use arclength::continuation::{Settings, Stop};
+use crate::{KingpinError, Tyre, UniformMotion, Wheel};
+use arclength::branch::{Criticality, Monitor};
+use arclength::continuation::{Settings, Stop, Wording};
 use arclength::control::Control;
 use arclength::cycle::CycleStart;
 use arclength::equilibrium::{
@@ -47,6 +45,11 @@ pub struct HopfPoint {
 }
 
 impl HopfPoint {
+    /// The uniform motion of which it is a Hopf point. Behind a fold that is not the one that [`Wheel::uniform_motion`] gives.
+    pub fn motion(&self) -> UniformMotion {
+        self.wheel.motion_in(&self.state)
+    }
+
     /// The point as the start of cycles along an interval of some width.
     pub(super) fn start(&self, width: f64) -> CycleStart {
         let mut start = CycleStart::from(&self.detail);
@@ -72,6 +75,23 @@ pub struct MotionBranch {
     pub hopf_points: Vec<HopfPoint>,
     /// Why the branch ends, at its first and at its last motion, in values of the key.
     pub stops: [Option<Stop<EquilibriumEnd>>; 2],
+    /// The parameter and its interval.
+    pub along: Along,
+}
+
+impl MotionBranch {
+    /// Part of the interval in which the uniform motion was followed; not numbers where there is no motion.
+    pub fn searched(&self) -> [f64; 2] {
+        let values = || self.motions.iter().map(|motion| motion.value);
+        [values().fold(f64::NAN, f64::min), values().fold(f64::NAN, f64::max)]
+    }
+
+    /// Why the branch ends at its first, `0`, or last motion, in words; nothing where that is not known.
+    pub fn end_in_words(&self, end: usize) -> Option<String> {
+        let key = self.along.key();
+        let wording = Wording::of([(key.name(), Some(key.unit()))]).monitors([FORWARD_MONITOR]);
+        Some(self.stops.get(end)?.as_ref()?.explain(&wording).cause)
+    }
 }
 
 /// What a search for Hopf points found.
@@ -79,7 +99,7 @@ pub struct MotionBranch {
 pub struct HopfSearch {
     /// The Hopf points in ascending order of the parameter.
     pub points: Vec<HopfPoint>,
-    /// Whether the uniform motion is stable at the lower and at the upper end of what could be searched.
+    /// Whether the uniform motion is stable where the search ended below and above; both may be below where the motion turns at a fold.
     pub stable_at_ends: (Option<bool>, Option<bool>),
     /// Part of the interval in which the uniform motion was followed.
     pub searched: (f64, f64),
@@ -89,19 +109,13 @@ pub struct HopfSearch {
 
 impl From<MotionBranch> for HopfSearch {
     fn from(branch: MotionBranch) -> Self {
-        let ends = [branch.motions.first(), branch.motions.last()];
-        let end = |index: usize| {
-            ends[index].map_or((f64::NAN, None), |motion| (motion.value, motion.stability.is_stable()))
-        };
-        let [first, last] = &branch.stops;
-        let text = |stop: &Option<Stop<EquilibriumEnd>>| {
-            stop.as_ref().map_or_else(String::new, |stop| stop.to_string())
-        };
+        let stable = |end: Option<&EquilibriumPoint>| end.and_then(|motion| motion.stability.is_stable());
+        let text = |end: usize| branch.end_in_words(end).unwrap_or_default();
         Self {
+            stable_at_ends: (stable(branch.motions.first()), stable(branch.motions.last())),
+            searched: branch.searched().into(),
+            stops: (text(0), text(1)),
             points: branch.hopf_points,
-            stable_at_ends: (end(0).1, end(1).1),
-            searched: (end(0).0, end(1).0),
-            stops: (text(first), text(last)),
         }
     }
 }
@@ -127,7 +141,8 @@ impl Wheel {
 
     /// The uniform motion followed along a parameter, with its special points.
     ///
-    /// `observer` is told the parameter at every motion found and may end the run.
+    /// `observer` is told the parameter at every motion found and may end the run. With a tyre the motion ends where the wheel stops
+    /// rolling forwards, `V1 = 0`.
     ///
     /// # Errors
     /// [`KingpinError::NoUniformMotion`] when there is none anywhere in the interval (the reason is that at its
@@ -150,7 +165,14 @@ impl Wheel {
                 }
             };
             let model = wheel.rolling_model(&[key])?;
-            let branch = Equilibria::of(&model)
+            let equilibria = Equilibria::of(&model);
+            let equilibria = if self.tyre() == Tyre::Rigid {
+                equilibria
+            } else {
+                let forwards = |point: &EquilibriumPoint| model.speed_ratio(&point.state, &[point.value]);
+                equilibria.monitor(Monitor::new(FORWARD_MONITOR, forwards).until(&[STANDING]))
+            };
+            let branch = equilibria
                 .start(&model.free_state(&motion.states()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
@@ -217,7 +239,7 @@ impl Wheel {
                 motions.reverse();
                 stops.reverse();
             }
-            return Ok(MotionBranch { motions, hopf_points, stops });
+            return Ok(MotionBranch { motions, hopf_points, stops, along });
         }
         let (start, end) = along.ends();
         Err(first_error.unwrap_or(KingpinError::EmptyInterval { key: along.key(), start, end }))

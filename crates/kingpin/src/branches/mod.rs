@@ -22,6 +22,12 @@ use arclength::continuation::Stop;
 pub const SPEED_MONITOR: &str =
     "the smallest V1/v on the cycles, which a tyre takes only while it is positive,";
 
+/// What ends branches of uniform motions of a wheel with a tyre, in words: they are followed as long as this is above [`STANDING`].
+pub const FORWARD_MONITOR: &str = "V1/v of the uniform motion, which a tyre takes only while it is positive,";
+
+/// The `V1/v` of uniform motions of a wheel with a tyre at which their branches end.
+pub const STANDING: f64 = 0.0;
+
 /// What is recorded along branches of cycles, in words: where it is 1, a cycle is located.
 pub const FRICTION_MONITOR: &str = "the largest friction force over mu_s N";
 

@@ -134,6 +134,11 @@ impl TyreWheel {
         slowest / self.active.towing(parameters).0
     }
 
+    /// The forward speed of the wheel at a state, as a part of the towing speed.
+    pub(crate) fn speed_ratio(&self, free: &[f64], parameters: &[f64]) -> f64 {
+        self.full_state(free, parameters)[3] / self.active.towing(parameters).0
+    }
+
     /// Indices of the free states among [`TYRE_STATE_NAMES`].
     pub(crate) fn free(&self) -> &'static [usize] {
         self.kind.king_pin.free()

@@ -1,7 +1,9 @@
 //! The wheel with lateral elasticity only: limit of the five-state model, energy balance, known Hopf points.
 
 use approx::assert_relative_eq;
+use arclength::control::Control;
 use arclength::{Dual, VectorField};
+use kingpin::basin::{ContactModel, Disturbance};
 use kingpin::{Key, KingpinError, Wheel};
 use proptest::prelude::*;
 
@@ -155,4 +157,28 @@ fn it_needs_an_infinite_stiffness() {
     field.evaluate(&[q, psi, yaw_rate], &field.parameters(), &mut derivative);
     assert_eq!(field.forward_speed(&[q, psi, yaw_rate]), speed);
     assert!(derivative.iter().all(|component| component.abs() < 1e-12));
+}
+
+/// With `k_u = inf` the speed follows from the angle and the yaw rate, which a kick changes: the state behind it is one of the wheel.
+#[test]
+fn states_behind_a_kick_fulfil_the_constraint() {
+    let toml = include_str!("../wheels/lateral_on_a_circle.toml");
+    for (disturbance, magnitude, settings) in [
+        (Disturbance::Impulse, 0.3, &[][..]),
+        (Disturbance::ReleaseAngle, 0.4, &[]),
+        (Disturbance::ReleaseAngle, 0.4, &[(Key::TurningRadius, f64::INFINITY)]),
+        (Disturbance::Jolt, 0.5, &[]),
+        (Disturbance::StepSteer, 0.5, &[]),
+    ] {
+        let wheel = settings
+            .iter()
+            .fold(Wheel::from_toml(toml).unwrap(), |wheel, &(key, value)| wheel.with(key, value).unwrap());
+        let (kicked, state) = disturbance.apply(&wheel, ContactModel::Rolling, magnitude).unwrap();
+        let [u, q, psi, speed, lateral, yaw, rim] = state;
+        let follows = kicked.lateral(&[]).unwrap().forward_speed(&[q, psi, yaw]);
+        assert_eq!((u, speed, lateral, rim), (0.0, follows, 0.0, follows), "{disturbance:?}");
+        let history =
+            disturbance.history(&wheel, ContactModel::Rolling, magnitude, 0.1, 11, &Control::none()).unwrap();
+        assert_eq!(history.states[0], state, "{disturbance:?}");
+    }
 }

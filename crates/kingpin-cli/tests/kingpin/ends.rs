@@ -1,0 +1,87 @@
+//! Uniform motions that turn or end inside the interval asked for, and changes of stability that a single number does not tell.
+
+use crate::Folder;
+use crate::branches::number;
+
+const TURNS_BACKWARDS: &str = include_str!("../../../kingpin/tests/wheels/turns_backwards.toml");
+const ENDS: &str = include_str!("../../../kingpin/tests/wheels/ends_on_the_circle.toml");
+const FOLDS: &str = include_str!("../../../kingpin/tests/wheels/folds_on_the_circle.toml");
+const NARROW: &str = include_str!("../../../kingpin/tests/wheels/narrow_window.toml");
+const SEVERAL: &str = include_str!("../../../kingpin/tests/wheels/several_changes.toml");
+const WEAK: &str = include_str!("../../../kingpin/tests/wheels/weak_change.toml");
+const LATERAL: &str = include_str!("../../../kingpin/tests/wheels/lateral_on_a_circle.toml");
+
+fn wheel(toml: &str) -> Folder {
+    let folder = Folder::new();
+    std::fs::write(folder.path("wheel.toml"), toml).unwrap();
+    folder
+}
+
+#[test]
+fn hopf_points_up_to_the_end_of_the_motion_are_given_and_the_end_is_told() {
+    let folder = wheel(ENDS);
+    let run = folder.succeed("hopf --wheel wheel.toml --along v=0.1:20");
+    for expected in ["Hopf points for v from 0.1 to 20 m/s", "0.59139026", "3.1168486", "3.7399194"] {
+        assert!(run.output.contains(expected), "{expected}: {}", run.output);
+    }
+    insta::assert_snapshot!("hopf_beyond_the_end", run.output);
+}
+
+#[test]
+fn hopf_points_of_a_tyre_that_rolls_backwards_are_none() {
+    let folder = wheel(TURNS_BACKWARDS);
+    let run = folder.succeed("hopf --wheel wheel.toml --along v=0.05:2");
+    assert!(!run.output.contains("0.65432647"), "{}", run.output);
+    insta::assert_snapshot!("hopf_behind_a_fold", run.output);
+    let result = folder.json("hopf --wheel wheel.toml --along v=0.05:2");
+    for point in result["points"].as_array().unwrap() {
+        assert!(number(&point["state"]["V1"]) > 0.0, "{point}");
+    }
+}
+
+/// Nobody gave a start, and what was found is given.
+#[test]
+fn cycles_are_followed_where_the_motion_ends() {
+    let folder = wheel(FOLDS);
+    let run = folder.run("cycles --wheel wheel.toml --along v=0.1:20 --steps 3");
+    assert!(!run.messages.contains("start given"), "{}", run.messages);
+    assert_eq!(run.exit_code, 0, "{}", run.messages);
+    assert!(run.output.contains("turns at v = 5.3000088 m/s"), "{}", run.output);
+}
+
+#[test]
+fn stability_tells_every_change_and_what_was_looked_at() {
+    for (name, toml) in [
+        ("stability_in_a_narrow_window", NARROW),
+        ("stability_that_changes_often", SEVERAL),
+        ("stability_that_changes_weakly", WEAK),
+    ] {
+        let run = wheel(toml).succeed("stability --wheel wheel.toml");
+        assert!(!run.output.contains("at every speed"), "{}", run.output);
+        insta::assert_snapshot!(name, run.output);
+    }
+}
+
+#[test]
+fn a_change_that_was_not_located_is_told() {
+    let run = wheel(WEAK).run("hopf --wheel wheel.toml --along v=0.05:26.06");
+    assert_eq!(run.exit_code, 1);
+    let expected = "the uniform motion gains stability, and where was not located: its growth rate is";
+    assert!(run.messages.contains(expected), "{}", run.messages);
+    assert!(!run.messages.contains("wider interval"), "{}", run.messages);
+}
+
+#[test]
+fn blows_to_a_wheel_with_lateral_elasticity_only_on_a_circle() {
+    let folder = wheel(LATERAL);
+    for kind in ["impulse", "release-angle"] {
+        let run = folder.succeed(&format!("safe-kick --wheel wheel.toml --kind {kind} --contact rolling"));
+        assert!(run.output.contains("ends in"), "{}", run.output);
+    }
+}
+
+#[test]
+fn the_law_of_the_tyre_is_among_the_keys() {
+    let run = Folder::new().run("steady -s foo=1");
+    assert!(run.messages.contains("and `tyre`, which is a word"), "{}", run.messages);
+}
