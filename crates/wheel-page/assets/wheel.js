@@ -227,12 +227,15 @@ async function showVerdict(signal) {
   const { stable, critical_speed: critical, critical_speed_with_friction: withFriction, rolls } = verdict;
   const first = stable === null ? "Undecided whether small motions die out." : stable ? "Stable: small motions die out." : "Unstable: small motions grow.";
   const everywhere = stable === null ? "" : stable ? "At every speed at which the motion exists." : "At every speed.";
+  const [low, high] = verdict.searched;
+  const unchanged = verdict.closed_form ? everywhere : `No change was found from ${readable(low, 3)} to ${readable(high, 3)} m/s.`;
+  const again = verdict.speeds.length > 2 ? ", and at higher speeds again" : "";
   const lines = [
-    critical === null ? everywhere : `The stability changes at ${readable(critical, 5)} m/s.`,
+    critical === null ? unchanged : `The stability changes at ${readable(critical, 5)} m/s${again}.`,
     rolls ? "The wheel rolls." : `The ground can supply only ${readable(verdict.normal_force * valueOf("mu_s"), 4)} N of the ${readable(verdict.friction_force, 4)} N that rolling needs: it slides.`,
   ];
   if (!stable && withFriction !== null) lines.push(`With dry friction about the king pin, however little, small motions die out up to ${readable(withFriction, 5)} m/s.`);
-  if (Infinity === valueOf("r") && critical === null && stable === false) lines[0] = "At every speed, without dry friction.";
+  if (Infinity === valueOf("r") && critical === null && stable === false && verdict.closed_form) lines[0] = "At every speed, without dry friction.";
   byId("verdict").replaceChildren(html("strong", {}, first), ` ${lines.join(" ")}`);
   byId("numbers").textContent = verdict.text;
   motions.rest(verdict, state.wheel.tyre === "rigid");

@@ -13,7 +13,7 @@ use kingpin_analysis::cycles::CyclesRequest;
 use kingpin_analysis::report::ReportRequest;
 use kingpin_analysis::shimmy::ShimmyRequest;
 use kingpin_analysis::simulate::SimulateRequest;
-use kingpin_analysis::stability::{StabilityRequest, StabilityResult};
+use kingpin_analysis::stability::{StabilityPart, StabilityRequest, StabilityResult};
 use kingpin_analysis::steady::{SteadyRequest, SteadyResult};
 use kingpin_analysis::{Error, Journal, SeenFromAbove, WheelRequest};
 use kingpin_report::{NamedNumbers, Report};
@@ -63,6 +63,11 @@ struct Verdict {
     stable: Option<bool>,
     critical_speed: Option<f64>,
     critical_yaw_rate: Option<f64>,
+    /// Speeds that were looked at, and the stability over them.
+    searched: [f64; 2],
+    speeds: Vec<StabilityPart>,
+    /// Whether there can be no other changes.
+    closed_form: bool,
     swing_factor: Option<f64>,
     critical_speed_with_friction: Option<f64>,
     /// As the commands `steady` and `stability` print it.
@@ -94,6 +99,9 @@ async fn verdict(State(work): State<Work>, body: Bytes) -> Result<Answer<Verdict
             stable: stability.stable,
             critical_speed: stability.critical_speed,
             critical_yaw_rate: stability.critical_yaw_rate,
+            searched: stability.searched,
+            speeds: stability.speeds,
+            closed_form: stability.closed_form,
             swing_factor: stability.swing_factor,
             critical_speed_with_friction: stability.critical_speed_with_friction,
             text,
