@@ -7,6 +7,9 @@ use crate::error::InvalidField;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
+/// Part of an interval by which what was computed may be outside: special points at one of its ends are known to rounding.
+const COMPUTED_ROUNDING: f64 = 1e-9;
+
 /// An interval of a parameter, `KEY=A:B`. The ends may be written in either order.
 ///
 /// ```
@@ -133,6 +136,12 @@ impl Interval {
     /// Whether a value is inside, ends included.
     pub fn contains(&self, value: f64) -> bool {
         (self.start..=self.end).contains(&value)
+    }
+
+    /// Whether a value that was computed is inside, or outside by rounding.
+    pub fn contains_nearly(&self, value: f64) -> bool {
+        let margin = COMPUTED_ROUNDING * (self.end - self.start);
+        (self.start - margin..=self.end + margin).contains(&value)
     }
 
     /// That every value is inside.

@@ -6,6 +6,7 @@ use crate::stored_model::StoredModel;
 use arclength::equilibrium::WithTotals;
 use arclength_ode::Model;
 use kingpin_report::NamedNumbers;
+use kingpin_report::numbers::readable;
 use std::path::Path;
 
 /// A model with a value for every parameter and an initial value for every state.
@@ -175,11 +176,11 @@ impl ChosenModel {
         let key = &interval.key;
         let value = self.model.parameter_index(key).and_then(|index| self.parameters.get(index));
         match value {
-            Some(value) if !interval.contains(*value) => Err(Error::invalid(
+            Some(value) if !interval.contains_nearly(*value) => Err(Error::invalid(
                 fields,
                 interval.to_string(),
-                format!("{label} is outside the interval, {key} = {value} there"),
-                format!("an interval that contains {value}"),
+                format!("{label} is outside the interval, {key} = {} there", readable(*value)),
+                format!("an interval that contains {}", readable(*value)),
             )),
             _ => Ok(()),
         }

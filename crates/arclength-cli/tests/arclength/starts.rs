@@ -204,3 +204,20 @@ fn a_branch_that_stands_still_at_one_value_of_the_parameter_is_left_at_equilibri
     assert!(crossings.iter().any(|x| (x - 1.0).abs() < 1e-9), "{crossings:?}");
     assert!(crossings.iter().any(|x| (x + 1.0).abs() < 1e-9), "{crossings:?}");
 }
+
+#[test]
+fn cycles_start_at_a_hopf_point_at_the_end_of_the_interval_but_for_rounding() {
+    // The Hopf point at l = 0 is located next to it, on either side; l1 and the cycles in closed form.
+    let folder =
+        folder("par l=.5,w=1\nr=sqrt(x^2+y^2)\nx'=x*(l-r^2)-w*y\ny'=y*(l-r^2)+w*x\ninit x=.2,y=.1\ndone\n");
+    let equilibria = folder.json("equilibria model.ode --along l=-1:1 -o equilibria.json");
+    let hopf = points(&equilibria).iter().find(|point| point["label"] == "HB1").unwrap();
+    let place = number(&hopf["value"]);
+    assert!(place.abs() < 1e-12, "{place}");
+    for low in [0.0, place + 1e-11] {
+        let cycles = folder.json(&format!("cycles --from equilibria.json:HB1 --along l={low:e}:1 --at 0.25"));
+        let asked = points(&cycles).iter().find(|point| number(&point["value"]) == 0.25).unwrap();
+        assert!((number(&asked["max"]["x"]) - 0.5).abs() < 1e-9);
+    }
+    folder.fails("cycles --from equilibria.json:HB1 --along l=0.1:1", 2, &["HB1 is outside the interval"]);
+}

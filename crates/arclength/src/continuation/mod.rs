@@ -34,5 +34,6 @@ pub(crate) use metric::{along, distance, metric_image, norm};
 pub(crate) use requested::fix;
 pub use requested::{Origin, Purpose, Target};
 pub use settings::Settings;
+pub(crate) use solution::START_ROUNDING;
 pub use solution::{Bound, Solution};
 pub use stop::{Explanation, Reason, Stop, Wording};

@@ -39,6 +39,9 @@ pub struct Bound {
     pub upper: f64,
 }
 
+/// Part of its range by which a parameter may lie outside by rounding where a curve starts: at a special point at the end of the range.
+pub(crate) const START_ROUNDING: f64 = 1e-9;
+
 impl Bound {
     /// The value of the bounded unknown.
     pub fn value(&self, unknown: &[f64]) -> f64 {

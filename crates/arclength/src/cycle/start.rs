@@ -17,8 +17,8 @@ use crate::collocation::equations::Collocation;
 use crate::collocation::resolution::Resolution;
 use crate::continuation::events::around_start;
 use crate::continuation::{
-    BothWays, Bound, Curve, Equations, Followed, Observer, Origin, Request, Settings, Solution, Stop,
-    both_ways, exact_start, follow,
+    BothWays, Bound, Curve, Equations, Followed, Observer, Origin, Request, START_ROUNDING, Settings,
+    Solution, Stop, both_ways, exact_start, follow,
 };
 use crate::equilibrium::HopfPoint;
 use crate::equilibrium::problem::EquilibriumProblem;
@@ -497,7 +497,7 @@ impl<'a> Asked<'a> {
         }
         let value = self.parameters[self.active];
         let Bound { lower, upper, .. } = self.bound;
-        if !(lower..=upper).contains(&value) {
+        if !self.bound.holds(value, START_ROUNDING) {
             return Err(invalid(
                 "start value",
                 &value.to_string(),

@@ -1,7 +1,7 @@
 //! What curves in two parameters are asked for: the order of the two parameters, and which way is forward.
 
 use crate::branch::invalid;
-use crate::continuation::Bound;
+use crate::continuation::{Bound, START_ROUNDING};
 use crate::error::Error;
 
 /// The first parameter stands still where it changes less than this part of the second, in parts of their ranges.
@@ -30,7 +30,7 @@ impl TwoParameters {
     ) -> Result<Self, Error> {
         for (&index, bound) in active.iter().zip(bounds) {
             let value = parameters[index];
-            if !(bound.lower..=bound.upper).contains(&value) {
+            if !bound.holds(value, START_ROUNDING) {
                 return Err(invalid(
                     &format!("range of {}", names[index]),
                     &format!("{} to {}", bound.lower, bound.upper),

@@ -10,7 +10,8 @@ use crate::branch::{
 use crate::collocation::equations::Collocation;
 use crate::continuation::events::around_start;
 use crate::continuation::{
-    BothWays, Observer, Request, Settings, Solution, both_ways, correct, exact_start, finish, follow,
+    BothWays, Observer, Request, START_ROUNDING, Settings, Solution, both_ways, correct, exact_start, finish,
+    follow,
 };
 use crate::cycle::curve::CycleCurve;
 use crate::cycle::defining::Kind;
@@ -26,9 +27,6 @@ use crate::field::VectorField;
 use crate::locus::held::Held;
 use crate::locus::request::{TwoParameters, point_forward};
 use std::ops::RangeInclusive;
-
-/// Part of its range by which a parameter of the start may lie outside by rounding.
-const START_ROUNDING: f64 = 1e-9;
 
 /// What a curve of special cycles starts from and how finely the cycles are resolved.
 #[derive(Clone, Debug, Default)]
