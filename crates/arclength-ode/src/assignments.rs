@@ -1,8 +1,8 @@
 //! Lists such as `a=1, b = 2 c=3`: names with values, separated by commas, blanks or both.
 
 use crate::error::OdeError;
+use crate::name::Name;
 use crate::source::Text;
-use crate::statement::Name;
 
 /// A name and where its value stands in the line; the value is empty when there was no `=`.
 #[derive(Debug)]

@@ -6,9 +6,10 @@ use crate::error::{OdeError, Span, Warning, nearest};
 use crate::event::Action;
 use crate::expand::expanded_lines;
 use crate::expression::{Expression, Node, parse_expression, parse_number, reserved};
+use crate::name::Name;
 use crate::options::Options;
 use crate::source::Text;
-use crate::statement::{EventStatement, Name, Statement, classify};
+use crate::statement::{EventStatement, Statement, classify};
 use arclength::Direction;
 use std::collections::HashMap;
 

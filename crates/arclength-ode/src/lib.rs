@@ -52,6 +52,7 @@ mod expression;
 mod interval;
 mod look_alike;
 mod model;
+mod name;
 mod not_finite;
 mod options;
 mod quantity;

@@ -5,8 +5,8 @@ use crate::declarations::Declarations;
 use crate::error::Place;
 use crate::expression::{BinaryOperation, UnaryOperation};
 use crate::model::Model;
+use crate::name::Name;
 use crate::source::physical_lines;
-use crate::statement::Name;
 use crate::tape::{apply_binary, apply_unary};
 use std::fmt;
 

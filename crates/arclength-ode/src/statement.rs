@@ -8,22 +8,9 @@ use crate::assignments::assignments;
 use crate::error::{OdeError, Span, nearest};
 use crate::expression::parse_number;
 use crate::look_alike;
+use crate::name::Name;
 use crate::source::Text;
 use arclength::Direction;
-
-/// A name as written, and where.
-#[derive(Clone, Debug)]
-pub(crate) struct Name {
-    pub text: String,
-    pub span: Span,
-}
-
-impl Name {
-    /// The name as XPPAUT compares names.
-    pub(crate) fn key(&self) -> String {
-        self.text.to_ascii_lowercase()
-    }
-}
 
 /// A statement; the numbers are indices into the line where its right-hand side starts.
 #[derive(Debug)]

@@ -4,7 +4,8 @@
 use super::graph::{Graph, NodeId, Operation};
 use crate::error::{OdeError, Span, Warning, nearest};
 use crate::expression::{BUILTIN_NAMES, BinaryOperation, Expression, Node, UnaryOperation};
-use crate::statement::{Name, TableRange};
+use crate::name::Name;
+use crate::statement::TableRange;
 use std::collections::HashMap;
 
 /// Largest number of operations that a model may expand to, functions inlined and sums unrolled.
