@@ -18,8 +18,6 @@ const DECADE: f64 = 10.0;
 const SAME_CHANGE: f64 = 1e-6;
 /// Relative distance from a change at which the stability beside it is asked for.
 const BESIDE: f64 = 1e-6;
-/// Caster angles in rad that differ by less are those of the same uniform motion.
-const SAME_ANGLE: f64 = 1e-6;
 /// Where certain stability ends, and not at a change, that speed is narrowed down to this part of it.
 const EDGE: f64 = 1e-6;
 
@@ -91,7 +89,7 @@ impl Wheel {
                     branch
                         .hopf_points
                         .iter()
-                        .filter(|hopf| hopf.wheel.has_by_itself(hopf.motion().psi()))
+                        .filter(|hopf| hopf.is_of_wheels_own_motion())
                         .map(|hopf| hopf.value),
                 ),
                 // The scan tells the same.
@@ -104,11 +102,6 @@ impl Wheel {
         }
         changes.retain(|&speed| self.changes_stability_at(speed));
         Ok(changes)
-    }
-
-    /// Whether the uniform motion that this wheel has by itself is the one with a caster angle.
-    fn has_by_itself(&self, psi: f64) -> bool {
-        self.uniform_motion().is_ok_and(|motion| (motion.psi() - psi).abs() < SAME_ANGLE)
     }
 
     fn parts(&self, mut speeds: Vec<f64>, changes: &[f64]) -> Vec<SpeedPart> {

@@ -324,9 +324,9 @@ impl Orbit {
     }
 
     /// The same orbit by polynomials of another degree; where that is lower, each interval becomes several.
-    pub(crate) fn with_degree(&self, degree: usize) -> Self {
+    pub(crate) fn with_degree(self, degree: usize) -> Self {
         if degree == self.degree {
-            return self.clone();
+            return self;
         }
         let parts = self.degree.div_ceil(degree);
         let (from, gauss) = (Gauss::of(self.degree), Gauss::of(degree));
@@ -407,7 +407,7 @@ mod tests {
         let orbit =
             Orbit { degree: 6, dimension: 2, states: states.collect(), period: 2.0, mesh: mesh.clone() };
         for (degree, intervals) in [(8, 3), (6, 3), (4, 6), (3, 6)] {
-            let other = orbit.with_degree(degree);
+            let other = orbit.clone().with_degree(degree);
             assert!(other.check(2).is_ok());
             assert_eq!(other.mesh.len(), intervals + 1);
             for time in [0.0, 0.1, 0.6, 0.7, 1.3, 1.9] {

@@ -203,9 +203,6 @@ impl HopfResult {
     }
 }
 
-/// Caster angles in rad that differ by less are those of the same uniform motion.
-const SAME_ANGLE: f64 = 1e-6;
-
 /// What else is to be known of a Hopf point.
 fn remark(point: &HopfPoint, key: Key) -> Option<String> {
     let remarks: Vec<String> =
@@ -231,10 +228,12 @@ fn no_first_lyapunov(point: &HopfPoint, key: Key) -> Option<String> {
 
 /// That the uniform motion is another one than the wheel has by itself, as behind a fold.
 fn elsewhere(point: &HopfPoint) -> Option<String> {
+    if point.is_of_wheels_own_motion() {
+        return None;
+    }
     let motion = point.motion();
     let backwards = if motion.forward_speed() < 0.0 { ", and rolls backwards" } else { "" };
     match point.wheel.uniform_motion() {
-        Ok(steady) if (steady.psi() - motion.psi()).abs() < SAME_ANGLE => None,
         Ok(steady) => Some(format!(
             "the uniform motion has psi = {} rad{backwards}; `steady` gives another one here, with psi = {} rad",
             readable(motion.psi()),

@@ -44,10 +44,19 @@ pub struct HopfPoint {
     onset: Option<Onset>,
 }
 
+/// Caster angles in rad that differ by less are those of the same uniform motion.
+const SAME_ANGLE: f64 = 1e-6;
+
 impl HopfPoint {
     /// The uniform motion of which it is a Hopf point. Behind a fold that is not the one that [`Wheel::uniform_motion`] gives.
     pub fn motion(&self) -> UniformMotion {
         self.wheel.motion_in(&self.state)
+    }
+
+    /// Whether that is the one that [`Wheel::uniform_motion`] gives.
+    pub fn is_of_wheels_own_motion(&self) -> bool {
+        let angle = self.motion().psi();
+        self.wheel.uniform_motion().is_ok_and(|own| (own.psi() - angle).abs() < SAME_ANGLE)
     }
 
     /// The point as the start of cycles along an interval of some width.

@@ -239,10 +239,15 @@ impl<'a> CycleLocusCurve<'a> {
         one[0] * other[0] + one[1] * other[1] < 0.0
     }
 
+    /// The place of the angle of a torus bifurcation among the unknowns, counted from their end.
+    pub(super) fn angle_from_end(&self) -> usize {
+        self.system.collocation.problem.scalars() - 1
+    }
+
     /// The angle of a torus bifurcation as the curve counts it: past 0 and pi it goes on.
     pub(super) fn angle(&self, solution: &Solution<Inspection>) -> Option<f64> {
-        let end = solution.unknown.len() - self.system.collocation.problem.scalars();
-        (self.kind() == Kind::Torus).then(|| solution.unknown[end + 1])
+        let place = solution.unknown.len() - self.angle_from_end();
+        (self.kind() == Kind::Torus).then(|| solution.unknown[place])
     }
 
     /// Parameter value at which the two halves of doubled cycles become equal between two solutions; behind it a curve goes on
@@ -412,7 +417,7 @@ impl Curve for CycleLocusCurve<'_> {
         if !matches!(kind, SpecialKind::Resonance3 | SpecialKind::Resonance4) {
             return None;
         }
-        let place = solution.tangent.len() - self.system.collocation.problem.scalars() + 1;
+        let place = solution.tangent.len() - self.angle_from_end();
         let is_folded = self.angle(solution)?.rem_euclid(TAU) > PI;
         Some(if is_folded { -solution.tangent[place] } else { solution.tangent[place] })
     }

@@ -42,16 +42,17 @@ pub enum CycleLocusEnd {
 
 impl WithParameters for CycleLocusEnd {
     fn with_parameters(self, convert: impl Fn(usize, f64) -> f64) -> Self {
+        let both = |[one, two]: [f64; 2]| [convert(0, one), convert(1, two)];
         match self {
             Self::Cycle(end) => Self::Cycle(end.with_parameters(convert)),
-            Self::GeneralizedHopfPoint { values: [one, two], frequency } => {
-                Self::GeneralizedHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            Self::GeneralizedHopfPoint { values, frequency } => {
+                Self::GeneralizedHopfPoint { values: both(values), frequency }
             }
-            Self::HopfHopfPoint { values: [one, two], frequency } => {
-                Self::HopfHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            Self::HopfHopfPoint { values, frequency } => {
+                Self::HopfHopfPoint { values: both(values), frequency }
             }
-            Self::ZeroHopfPoint { values: [one, two], frequency } => {
-                Self::ZeroHopfPoint { values: [convert(0, one), convert(1, two)], frequency }
+            Self::ZeroHopfPoint { values, frequency } => {
+                Self::ZeroHopfPoint { values: both(values), frequency }
             }
             end @ Self::StrongResonance { .. } => end,
         }

@@ -4,7 +4,6 @@
 use super::curve::{CycleLocusCurve, Inspection, test_value};
 use super::monitor;
 use crate::branch::SpecialKind;
-use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::Location;
 use crate::continuation::{Curve, Equations, Solution, along, fix, locate_value, metric_image};
 use crate::error::Error;
@@ -101,9 +100,7 @@ impl CycleLocusCurve<'_> {
         let Some(angle) = angles.into_iter().find(|angle| (from - angle) * (to - angle) <= 0.0) else {
             return Ok(None);
         };
-        let from_end = self.system.collocation.problem.scalars() - 1;
-        let settings = self.settings;
-        match fix(self, before, after, from_end, angle, &settings) {
+        match self.at_angle([before, after], angle) {
             Ok(found) => {
                 let place = along(self, before, &found.unknown) / along(self, before, &after.unknown);
                 Ok((0.0..=1.0).contains(&place).then_some(found))
@@ -111,6 +108,16 @@ impl CycleLocusCurve<'_> {
             Err(Error::NotFound { .. }) => Ok(None),
             Err(error) => Err(error),
         }
+    }
+
+    /// The solution between two others at which the angle of a torus bifurcation has a value.
+    fn at_angle(
+        &mut self,
+        [before, after]: [&Solution<Inspection>; 2],
+        angle: f64,
+    ) -> Result<Solution<Inspection>, Error> {
+        let (from_end, settings) = (self.angle_from_end(), self.settings);
+        fix(self, before, after, from_end, angle, &settings)
     }
 
     /// Whether a curve of torus bifurcations whose angle passes that of a strong resonance between two solutions comes back on itself
@@ -126,9 +133,7 @@ impl CycleLocusCurve<'_> {
         } else {
             (after, 2.0 * resonance - to)
         };
-        let from_end = self.system.collocation.problem.scalars() - 1;
-        let settings = self.settings;
-        let mirrored = fix(self, before, after, from_end, angle, &settings).ok()?;
+        let mirrored = self.at_angle([before, after], angle).ok()?;
         let end = mirrored.unknown.len();
         Some([2, 1].into_iter().zip(self.system.parameter_scales).all(|(place, scale)| {
             (mirrored.unknown[end - place] - nearer.unknown[end - place]).abs() < SAME_PLACE * scale

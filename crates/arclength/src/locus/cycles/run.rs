@@ -290,13 +290,10 @@ impl<'a> Asked<'a> {
         }
         Err(failure.unwrap_or(Error::Eigenvalues { quantity: "Floquet multipliers" }))
     }
+
     /// Whether both parameters are inside their ranges, but for rounding.
     fn is_inside(&self, unknown: &[f64]) -> bool {
-        let values = &unknown[unknown.len() - 2..];
-        values.iter().zip(&self.along).all(|(value, (_, range))| {
-            let margin = START_ROUNDING * (range.end() - range.start());
-            (range.start() - margin..=range.end() + margin).contains(value)
-        })
+        self.two.bounds.iter().all(|bound| bound.holds(bound.value(unknown), START_ROUNDING))
     }
 
     fn outside(&self, sought: &str) -> Error {
