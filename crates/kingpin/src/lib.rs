@@ -41,6 +41,7 @@ mod keys;
 pub mod lateral;
 pub mod linear_stability;
 mod origin;
+pub mod parallel;
 pub mod parameters;
 pub mod plane;
 pub mod rolling;

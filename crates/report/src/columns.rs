@@ -74,8 +74,9 @@ impl Columns {
         name: impl Into<String>,
         entries: impl IntoIterator<Item = Option<f64>>,
     ) -> Self {
-        let numbers = entries.into_iter().map(|entry| entry.filter(|number| !number.is_nan()));
-        self.add(name, Entries::Numbers(numbers.collect()))
+        let mut entries = entries.into_iter();
+        let numbers = collected(&mut || Some(entries.next()?.filter(|number| !number.is_nan())));
+        self.add(name.into(), Entries::Numbers(numbers))
     }
 
     /// Adds two columns for each of the first `count` complex numbers of every row, `NAME_1_real` and `NAME_1_imaginary` onwards.
@@ -114,7 +115,8 @@ impl Columns {
 
     /// Adds a column of counts.
     pub fn counts(self, name: impl Into<String>, entries: impl IntoIterator<Item = u64>) -> Self {
-        self.add(name, Entries::Counts(entries.into_iter().collect()))
+        let mut entries = entries.into_iter();
+        self.add(name.into(), Entries::Counts(collected(&mut || entries.next())))
     }
 
     /// Adds a column of yes and no; `None` where neither can be said.
@@ -123,16 +125,18 @@ impl Columns {
         name: impl Into<String>,
         entries: impl IntoIterator<Item = B>,
     ) -> Self {
-        self.add(name, Entries::Booleans(entries.into_iter().map(Into::into).collect()))
+        let mut entries = entries.into_iter();
+        self.add(name.into(), Entries::Booleans(collected(&mut || entries.next().map(Into::into))))
     }
 
     /// Adds a column of words.
     pub fn texts(self, name: impl Into<String>, entries: impl IntoIterator<Item = Option<String>>) -> Self {
-        self.add(name, Entries::Texts(entries.into_iter().collect()))
+        let mut entries = entries.into_iter();
+        self.add(name.into(), Entries::Texts(collected(&mut || entries.next())))
     }
 
-    fn add(mut self, name: impl Into<String>, entries: Entries) -> Self {
-        self.columns.push(Column { name: name.into(), unit: None, entries });
+    fn add(mut self, name: String, entries: Entries) -> Self {
+        self.columns.push(Column { name, unit: None, entries });
         self
     }
 
@@ -178,6 +182,12 @@ impl Columns {
         }
         Ok(())
     }
+}
+
+/// All entries of a column. They come through a pointer: there are hundreds of columns, each with an iterator of its own type, and
+/// to collect it would be compiled anew for each of them.
+fn collected<T>(next: &mut dyn FnMut() -> Option<T>) -> Vec<T> {
+    std::iter::from_fn(next).collect()
 }
 
 fn write_separator(index: usize, out: &mut dyn Write) -> io::Result<()> {

@@ -10,9 +10,9 @@ use crate::disturbance::DisturbanceRequest;
 use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::identification::{Identified, JointDistribution};
+use kingpin::parallel;
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, Tyre, Wheel};
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Wheels that are drawn.
@@ -129,7 +129,7 @@ fn from_samples(wheel: &Wheel, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sy
     if drawn.len() < FEWEST_DRAWS {
         return Consequence { value: finite(value), lower: None, upper: None, method: None, without: None };
     }
-    let mut values: Vec<f64> = drawn.par_iter().map(of).collect();
+    let mut values: Vec<f64> = parallel::map(drawn, of);
     values.sort_by(f64::total_cmp);
     let quantile = |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
     let without = values.iter().filter(|value| value.is_infinite()).count() as f64 / values.len() as f64;
@@ -170,14 +170,11 @@ fn safe_blow(
     let pairs = distribution.map(|distribution| distribution.pairs(wheel)).unwrap_or_default();
     let wheels: Vec<Wheel> = std::iter::once(*wheel).chain(pairs.iter().flatten().copied()).collect();
     let counter = control.count(wheels.len());
-    let blows: Vec<Option<f64>> = wheels
-        .par_iter()
-        .map(|wheel| {
-            let blow = largest_returning(wheel, disturbance, contact, &control.quiet());
-            counter.advance(1);
-            blow
-        })
-        .collect::<Result<_, _>>()?;
+    let blows: Vec<Option<f64>> = parallel::try_map(&wheels, |wheel| {
+        let blow = largest_returning(wheel, disturbance, contact, &control.quiet());
+        counter.advance(1);
+        blow
+    })?;
     let value = blows[0];
     let mut consequence = Consequence { value, lower: None, upper: None, method: None, without: None };
     let all: Option<Vec<f64>> = blows.into_iter().collect();

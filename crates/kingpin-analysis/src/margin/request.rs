@@ -14,7 +14,7 @@ use arclength_analysis::{Control, SampledInterval};
 use kingpin::Wheel;
 use kingpin::basin::SafeKick;
 use kingpin::branches::Along;
-use rayon::prelude::*;
+use kingpin::parallel;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -143,14 +143,19 @@ impl MarginAnalysis {
             journal.keep(index, &found, control.stop());
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             control.done(done as f64 / self.values.len() as f64);
-            Ok((index, found))
+            Ok(found)
         };
-        let computed: Vec<(usize, Found)> = (0..self.values.len())
-            .into_par_iter()
-            .filter(|index| !finished.contains_key(index) && !control.is_stopped())
-            .map(seek)
-            .filter(|found| !matches!(found, Err(Error::Stopped)))
-            .collect::<Result<_, Error>>()?;
+        let computed = parallel::try_map_indices(self.values.len(), |index| {
+            if finished.contains_key(&index) || control.is_stopped() {
+                return Ok(None);
+            }
+            match seek(index) {
+                Ok(found) => Ok(Some((index, found))),
+                Err(Error::Stopped) => Ok(None),
+                Err(error) => Err(error),
+            }
+        })?;
+        let computed: Vec<(usize, Found)> = computed.into_iter().flatten().collect();
         let found = journal.checked(computed, self.values.len())?;
         let cycles = unstable_cycles(&self.wheel, self.along, &self.values, control)?;
         if control.is_stopped() {

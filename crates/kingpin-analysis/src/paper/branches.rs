@@ -9,8 +9,8 @@ use arclength::continuation::{Settings, Stop};
 use arclength::cycle::CyclePoint;
 use arclength_analysis::Control;
 use kingpin::branches::{Along, CycleOptions, HopfPoint, WheelCycles};
+use kingpin::parallel;
 use kingpin::{CycleForces, Key, Wheel};
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Caster lengths of figure 5 in m, and its turning radius.
@@ -68,18 +68,14 @@ impl Branches {
             .map(|radius| (FIGURE_6_LENGTH, radius))
             .collect();
         places.extend(lengths);
-        let found = places
-            .into_par_iter()
-            .with_max_len(1)
-            .map(|(length, radius)| {
-                let mut branches = vec![from_hopf_point(length, radius)?];
-                if (length, radius) == (FIGURE_6_LENGTH, TOWARDS_STRAIGHT.0) {
-                    branches.push(straight(&branches[0])?);
-                }
-                tasks.step()?;
-                Ok(branches)
-            })
-            .collect::<Result<Vec<_>, Error>>()?;
+        let found = parallel::try_map(&places, |&(length, radius)| {
+            let mut branches = vec![from_hopf_point(length, radius)?];
+            if (length, radius) == (FIGURE_6_LENGTH, TOWARDS_STRAIGHT.0) {
+                branches.push(straight(&branches[0])?);
+            }
+            tasks.step()?;
+            Ok::<_, Error>(branches)
+        })?;
         Ok(Self { all: found.into_iter().flatten().collect() })
     }
 

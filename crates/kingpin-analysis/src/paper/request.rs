@@ -15,8 +15,8 @@ use crate::error::Error;
 use crate::folder;
 use crate::page::PageFigure;
 use arclength_analysis::Control;
+use kingpin::parallel;
 use kingpin::{Key, Wheel};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -59,7 +59,7 @@ impl PaperRequest {
             Some(number) => (vec![one_figure(number, control)?], Vec::new()),
             None => everything(control)?,
         };
-        let pictures: Vec<Pictures> = drawings.par_iter().map(Drawing::pictures).collect::<Result<_, _>>()?;
+        let pictures: Vec<Pictures> = parallel::try_map(&drawings, Drawing::pictures)?;
         let mut contents = Vec::new();
         if self.figure.is_none() {
             let figures: Vec<PageFigure> = drawings

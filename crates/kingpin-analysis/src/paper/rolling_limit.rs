@@ -6,9 +6,9 @@ use super::stability_chart::{Boundary, LENGTHS, SHADED_RADIUS, boundary, stable_
 use super::wheel::paper_wheel;
 use crate::error::Error;
 use arclength_analysis::Control;
+use kingpin::parallel;
 use kingpin::{Axis as Interval, Key, Plane};
 use kingpin_figure::{Axis, Figure, Legend, LegendEntry, Line, Panel, Region, palette};
-use rayon::prelude::*;
 
 /// Largest speed of the figure in m/s.
 const FASTEST: f64 = 13.0;
@@ -49,7 +49,7 @@ impl RollingLimits {
     pub(super) fn compute() -> Result<Self, Error> {
         let plane =
             Plane::new(Interval::new(Key::V, 0.0..=FASTEST)?, Interval::new(Key::L, SHORTEST..=LENGTHS[1])?)?;
-        let limit = |load: f64| {
+        let limit = |&load: &f64| {
             let wheel = paper_wheel(FASTEST, LENGTHS[1], SHADED_RADIUS)?.with(Key::FAz, load)?;
             let mut curves: Vec<Vec<[f64; 2]>> = wheel
                 .rolling_limit(&plane, &Control::none())?
@@ -59,10 +59,7 @@ impl RollingLimits {
             curves.iter_mut().for_each(|points| upwards(points));
             Ok::<_, Error>(RollingLimit { load, curves })
         };
-        Ok(Self {
-            limits: LOADS.into_par_iter().map(limit).collect::<Result<_, _>>()?,
-            boundary: boundary(SHADED_RADIUS)?,
-        })
+        Ok(Self { limits: parallel::try_map(&LOADS, limit)?, boundary: boundary(SHADED_RADIUS)? })
     }
 
     pub(super) fn drawing(&self) -> Drawing {

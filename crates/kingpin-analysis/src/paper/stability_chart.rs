@@ -11,11 +11,11 @@ use super::wheel::{RADII, paper_wheel, radius_color, radius_label};
 use crate::error::Error;
 use arclength::linear::eigenvalues::eigenvalues;
 use arclength_analysis::Control;
+use kingpin::parallel;
 use kingpin::{Axis as Interval, Key, Plane, Wheel};
 use kingpin_figure::{
     Anchor, Axis, Color, Figure, Line, Marker, MarkerShape, Markers, Note, Panel, Region, palette,
 };
-use rayon::prelude::*;
 
 /// The chart of figure 3: largest speed in m/s, and caster lengths in m.
 const FASTEST: f64 = 20.0;
@@ -59,11 +59,11 @@ pub(super) struct StabilityChart {
 
 impl StabilityChart {
     pub(super) fn compute() -> Result<Self, Error> {
-        let finite = || RADII.into_par_iter().filter(|radius| radius.is_finite());
-        let boundaries = finite().map(boundary).collect::<Result<_, _>>()?;
-        let crossings = finite()
-            .flat_map(|radius| CROSSING_LENGTHS.into_par_iter().map(move |length| crossing(radius, length)))
-            .collect::<Result<_, _>>()?;
+        let finite: Vec<f64> = RADII.into_iter().filter(|radius| radius.is_finite()).collect();
+        let places: Vec<(f64, f64)> =
+            finite.iter().flat_map(|&radius| CROSSING_LENGTHS.map(|length| (radius, length))).collect();
+        let boundaries = parallel::try_map(&finite, |&radius| boundary(radius))?;
+        let crossings = parallel::try_map(&places, |&(radius, length)| crossing(radius, length))?;
         Ok(Self { boundaries, crossings, critical_caster_length: critical_caster_length()? })
     }
 

@@ -17,9 +17,9 @@ use crate::page::{PageFigure, prose};
 use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control, SampledInterval};
+use kingpin::parallel;
 use kingpin::{Key, Tyre, Wheel};
 use kingpin_report::numbers::{readable, significant};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -161,8 +161,7 @@ impl ReportAnalysis {
     pub fn run(&self, control: &Control<'_>) -> Result<ReportResult, Error> {
         folder::prepare(&self.request.out)?;
         let found = self.compute(control)?;
-        let pictures: Vec<Pictures> =
-            found.illustrations.par_iter().map(Illustration::pictures).collect::<Result<_, _>>()?;
+        let pictures: Vec<Pictures> = parallel::try_map(&found.illustrations, Illustration::pictures)?;
         let numbered = || (1_u8..).zip(found.illustrations.iter().zip(&pictures));
         let figures: Vec<PageFigure> = numbered()
             .map(|(number, (illustration, pictures))| PageFigure {

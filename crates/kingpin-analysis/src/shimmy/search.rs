@@ -5,10 +5,10 @@ use crate::error::Error;
 use arclength_analysis::Control;
 use kingpin::Wheel;
 use kingpin::branches::Along;
+use kingpin::parallel;
 use kingpin::shimmy::{Kick, PeriodicSliding, ShimmyError};
 use kingpin::sliding::Contact;
 use kingpin_report::numbers::readable;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// Parts of the interval at which shimmy is sought, in this order.
@@ -79,13 +79,10 @@ pub(super) fn kick(
     let mut search = wheel.settling_search();
     let mut last = false;
     loop {
-        let outcomes: Vec<Result<PeriodicSliding, ShimmyError>> = kicks
-            .par_iter()
-            .map(|kick| {
-                let start = wheel.perturbed_uniform_motion(&[(kick.state, kick.change)])?;
-                wheel.sliding_motion(&start, &search, &control.quiet())
-            })
-            .collect();
+        let outcomes: Vec<Result<PeriodicSliding, ShimmyError>> = parallel::map(&kicks, |kick| {
+            let start = wheel.perturbed_uniform_motion(&[(kick.state, kick.change)])?;
+            wheel.sliding_motion(&start, &search, &control.quiet())
+        });
         let (mut found, mut undecided) = (None, Vec::new());
         let mut added = Vec::new();
         for (kick, outcome) in kicks.into_iter().zip(outcomes) {

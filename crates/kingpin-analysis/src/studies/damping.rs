@@ -9,10 +9,10 @@ use super::wheel::wheel;
 use crate::axis_label;
 use crate::error::Error;
 use arclength_analysis::Control;
+use kingpin::parallel;
 use kingpin::{Axis as Interval, Curve, Key, Plane};
 use kingpin_figure::{Axis, Color, Figure, Legend, Line, Panel, palette};
 use kingpin_report::Columns;
-use rayon::prelude::*;
 
 /// Turning radius of the charts in m.
 const RADIUS: f64 = 1.0;
@@ -42,15 +42,13 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
         let all = DAMPERS.iter();
         all.flat_map(|damper| values(damper).map(|value| (damper.0, value, damper.2))).collect()
     };
-    let charts = pairs(|damper| damper.1)
-        .into_par_iter()
-        .map(|(damper, value, _)| chart(damper, value, &control.quiet()));
-    let charts = charts.collect::<Result<Vec<_>, Error>>()?;
+    let charts = parallel::try_map(&pairs(|damper| damper.1), |&(damper, value, _)| {
+        chart(damper, value, &control.quiet())
+    })?;
     control.done(0.5);
-    let sections = pairs(|_| SECTIONS)
-        .into_par_iter()
-        .map(|(damper, length, most)| section(damper, length, most, &control.quiet()));
-    let sections = sections.collect::<Result<Vec<_>, Error>>()?;
+    let sections = parallel::try_map(&pairs(|_| SECTIONS), |&(damper, length, most)| {
+        section(damper, length, most, &control.quiet())
+    })?;
     control.done(0.9);
     let findings = sections.iter().map(finding).collect();
     Ok(Study { findings, drawings: vec![drawing(&charts, &sections)], pictures: Vec::new() })

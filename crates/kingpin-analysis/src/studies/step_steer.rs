@@ -9,11 +9,11 @@ use super::wheel::wheel;
 use crate::error::{Error, unless_stopped};
 use arclength_analysis::Control;
 use kingpin::basin::{ClassificationSettings, ContactModel, Destinations, Fate};
+use kingpin::parallel;
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_figure::{Axis, CategoryMap, Color, Figure, Grid, Legend, Line, Panel, palette};
 use kingpin_report::Columns;
-use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Speeds in m/s and turning radii in m.
@@ -122,7 +122,7 @@ impl Map {
             step()?;
             Ok(found)
         };
-        let outcomes = (0..points[0] * points[1]).into_par_iter().map(outcome).collect::<Result<_, _>>()?;
+        let outcomes = parallel::try_map_indices(points[0] * points[1], outcome)?;
         Ok(Self { model, points, outcomes })
     }
 

@@ -61,25 +61,25 @@ impl Attractor {
         shifted.reduce(f64::min)
     }
 
-    /// The cycle with the largest part of its size tried from which motions come back that were pushed off it in any one state, both
+    /// Finds the largest part of its size tried from which motions come back that were pushed off the cycle in any one state, both
     /// ways; `course` is a motion on it.
     ///
     /// # Errors
     /// [`SimulationError::Interrupted`].
-    pub(super) fn explored(
-        mut self,
+    pub(super) fn explore(
+        &mut self,
         course: &Course<'_>,
         patience: f64,
         target: &Target,
         control: &Control<'_>,
-    ) -> Result<Self, SimulationError> {
+    ) -> Result<(), SimulationError> {
         for part in PUSHES.into_iter().take_while(|part| *part > self.reach) {
             if self.regains(course, part, patience, target, control)? {
                 self.reach = part;
-                return Ok(self);
+                break;
             }
         }
-        Ok(self)
+        Ok(())
     }
 
     /// Whether it comes back from every push by a part of its size.

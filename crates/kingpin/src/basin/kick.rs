@@ -2,12 +2,12 @@
 
 use super::{ClassificationSettings, ContactModel, Destinations, Fate};
 use crate::error::KingpinError;
+use crate::parallel;
 use crate::parameters::{Key, Tyre};
 use crate::simulation::{SimulationError, TimeHistory};
 use crate::swinging::LYING_ACROSS;
 use crate::wheel::Wheel;
 use arclength::control::Control;
-use rayon::prelude::*;
 
 /// Magnitudes that are tried, at equal distances, up to the largest one and then again up to the edge that was found.
 const SCAN: usize = 64;
@@ -344,12 +344,11 @@ impl SafeKick {
         };
         let scan = |magnitudes: Vec<f64>, control: &Control<'_>| -> Result<_, SimulationError> {
             let progress = control.count(magnitudes.len());
-            let fates = magnitudes.par_iter().map(|&magnitude| {
+            let fates: Vec<Option<Fate>> = parallel::try_map(&magnitudes, |&magnitude| {
                 let fate = fate(magnitude)?;
                 progress.advance(1);
-                Ok(fate)
-            });
-            let fates = fates.collect::<Result<Vec<Option<Fate>>, SimulationError>>()?;
+                Ok::<_, SimulationError>(fate)
+            })?;
             let first = fates.iter().position(|fate| !returned(fate));
             Ok(first.map(|first| {
                 let below = first.checked_sub(1).map_or(0.0, |index| magnitudes[index]);

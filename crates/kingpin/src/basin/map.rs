@@ -1,12 +1,12 @@
 //! Fates over grids and random samples of initial states, in tiles.
 
 use super::{Destinations, Fate};
+use crate::parallel;
 use crate::rolling::STATE_NAMES;
 use crate::simulation::SimulationError;
 use crate::tyre::TYRE_STATE_NAMES;
 use crate::wheel::Wheel;
 use arclength::control::Control;
-use rayon::prelude::*;
 
 /// Initial states in one tile: those of a rolling wheel fill the registers, those of one that may slide are few, since each takes
 /// long and a tile that was not finished is lost.
@@ -228,19 +228,19 @@ impl<'a> BasinMap<'a> {
         let progress = control.part(known as f64 / self.tiles() as f64..1.0).count(wanted.len());
         let compute = |&index: &usize| {
             if control.is_stopped() {
-                return None;
+                return Ok(None);
             }
             let first = index * self.tile;
             let tile = match destinations.of_all(self.states_of(index), &control.quiet()) {
                 Ok(fates) => Tile { index, first, fates },
-                Err(SimulationError::Interrupted(_)) => return None,
-                Err(error) => return Some(Err(error)),
+                Err(SimulationError::Interrupted(_)) => return Ok(None),
+                Err(error) => return Err(error),
             };
             on_tile(&tile);
             progress.advance(1);
-            Some(Ok(tile))
+            Ok(Some(tile))
         };
-        wanted.par_iter().filter_map(compute).collect()
+        parallel::try_map(&wanted, compute).map(|tiles| tiles.into_iter().flatten().collect())
     }
 }
 

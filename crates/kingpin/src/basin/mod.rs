@@ -26,6 +26,7 @@ pub use kick::{Disturbance, DisturbedMotion, SafeKick};
 pub use map::{Axis, BasinMap, Fraction, Tile, wilson_interval};
 
 use crate::ensemble::{Ending, Ensemble, Outcome, Progress};
+use crate::parallel;
 use crate::parameters::{Key, Tyre};
 use crate::simulation::SimulationError;
 use crate::sliding::SlidingWheel;
@@ -36,7 +37,6 @@ use attractor::Attractor;
 use course::Course;
 use fate::{PATIENCE, Target, Watch};
 use lasting::{BRIEF, Lasting, Seen, THOROUGH};
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
@@ -159,18 +159,18 @@ impl Destinations {
         match &self.follower {
             Follower::Swinging(_) => {
                 let all = |state: &[f64; 5]| self.of_disturbed(&self.disturbed_state(state), control);
-                initial.par_iter().map(all).collect()
+                parallel::try_map(initial, all)
             }
             Follower::Ensemble(ensemble) => self.of_ensemble(ensemble, initial, control),
             Follower::Rolling => {
                 let fate = |state: &[f64; 5]| self.of_course(Course::rolling(&self.wheel, *state)?, control);
-                initial.par_iter().map(fate).collect()
+                parallel::try_map(initial, fate)
             }
             Follower::Hybrid(sliding) => {
                 let fate = |state: &[f64; 5]| {
                     self.of_course(Course::hybrid(sliding, sliding.rolling_state(state)), control)
                 };
-                initial.par_iter().map(fate).collect()
+                parallel::try_map(initial, fate)
             }
         }
     }
@@ -203,7 +203,7 @@ impl Destinations {
             let reduced = |&[u, q, psi, speed, _, yaw, _]: &[f64; 7]| [u, q, psi, speed, yaw];
             return self.of_ensemble(ensemble, &initial.iter().map(reduced).collect::<Vec<_>>(), control);
         }
-        initial.par_iter().map(|state| self.of_disturbed(state, control)).collect()
+        parallel::try_map(initial, |state| self.of_disturbed(state, control))
     }
 
     /// Fate of a motion from the states after a [`Disturbance`]: the seven of the wheel that slides, of which without sliding only `V1`
@@ -255,17 +255,17 @@ impl Destinations {
             lasting.until_the_end(&self.target, watch, control)?;
             Ok(lasting.found())
         };
-        let settled: Vec<_> = starts.par_iter().map(settled).collect::<Result<_, _>>()?;
+        let settled = parallel::try_map(starts, settled)?;
         let mut distinct: Vec<(Attractor, Course<'_>)> = Vec::new();
         for (attractor, course) in settled.into_iter().flatten() {
             if !distinct.iter().any(|(known, _)| attractor.is(known, &self.target)) {
                 distinct.push((attractor, course));
             }
         }
-        let explored = distinct
-            .into_par_iter()
-            .map(|(attractor, course)| attractor.explored(&course, patience, &self.target, control));
-        let attractors = explored.collect::<Result<Vec<_>, _>>()?;
+        parallel::try_change(&mut distinct, |(attractor, course)| {
+            attractor.explore(course, patience, &self.target, control)
+        })?;
+        let attractors: Vec<Attractor> = distinct.into_iter().map(|(attractor, _)| attractor).collect();
         self.attractors.extend(attractors);
         Ok(self)
     }
@@ -307,14 +307,18 @@ impl Destinations {
         self.look_at(&mut motions, (duration + brief).min(PATIENCE * duration), control)?;
         let thorough = (THOROUGH * self.target.natural_period).min(0.5 * PATIENCE * duration);
         self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough, control)?;
-        let fate = |motion: Followed| match motion.fate {
+        let fate = |motion: &Followed| match motion.fate {
             Some(fate) => Ok(fate),
             None => {
                 let course = Course::rolling(&self.wheel, motion.state)?;
-                Lasting::new(course, motion.time, &[]).until_the_end(&self.target, motion.watch, control)
+                Lasting::new(course, motion.time, &[]).until_the_end(
+                    &self.target,
+                    motion.watch.clone(),
+                    control,
+                )
             }
         };
-        motions.into_par_iter().map(fate).collect()
+        parallel::try_map(&motions, fate)
     }
 
     /// Follows all motions whose fates are not known to a time.
@@ -363,7 +367,10 @@ impl Destinations {
         until: f64,
         control: &Control<'_>,
     ) -> Result<(), SimulationError> {
-        motions.par_iter_mut().filter(|motion| motion.fate.is_none()).try_for_each(|motion| {
+        parallel::try_change(motions, |motion| {
+            if motion.fate.is_some() {
+                return Ok(());
+            }
             let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time, &[]);
             if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch, control)? {
                 motion.fate = Some(fate);

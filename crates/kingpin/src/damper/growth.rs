@@ -6,12 +6,12 @@
 
 use super::condition::Condition;
 use crate::error::KingpinError;
+use crate::parallel;
 use crate::parameters::Key;
 use crate::plane::Axis;
 use crate::uniform_motion::UniformMotion;
 use crate::wheel::Wheel;
 use arclength::control::Control;
-use rayon::prelude::*;
 
 /// Points along the speed, about half in geometric progression and half evenly spaced, and along each other interval, for no, one
 /// and several other intervals.
@@ -120,19 +120,18 @@ impl Conditions {
         damper: (Key, f64),
         control: &Control<'_>,
     ) -> Result<Vec<Wheel>, KingpinError> {
-        let rate_at = |point: usize| {
+        let rate_at = |point: usize| -> Result<f64, KingpinError> {
             control.check()?;
             Ok(self.growth_rate(&self.values(&self.indices(point)), damper))
         };
-        let rates =
-            (0..self.points()).into_par_iter().map(rate_at).collect::<Result<Vec<f64>, KingpinError>>()?;
+        let rates = parallel::try_map_indices(self.points(), rate_at)?;
         let maxima: Vec<usize> = (0..rates.len()).filter(|point| self.is_maximum(*point, &rates)).collect();
-        let climbed = |point: usize| {
+        let climbed = |&point: &usize| -> Result<Option<Wheel>, KingpinError> {
             control.check()?;
             let values = self.climb(&self.indices(point), rates[point], damper);
             Ok(self.at(&values).filter(|wheel| is_unstable(wheel, damper)))
         };
-        let found = maxima.into_par_iter().map(climbed).collect::<Result<Vec<_>, KingpinError>>()?;
+        let found = parallel::try_map(&maxima, climbed)?;
         Ok(found.into_iter().flatten().collect())
     }
 

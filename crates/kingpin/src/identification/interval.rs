@@ -10,9 +10,9 @@
 use super::information::Information;
 use super::least_squares::{Limits, Minimum, Residuals, minimise};
 use super::problem::Problem;
+use crate::parallel;
 use crate::simulation::SimulationError;
 use arclength::control::{Control, Interrupted};
-use rayon::prelude::*;
 
 /// Deviation of tau from that of a linear model up to which it is taken as linear.
 const NEARLY_LINEAR: f64 = 0.05;
@@ -92,8 +92,7 @@ pub(super) fn intervals(
         counter.advance(1);
         Ok((interval, profile.better))
     };
-    let found: Vec<(Interval, Option<Minimum>)> =
-        (0..count).into_par_iter().map(of).collect::<Result<_, _>>()?;
+    let found: Vec<(Interval, Option<Minimum>)> = parallel::try_map_indices(count, of)?;
     let (intervals, better): (Vec<Interval>, Vec<Option<Minimum>>) = found.into_iter().unzip();
     let sum = |minimum: &Minimum| minimum.sum_of_squares();
     Ok((intervals, better.into_iter().flatten().min_by(|one, other| sum(one).total_cmp(&sum(other)))))

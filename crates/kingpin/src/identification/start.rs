@@ -8,10 +8,10 @@ use super::least_squares::{Limits, Minimum, Residuals, minimise};
 use super::problem::{Problem, Unknown, bounds, typical};
 use super::record::{Record, Start};
 use super::whiteness::Whiteness;
+use crate::parallel;
 use crate::parameters::Key;
 use crate::simulation::SimulationError;
 use arclength::control::Control;
-use rayon::prelude::*;
 
 /// Factors by which stiffnesses are changed.
 const FACTORS: [f64; 7] = [1.0, 0.25, 4.0, 0.0625, 16.0, 1.0 / 64.0, 64.0];
@@ -55,14 +55,14 @@ pub(super) fn search(problem: &Problem<'_>, control: &Control<'_>) -> Result<Min
     let factors = if varies { &FACTORS[..] } else { &FACTORS[..1] };
     let counter = control.part(0.2..0.9);
     let counter = counter.count(FACTORS.len());
-    let others = factors.par_iter().filter_map(|&factor| {
+    let others = parallel::map(factors, |&factor| {
         let found = grow(problem, factor, &control.quiet());
         counter.advance(1);
         // Most lead nowhere.
         found.ok()
     });
     let sum = |minimum: &Minimum| minimum.sum_of_squares();
-    let best = others.min_by(|one, other| sum(one).total_cmp(&sum(other)));
+    let best = others.into_iter().flatten().min_by(|one, other| sum(one).total_cmp(&sum(other)));
     control.check()?;
     match (first, best) {
         (Ok(first), Some(other)) if !is_far_better(&other, &first) => Ok(first),

@@ -12,7 +12,7 @@ use arclength::branch::{Labelled, SpecialKind};
 use arclength::cycle::CyclePoint;
 use arclength_analysis::Control;
 use kingpin::branches::HopfPoint;
-use rayon::prelude::*;
+use kingpin::parallel;
 
 /// Caster lengths and radii in m of the Hopf points whose sense is computed.
 const HOPF_LENGTHS: [f64; 10] = [0.0465, 0.05, 0.055, 0.06, 0.07, 0.08, 0.1, 0.13, 0.17, 0.2];
@@ -41,8 +41,7 @@ pub(in crate::paper) fn of_the_hopf_points() -> Result<Vec<Claim>, Error> {
         .into_iter()
         .flat_map(|length| HOPF_RADII.into_iter().map(move |radius| (length, radius)))
         .collect();
-    let points: Vec<HopfPoint> =
-        places.par_iter().map(|&(length, radius)| hopf_point(length, radius)).collect::<Result<_, _>>()?;
+    let points: Vec<HopfPoint> = parallel::try_map(&places, |&(length, radius)| hopf_point(length, radius))?;
     let mut deviation = 0.0_f64;
     let mut crossings = 0;
     for (point, (length, radius)) in points.iter().zip(&places) {

@@ -21,7 +21,7 @@ use super::stability_chart::StabilityChart;
 use super::tasks::Tasks;
 use super::uniform_motion::UniformMotions;
 use crate::error::Error;
-use rayon::prelude::*;
+use kingpin::parallel;
 
 /// What the figures have computed already.
 pub(super) struct Computed<'a> {
@@ -48,15 +48,11 @@ pub(super) fn all(computed: &Computed, tasks: &Tasks<'_>) -> Result<Vec<Claim>, 
         Box::new(|| large_motions::directions(computed.branches)),
         Box::new(|| friction_of_cycles::claims(computed.branches)),
     ];
-    let found: Vec<Vec<Claim>> = groups
-        .par_iter()
-        .with_max_len(1)
-        .map(|group| {
-            let claims = group()?;
-            tasks.step()?;
-            Ok(claims)
-        })
-        .collect::<Result<_, Error>>()?;
+    let found: Vec<Vec<Claim>> = parallel::try_map(&groups, |group| {
+        let claims = group()?;
+        tasks.step()?;
+        Ok::<_, Error>(claims)
+    })?;
     Ok(found.into_iter().flatten().collect())
 }
 
