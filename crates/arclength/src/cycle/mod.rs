@@ -22,6 +22,7 @@ pub(crate) mod locating;
 pub(crate) mod normal_form;
 mod orbit;
 mod passages;
+mod repeated;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod slow_passage;

@@ -44,6 +44,12 @@ const FARTHEST_FIRST: f64 = 3.0;
 /// Growth rate beside the frequency of a Hopf point above which it is certain that the cycles are born with its sign.
 const CERTAIN_RATE: f64 = 1e-6;
 
+/// Turns of a cycle agree where they differ by less than this many errors of it, at least and at most by these parts of its size; those of
+/// an orbit that is only near to one may where they differ by less than the last.
+const AGREE_WITHIN: f64 = 10.0;
+const TURNS_AGREE: [f64; 2] = [1e-7, 1e-3];
+const TURNS_MAY_AGREE: f64 = 0.3;
+
 /// What a branch of cycles starts from.
 #[derive(Clone, Debug)]
 pub enum CycleStart {
@@ -236,7 +242,10 @@ impl<'a> Asked<'a> {
                 };
                 Ok(BothWays::one_way(self.be_born(&hopf, request, observer)?, None))
             }
-            CycleStart::Orbit(orbit) => self.pass_through(orbit, request, observer),
+            CycleStart::Orbit(orbit) => {
+                let once = self.traversed_once(orbit, request);
+                self.pass_through(once.as_ref().unwrap_or(orbit), request, observer)
+            }
             CycleStart::Branching(branching) if branching.doubled => {
                 Ok(BothWays::one_way(self.leave(branching, 1.0, request, observer)?, None))
             }
@@ -290,6 +299,42 @@ impl<'a> Asked<'a> {
         Ok(followed)
     }
 
+    /// The cycle of an orbit that turns out to be one traversed several times: the turns of the cycle that is found from it agree
+    /// within its error, and the cycle that is found from the first of them is the same.
+    fn traversed_once(&self, orbit: &Orbit, request: &Request<'_, CycleInspection>) -> Option<Orbit> {
+        let solved = |orbit: &Orbit| {
+            let start = self.through(orbit);
+            let mut curve = self.curve(&start);
+            let found = exact_start(&mut curve, start.unknown, start.tangent, request).ok()?;
+            let closeness = (AGREE_WITHIN * found.point.error_estimate).clamp(TURNS_AGREE[0], TURNS_AGREE[1]);
+            let end = found.unknown.len() - 2;
+            let orbit = Orbit {
+                mesh: curve.collocation.mesh().to_vec(),
+                degree: start.degree,
+                dimension: self.field.dimension(),
+                states: found.unknown[..end].to_vec(),
+                period: found.unknown[end],
+            };
+            Some((orbit, closeness))
+        };
+        // To solve for it twice is for those that may be.
+        orbit.traversed_once(TURNS_MAY_AGREE)?;
+        let (several, closeness) = solved(orbit)?;
+        let first = several.traversed_once(closeness)?;
+        let (once, _) = solved(&first)?;
+        let turns = (several.period / first.period).round();
+        ((once.period * turns - several.period).abs() < closeness * several.period).then_some(once)
+    }
+
+    /// Departure from an orbit along the parameter.
+    fn through(&self, orbit: &Orbit) -> Departure {
+        let mut unknown = orbit.states.clone();
+        unknown.extend([orbit.period, self.parameters[self.active]]);
+        let mut tangent = vec![0.0; unknown.len()];
+        tangent[unknown.len() - 1] = self.bound.width();
+        Departure { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree }
+    }
+
     /// Follows the branch through a cycle both ways.
     fn pass_through(
         &self,
@@ -297,11 +342,7 @@ impl<'a> Asked<'a> {
         request: &Request<'_, CycleInspection>,
         observer: &mut Observer<'_, CycleInspection, SpecialKind>,
     ) -> Result<BothWays<CycleInspection, SpecialKind, CycleEnd>, Error> {
-        let mut unknown = orbit.states.clone();
-        unknown.extend([orbit.period, self.parameters[self.active]]);
-        let mut tangent = vec![0.0; unknown.len()];
-        tangent[unknown.len() - 1] = self.bound.width();
-        let mut start = Departure { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree };
+        let mut start = self.through(orbit);
         let directions = both_ways(|sign| {
             if sign < 0.0 {
                 start.tangent.iter_mut().for_each(|entry| *entry = -*entry);

@@ -4,6 +4,7 @@
 use arclength::branch::SpecialKind;
 use arclength::cycle::{CycleBranch, CyclePoint, CycleStart, Cycles, Orbit};
 use arclength::equilibrium::{Equilibria, HopfPoint};
+use arclength::integration::{Integrator, autonomous};
 use arclength::locus::CycleLocus;
 use arclength::{Scalar, Threshold, VectorField};
 use std::f64::consts::PI;
@@ -298,4 +299,43 @@ fn a_curve_of_period_doublings_with_kinks() {
 
 fn is_kind(point: &CyclePoint, kind: SpecialKind) -> bool {
     point.label.is_some_and(|label| label.kind == kind)
+}
+
+// A mass between two springs of different stiffness, driven by a rotation: `x' = v`, `v' = -v/10 - (1 or 4) x + p`.
+switched!(BilinearOscillator, ["x", "v", "p", "q"], ["w"], 1, |side, x, p, d| {
+    let stiffness = if side[0] < 0.0 { 1.0 } else { 4.0 };
+    let growth = T::one() - x[2] * x[2] - x[3] * x[3];
+    d[0] = x[1];
+    d[1] = x[1] * -0.1 - x[0] * stiffness + x[2];
+    d[2] = x[2] * growth - p[0] * x[3];
+    d[3] = x[3] * growth + p[0] * x[2];
+    d[4] = x[0];
+});
+
+#[test]
+fn a_motion_that_comes_nearer_after_two_turns_is_on_a_cycle_of_one() {
+    // A multiplier is -0.956: after one turn the motion is on the other side of the cycle.
+    let parameters = [0.9];
+    let integrator = Integrator::with_tolerance(1e-10);
+    let start = [0.1, 0.0, 1.0, 0.0];
+    let state =
+        integrator.integrate(autonomous(&BilinearOscillator, &parameters), 0.0, &start, 200.0).unwrap().state;
+    let longest = 3.0 * 2.0 * PI / 0.9;
+    let history = Orbit::from_time_history(&BilinearOscillator, &parameters, &state, longest).unwrap();
+    assert!(
+        (history.period / (2.0 * PI / 0.9) - 2.0).abs() < 1e-3,
+        "the start is no longer one of two turns"
+    );
+    let branch = along(&BilinearOscillator, CycleStart::Orbit(history), 0.9, "w", [0.89, 0.92], &[0.9]);
+    for point in &branch.points {
+        assert!((point.period * point.value - 2.0 * PI).abs() < 1e-8, "{} at {}", point.period, point.value);
+    }
+    let doublings: Vec<f64> = branch
+        .special()
+        .filter(|(kind, _)| *kind == SpecialKind::PeriodDoubling)
+        .map(|(_, point)| point.value)
+        .collect();
+    assert_eq!(doublings.len(), 1, "{doublings:?}");
+    // Matrix exponentials of both pieces, Newton's method on the times of crossing.
+    assert!((doublings[0] - 0.895_601_756_65).abs() < 1e-8, "{doublings:?}");
 }

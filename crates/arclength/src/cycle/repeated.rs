@@ -1,0 +1,121 @@
+//! Orbits that are a cycle traversed several times: how often, and the cycle traversed once.
+//!
+//! A motion that settles slowly beside a period doubling comes nearer to its start after two turns than after one, and an orbit that is
+//! given may hold several periods. The equations hold for such an orbit as they do for the cycle, but its period is a multiple, its
+//! multipliers are powers, and no period doubling can be located on its branch.
+
+use super::orbit::Orbit;
+use crate::collocation::gauss::Gauss;
+use crate::collocation::mesh::SAME_TIME;
+
+/// Numbers of turns that are looked for; others are their products.
+const TURNS: [usize; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
+/// Places of a turn at which states are compared, and where the first of them is: not where meshes and jumps are likely to be.
+const SAMPLES: usize = 64;
+const FIRST_SAMPLE: f64 = 0.37;
+/// Smallest size of a state, as part of its magnitude: of one that rests it is rounding.
+const RESTING: f64 = 1e-5;
+
+impl Orbit {
+    /// The orbit of the first of several turns that differ by less than `closeness` of the size of each state; `None` where it has one.
+    pub(super) fn traversed_once(&self, closeness: f64) -> Option<Self> {
+        let count = TURNS.into_iter().find(|&count| self.largest_difference(count) < closeness)?;
+        let part = self.first_of(count);
+        Some(part.traversed_once(closeness).unwrap_or(part))
+    }
+
+    /// How far the states of parts of equal length are from those of the first one at most, by the size of each state.
+    fn largest_difference(&self, parts: usize) -> f64 {
+        let gauss = Gauss::of(self.degree);
+        let sizes: Vec<f64> = (0..self.dimension)
+            .map(|component| {
+                let values = self.states.iter().skip(component).step_by(self.dimension);
+                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+                    (low.min(*value), high.max(*value))
+                });
+                (high - low).max(RESTING * high.abs().max(low.abs()))
+            })
+            .collect();
+        let mut largest = 0.0_f64;
+        for sample in 0..SAMPLES {
+            let place = (sample as f64 + FIRST_SAMPLE) / SAMPLES as f64;
+            let first = self.state_with(&gauss, place / parts as f64);
+            for part in 1..parts {
+                let state = self.state_with(&gauss, (part as f64 + place) / parts as f64);
+                for ((a, b), size) in first.iter().zip(&state).zip(&sizes) {
+                    // A state that rests at zero has none.
+                    if *size > 0.0 {
+                        largest = largest.max((a - b).abs() / size);
+                    }
+                }
+            }
+        }
+        largest
+    }
+
+    /// The first of parts of equal length.
+    fn first_of(&self, parts: usize) -> Self {
+        let gauss = Gauss::of(self.degree);
+        let end = 1.0 / parts as f64;
+        let mut mesh: Vec<f64> = self.mesh.iter().copied().filter(|time| *time < end - SAME_TIME).collect();
+        mesh.push(end);
+        let states = mesh
+            .windows(2)
+            .flat_map(|pair| {
+                let inner = gauss.points.iter().map(|place| pair[0] + place * (pair[1] - pair[0]));
+                std::iter::once(pair[0]).chain(inner).collect::<Vec<f64>>()
+            })
+            .flat_map(|time| self.state_with(&gauss, time))
+            .collect();
+        mesh.iter_mut().for_each(|time| *time *= parts as f64);
+        if let Some(last) = mesh.last_mut() {
+            *last = 1.0;
+        }
+        Self {
+            mesh,
+            degree: self.degree,
+            dimension: self.dimension,
+            states,
+            period: self.period / parts as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Turns of a motion with harmonics of the whole time.
+    fn orbit(turns: usize, subharmonic: f64) -> Orbit {
+        let mesh: Vec<f64> = (0..=40).map(|index| f64::from(index) / 40.0).collect();
+        let gauss = Gauss::of(4);
+        let states = mesh.windows(2).flat_map(|pair| {
+            let inner = gauss.points.iter().map(|place| pair[0] + place * (pair[1] - pair[0]));
+            let times: Vec<f64> = std::iter::once(pair[0]).chain(inner).collect();
+            times.into_iter().flat_map(|time| {
+                let angle = TAU * turns as f64 * time;
+                [angle.cos() + subharmonic * (TAU * time).sin(), angle.sin(), 2.0]
+            })
+        });
+        Orbit { degree: 4, dimension: 3, states: states.collect(), period: 6.0, mesh: mesh.clone() }
+    }
+
+    #[test]
+    fn turns_are_counted() {
+        for turns in [2, 3, 4, 6] {
+            let once = orbit(turns, 0.0).traversed_once(1e-3).expect("several turns");
+            assert!((once.period - 6.0 / turns as f64).abs() < 1e-15, "{turns}: {}", once.period);
+            for phase in [0.0, 0.2, 0.7] {
+                let state = once.state_at(phase * once.period);
+                assert!((state[0] - (TAU * phase).cos()).abs() < 1e-3, "{turns}: {state:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_doubled_cycle_and_a_single_one_are_left() {
+        assert_eq!(orbit(1, 0.0).traversed_once(1e-3), None);
+        assert_eq!(orbit(2, 0.01).traversed_once(1e-3), None);
+    }
+}
