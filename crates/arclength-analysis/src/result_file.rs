@@ -58,7 +58,7 @@ impl ResultFile {
             (EquilibriumLocusResult::SCHEMA, 1) => parse(&text).map(Self::Locus),
             (CycleLocusResult::SCHEMA, 1) => parse(&text).map(Self::CycleLocus),
             (HistoryResult::SCHEMA, 1) => parse(&text).map(Self::History),
-            _ => Err(format!("it is a {name} of version {version}; {ALLOWED}")),
+            _ => Err(format!("it is of {name}, version {version}; {ALLOWED}")),
         }
     }
 

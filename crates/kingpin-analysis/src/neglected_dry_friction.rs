@@ -4,6 +4,7 @@
 //! `M_f = 0`. What dry friction makes of small motions in straight towing is known beside: they die out up to a speed that does not
 //! depend on its moment.
 
+use crate::description;
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 use serde::Serialize;
@@ -20,6 +21,9 @@ pub struct NeglectedDryFriction {
     /// Whether that speed can be told.
     #[serde(skip)]
     is_told: bool,
+    /// Where it varies over the result, it at the wheel's own values, in words, of what it varies with.
+    #[serde(skip)]
+    own: Option<(String, Option<f64>)>,
 }
 
 impl NeglectedDryFriction {
@@ -29,8 +33,19 @@ impl NeglectedDryFriction {
         let same_speed = [Key::V, Key::KU, Key::CU, Key::G, Key::MuS, Key::MuD, Key::FAz];
         let is_told = wheel.get(Key::TurningRadius).is_infinite()
             && varying.iter().flat_map(|key| key.sets()).all(|key| same_speed.contains(key));
+        let moved: Vec<Key> = varying
+            .iter()
+            .copied()
+            .filter(|key| key.sets().iter().any(|key| !same_speed.contains(key)))
+            .collect();
+        let on_circles = moved.iter().any(|key| key.sets().contains(&Key::TurningRadius));
+        let own = (!is_told && wheel.get(Key::TurningRadius).is_infinite() && !on_circles).then(|| {
+            let place: Vec<String> =
+                moved.iter().map(|key| description::quantity(*key, wheel.get(*key))).collect();
+            (place.join(", "), wheel.critical_speed_with_friction())
+        });
         let speed = is_told.then(|| wheel.critical_speed_with_friction()).flatten();
-        (moment > 0.0).then_some(Self { moment, critical_speed_with_friction: speed, is_told })
+        (moment > 0.0).then_some(Self { moment, critical_speed_with_friction: speed, is_told, own })
     }
 
     /// That it was left out, in words.
@@ -43,14 +58,19 @@ impl NeglectedDryFriction {
     pub(crate) fn tell(neglected: Option<&Self>, out: &mut dyn Write) -> io::Result<()> {
         let Some(neglected) = neglected else { return Ok(()) };
         writeln!(out, "\n{}", neglected.in_words())?;
-        let Self { critical_speed_with_friction, is_told, .. } = neglected;
-        match critical_speed_with_friction {
-            _ if !is_told => {
-                writeln!(out, "`simulate`, `basin`, `safe-kick` and `margin` take it into account")
-            }
-            Some(0.0) => writeln!(out, "with it small motions grow at every speed all the same"),
-            Some(speed) => writeln!(out, "with it small motions die out up to {} m/s", readable(*speed)),
-            None => writeln!(out, "with it small motions die out at every speed"),
+        let Self { critical_speed_with_friction, is_told, own, .. } = neglected;
+        if !is_told {
+            writeln!(out, "`simulate`, `basin`, `safe-kick` and `margin` take it into account")?;
+        }
+        let (at, speed) = match own {
+            Some((place, speed)) => (format!("at {place} "), speed),
+            None if *is_told => (String::new(), critical_speed_with_friction),
+            None => return Ok(()),
+        };
+        match speed {
+            Some(0.0) => writeln!(out, "{at}with it small motions grow at every speed all the same"),
+            Some(speed) => writeln!(out, "{at}with it small motions die out up to {} m/s", readable(*speed)),
+            None => writeln!(out, "{at}with it small motions die out at every speed"),
         }
     }
 }

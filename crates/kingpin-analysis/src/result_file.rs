@@ -48,7 +48,7 @@ impl ResultFile {
             (CyclesResult::SCHEMA, 1) => parse(&text).map(Self::Cycles),
             (HopfLocusResult::SCHEMA, 1) => parse(&text).map(Self::HopfLocus),
             (CycleLocusResult::SCHEMA, 1) => parse(&text).map(Self::CycleLocus),
-            _ => Err(format!("it is a {name} of version {version}; {ALLOWED}")),
+            _ => Err(format!("it is of {name}, version {version}; {ALLOWED}")),
         }
     }
 

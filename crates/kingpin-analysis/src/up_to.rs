@@ -15,7 +15,7 @@ pub(crate) fn speed(wheel: &Wheel, Assignment { key, value }: &Assignment) -> Re
     }
     let mut fastest = *wheel;
     fastest.set(key, value).map_err(|source| Error::Set {
-        field: "set",
+        field: "up_to",
         given: given(),
         source: Box::new(source),
     })?;

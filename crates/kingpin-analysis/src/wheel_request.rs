@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use arclength_analysis::Assignment;
-use kingpin::Wheel;
+use kingpin::{KingpinError, Wheel};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -23,7 +23,23 @@ impl WheelRequest {
     /// What is wrong with the file or a parameter.
     pub fn read(&self) -> Result<Wheel, Error> {
         let wheel = self.wheel.as_ref().map_or(Ok(Wheel::default()), Wheel::read)?;
-        self.change(wheel)
+        self.change(wheel).map_err(|error| match (error, &self.wheel) {
+            // Keys that disagree are the file's where nothing else was set.
+            (Error::Wheel(source), Some(path)) if self.set.is_empty() => {
+                Error::Wheel(KingpinError::InFile { path: path.clone(), source: Box::new(source) })
+            }
+            (error, _) => error,
+        })
+    }
+
+    /// The options of a command that ask for the same wheel, with a space behind each.
+    pub(crate) fn options(&self) -> String {
+        let file = self.wheel.iter().map(|path| format!("--wheel {} ", quoted(&path.display().to_string())));
+        let set = self
+            .set
+            .iter()
+            .map(|Assignment { key, value }| format!("-s {} ", quoted(&format!("{key}={value}"))));
+        file.chain(set).collect()
     }
 
     /// A wheel with the parameters that are set.
@@ -40,5 +56,30 @@ impl WheelRequest {
         }
         wheel.check()?;
         Ok(wheel)
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "_-+=./,:%@\\".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_options_ask_for_the_same_wheel() {
+        let set = |key: &str, value: &str| Assignment { key: key.into(), value: value.into() };
+        let request = WheelRequest {
+            wheel: Some(PathBuf::from("my wheels/it's.toml")),
+            set: vec![set("v", "4"), set("r", "inf")],
+        };
+        assert_eq!(request.options(), "--wheel 'my wheels/it'\\''s.toml' -s v=4 -s r=inf ");
+        assert_eq!(WheelRequest::default().options(), "");
     }
 }

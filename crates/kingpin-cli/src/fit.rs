@@ -70,7 +70,15 @@ impl Fit {
     pub(crate) fn run(&self) -> Result<(), Failure> {
         let output = self.output.prepare()?;
         if let Some(path) = &self.write_wheel {
-            check_writable(path)?;
+            check_writable(path).map_err(|error| Failure::Option {
+                option: "--write-wheel",
+                given: path.display().to_string(),
+                problem: match error {
+                    ReportError::Unwritable { source, .. } => format!("cannot write there: {source}"),
+                    other => other.to_string(),
+                },
+                allowed: "a file in a folder in which files can be written".to_owned(),
+            })?;
         }
         let request = FitRequest {
             wheel: self.wheel.request(),

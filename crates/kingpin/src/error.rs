@@ -34,7 +34,7 @@ impl fmt::Display for Position {
 }
 
 /// What there is of a wheel with a tyre.
-const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters, simulations and where kicked wheels end";
+const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters, simulations, fits, basins, safe kicks and their margins";
 
 /// Why a wheel has no uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -108,6 +108,14 @@ pub enum KingpinError {
         /// The known keys that may be meant, the likeliest first; none where none is near.
         suggestions: Vec<Key>,
         /// Where in a file.
+        position: Option<Position>,
+    },
+    /// A section of a file.
+    #[error("{}[{given}]: there are no sections; write the keys and their values without one, as in `v = 1.5`", prefix(.position))]
+    Section {
+        /// Its name.
+        given: String,
+        /// Where in the file.
         position: Option<Position>,
     },
     /// Text that is no number.

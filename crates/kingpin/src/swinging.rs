@@ -16,7 +16,7 @@ use crate::sliding::{Contact, KingPin, Phase, RESTING_ANGLE, RESTING_EXCESS};
 use crate::tyre::TyreWheel;
 use crate::wheel::Wheel;
 use arclength::control::Control;
-use arclength::integration::{Event, Integrator, Solution, from_fn};
+use arclength::integration::{Event, Integrator, Solution, from_rates};
 use std::f64::consts::TAU;
 
 /// Most free states.
@@ -376,7 +376,7 @@ impl SwingingWheel {
         let border = if self.ends_at_border { border.terminal() } else { border };
         let mut events = vec![border, Event::new(|_, state| reserve(state)).falling()];
         events.extend(self.end_about_king_pin(friction_moment));
-        let system = from_fn(count, |_, state: &[f64], rates: &mut [f64]| {
+        let system = from_rates(count, |state: &[f64], rates: &mut [f64]| {
             self.rates(friction_moment, state, rates);
         });
         let solution = self.integrator.under(control).with_events(

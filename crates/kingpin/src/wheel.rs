@@ -229,6 +229,10 @@ impl Wheel {
         let mut wheel = Self::default();
         for (name, value) in table.get_ref() {
             let place = |span: std::ops::Range<usize>| Position::of(span.start, text);
+            if let DeValue::Table(_) = value.get_ref() {
+                let given = name.get_ref().to_string();
+                return Err(KingpinError::Section { given, position: Some(place(name.span())) });
+            }
             if name.get_ref() == Tyre::KEY {
                 let word = value.get_ref().as_str().unwrap_or(&text[value.span()]);
                 wheel.set_tyre(word.parse().map_err(|error: KingpinError| error.at(place(value.span())))?);

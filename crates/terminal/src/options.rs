@@ -128,12 +128,24 @@ impl PlaneOptions {
     /// # Errors
     /// [`Failure::Option`] unless there are two.
     pub fn intervals(&self) -> Result<[Interval; 2], Failure> {
-        self.plane.clone().try_into().map_err(|plane: Vec<Interval>| Failure::Option {
-            option: "--in",
-            given: format!("{} parameters", plane.len()),
-            problem: "a curve of special points needs two".to_owned(),
-            allowed: "two parameters with their intervals, such as p=0:1,q=2:5".to_owned(),
-        })
+        let refused = |problem: &str| {
+            let keys: Vec<&str> = self.plane.iter().map(|interval| interval.key.as_str()).collect();
+            Failure::Option {
+                option: "--in",
+                given: keys.join(","),
+                problem: problem.to_owned(),
+                allowed: "two parameters with their intervals, such as p=0:1,q=2:5".to_owned(),
+            }
+        };
+        match self.plane.as_slice() {
+            [one, other] if one.key == other.key => {
+                let key = &one.key;
+                Err(refused(&format!("`{key}` and `{key}` cannot vary together: they are one parameter")))
+            }
+            [one, other] => Ok([one.clone(), other.clone()]),
+            [_] => Err(refused("a curve of special points needs two parameters, and this is one")),
+            _ => Err(refused("a curve of special points needs two parameters, no more and no less")),
+        }
     }
 }
 

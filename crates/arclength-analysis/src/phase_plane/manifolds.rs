@@ -2,7 +2,7 @@
 
 use super::equilibria::{PlaneEquilibrium, eigenvalues};
 use super::plane_field::PlaneField;
-use arclength::integration::{Integrator, Method, Stepper, from_fn};
+use arclength::integration::{Integrator, Method, Stepper, from_rates};
 use serde::{Deserialize, Serialize};
 
 /// How far from the saddle a curve starts, in parts of the window; the curve bends away from its tangent by the square of it.
@@ -79,7 +79,7 @@ fn follow(
 ) {
     let sense = rate.signum();
     let system = || {
-        from_fn(2, move |_time, place: &[f64], slope: &mut [f64]| {
+        from_rates(2, move |place: &[f64], slope: &mut [f64]| {
             let velocity = field.velocity([place[0], place[1]]);
             slope.iter_mut().zip(velocity).for_each(|(slope, velocity)| *slope = sense * velocity);
         })

@@ -127,18 +127,8 @@ impl EventLocator {
         crossings: &mut Vec<Crossing>,
     ) -> bool {
         stepper.prepare_dense_output();
-        let step = [stepper.previous_time(), stepper.time()];
-        self.locate_within(step, &|time, state| stepper.interpolate(time, state), events, crossings)
-    }
-
-    /// The same for the step between two times, on which `interpolate` writes the state at a time.
-    fn locate_within(
-        &mut self,
-        [start, end]: [f64; 2],
-        interpolate: &dyn Fn(f64, &mut [f64]),
-        events: &mut [Event],
-        crossings: &mut Vec<Crossing>,
-    ) -> bool {
+        // On the clock of the stepper, whose steps may be shorter than what rounding leaves of the time.
+        let ([start, end], resolved) = stepper.last_step_on_clock();
         let first = crossings.len();
         let scratch = &mut self.scratch;
         for (index, event) in events.iter_mut().enumerate() {
@@ -146,8 +136,8 @@ impl EventLocator {
             let function = std::cell::RefCell::new((function, &mut *scratch));
             let evaluate = |time: f64| {
                 let (function, scratch) = &mut *function.borrow_mut();
-                interpolate(time, scratch);
-                function(time, scratch)
+                stepper.interpolate_on_clock(time, scratch);
+                function(stepper.absolute(time), scratch)
             };
             let at = |fraction: f64| if fraction == 1.0 { end } else { start + fraction * (end - start) };
             let last_sign = &mut self.signs[index];
@@ -160,7 +150,8 @@ impl EventLocator {
                     if new_sign * *last_sign < 0.0 {
                         let passed = if new_sign > 0.0 { Direction::Rising } else { Direction::Falling };
                         if *direction == Direction::Either || *direction == passed {
-                            let [before, behind] = sides_of_zero(&evaluate, last_time, time, value);
+                            let [before, behind] =
+                                sides_of_zero(&evaluate, [last_time, time], value, resolved);
                             crossings.push(Crossing {
                                 event: index,
                                 time: if *is_before { before } else { behind },
@@ -186,7 +177,8 @@ impl EventLocator {
         }
         for crossing in &mut crossings[first..] {
             crossing.state.resize(scratch.len(), 0.0);
-            interpolate(crossing.time, &mut crossing.state);
+            stepper.interpolate_on_clock(crossing.time, &mut crossing.state);
+            crossing.time = stepper.absolute(crossing.time);
         }
         terminal.is_some()
     }
@@ -203,8 +195,14 @@ fn sign(value: f64) -> f64 {
 }
 
 /// Narrows a change of sign between `near` and `far` (Illinois variant of regula falsi, with a bisection
-/// whenever that is slow) and returns the ends of the bracket, of which the second has the sign of the far end.
-fn sides_of_zero(function: &impl Fn(f64) -> f64, near: f64, far: f64, value_at_far: f64) -> [f64; 2] {
+/// whenever that is slow) and returns the ends of the bracket, of which the second has the sign of the far end. Times are told apart
+/// relative to their size and to `resolved`.
+fn sides_of_zero(
+    function: &impl Fn(f64) -> f64,
+    [near, far]: [f64; 2],
+    value_at_far: f64,
+    resolved: f64,
+) -> [f64; 2] {
     let far_sign = sign(value_at_far);
     let (mut a, mut b, mut value_a, mut value_b) = (near, far, function(near), value_at_far);
     if sign(value_a) == far_sign {
@@ -212,7 +210,7 @@ fn sides_of_zero(function: &impl Fn(f64) -> f64, near: f64, far: f64, value_at_f
     }
     for iteration in 0..MAXIMUM_ITERATIONS {
         let width = (b - a).abs();
-        if width <= TIME_RESOLUTION * a.abs().max(b.abs()) {
+        if width <= TIME_RESOLUTION * a.abs().max(b.abs()).max(resolved) {
             break;
         }
         let middle = 0.5 * (a + b);

@@ -5,7 +5,7 @@
 //! Norsett and Wanner, *Solving Ordinary Differential Equations I*, 2nd edition, 1993, sections
 //! II.4 to II.6), or the implicit one Radau IIA of order 5 for stiff problems, or one or the other as the problem asks for
 //! ([`Method`]). It integrates any [`System`]: a [`VectorField`](crate::VectorField) with its parameters
-//! ([`autonomous`]), a closure ([`from_fn`]), or the variational equations of a vector field
+//! ([`autonomous`]), a closure ([`from_fn`], without the time [`from_rates`]), or the variational equations of a vector field
 //! ([`VariationalEquations`], [`state_transition_matrix`]). Solutions can be sampled at given
 //! times, and zeros of event functions ([`Event`]) are located to rounding.
 //!
@@ -45,5 +45,8 @@ pub use event::{Crossing, Event, EventLocator};
 pub use integrator::{Integrator, Method};
 pub use solution::{ControlledIntegrator, Solution};
 pub use stepper::{Statistics, Stepper};
-pub use system::{Autonomous, ClosureSystem, JacobianColumns, System, autonomous, exact_jacobian, from_fn};
+pub use system::{
+    Autonomous, AutonomousClosure, ClosureSystem, JacobianColumns, System, autonomous, exact_jacobian,
+    from_fn, from_rates,
+};
 pub use variational::{StateTransition, VariationalEquations, state_transition_matrix};

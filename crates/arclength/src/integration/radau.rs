@@ -220,6 +220,11 @@ impl Radau {
         }
     }
 
+    /// Lets the clock on which times are told begin anew after some time.
+    pub(super) fn wind_clock(&mut self, elapsed: f64) {
+        self.start -= elapsed;
+    }
+
     /// State at a time in the last accepted step.
     pub(super) fn interpolate(&self, time: f64, state: &mut [f64]) {
         let (n, x) = (self.n, (time - self.start) / self.step);

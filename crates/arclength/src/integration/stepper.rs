@@ -22,6 +22,9 @@ const SMALLEST_ERROR: f64 = 1e-4;
 /// Factor on a step whose stages were not finite.
 const NOT_FINITE_RATIO: f64 = 0.25;
 
+/// Relative difference of two times, or of a step and the longest one, below which they are not told apart: four units in the last place.
+const STEP_RESOLUTION: f64 = 4.0 * f64::EPSILON;
+
 /// The first implicit step where explicit ones are too short to be told apart, in units of the shortest that can.
 const FIRST_STEP: f64 = 100.0;
 
@@ -34,6 +37,52 @@ pub struct Statistics {
     pub rejected_steps: usize,
     /// Evaluations of the right-hand side.
     pub evaluations: usize,
+}
+
+/// What is read on the clock of an integration, and what time that is.
+///
+/// Where the right-hand side contains the time, the clock tells the time. Where it does not, no time is better than another, and the
+/// clock begins anew at every step: steps are told apart however late it is, and the time is the sum of all steps, of which nothing is
+/// lost to rounding.
+#[derive(Clone, Copy, Debug, Default)]
+struct Clock {
+    begins_anew: bool,
+    /// The time at which the clock reads zero, and what of it rounding took.
+    origin: f64,
+    rest: f64,
+    /// The time at which the integration ends.
+    finish: f64,
+}
+
+impl Clock {
+    /// Sets the clock for an integration between two times, and reads it at the first.
+    fn start(&mut self, time: f64, finish: f64) -> f64 {
+        *self = Self { origin: if self.begins_anew { time } else { 0.0 }, rest: 0.0, finish, ..*self };
+        if self.begins_anew { 0.0 } else { time }
+    }
+
+    fn absolute(&self, reading: f64) -> f64 {
+        self.origin + (self.rest + reading)
+    }
+
+    fn reading(&self, time: f64) -> f64 {
+        (time - self.origin) - self.rest
+    }
+
+    /// The reading at the end of the integration.
+    fn remaining(&self) -> f64 {
+        self.reading(self.finish)
+    }
+
+    /// Lets it begin anew after some time.
+    fn advance(&mut self, elapsed: f64) {
+        // The sum of two numbers with what rounding takes from it (Knuth, The Art of Computer Programming 2, 4.2.2, theorem B).
+        let shift = self.rest + elapsed;
+        let sum = self.origin + shift;
+        let part = sum - self.origin;
+        self.rest = (self.origin - (sum - part)) + (shift - part);
+        self.origin = sum;
+    }
 }
 
 /// An integration that is advanced step by step.
@@ -57,6 +106,8 @@ pub struct Stepper<S> {
     system: S,
     settings: Integrator,
     dimension: usize,
+    clock: Clock,
+    /// Present time and end, on the clock.
     time: f64,
     end: f64,
     state: Vec<f64>,
@@ -68,6 +119,8 @@ pub struct Stepper<S> {
     dense: Vec<f64>,
     dense_is_ready: bool,
     step: f64,
+    /// The longest step since the start, or the first that was proposed.
+    longest_step: f64,
     previous_error: f64,
     statistics: Statistics,
     implicit: Option<Box<Radau>>,
@@ -92,6 +145,7 @@ impl<S: System> Stepper<S> {
         let dimension = system.dimension();
         settings.check(dimension)?;
         let mut stepper = Self {
+            clock: Clock { begins_anew: system.is_autonomous(), ..Clock::default() },
             system,
             settings: settings.clone(),
             dimension,
@@ -105,6 +159,7 @@ impl<S: System> Stepper<S> {
             dense: vec![0.0; DENSE_COEFFICIENTS * dimension],
             dense_is_ready: false,
             step: 0.0,
+            longest_step: 0.0,
             previous_error: SMALLEST_ERROR,
             statistics: Statistics::default(),
             implicit: None,
@@ -135,9 +190,9 @@ impl<S: System> Stepper<S> {
         }
         self.state.copy_from_slice(state);
         self.previous_state.copy_from_slice(state);
-        self.time = time;
-        self.previous_time = time;
-        self.end = end;
+        self.time = self.clock.start(time, end);
+        self.previous_time = self.time;
+        self.end = self.clock.remaining();
         self.dense_is_ready = false;
         self.last_is_implicit = false;
         if let Some(radau) = &mut self.implicit {
@@ -154,12 +209,25 @@ impl<S: System> Stepper<S> {
             Some(step) => step,
             None => self.initial_step(),
         };
+        self.longest_step = self.step;
         Ok(())
     }
 
     /// Time that was reached.
     pub fn time(&self) -> f64 {
-        self.time
+        self.absolute(self.time)
+    }
+
+    /// The time at a time on the clock.
+    pub(super) fn absolute(&self, on_clock: f64) -> f64 {
+        // The end is met to the last bit.
+        if on_clock == self.end { self.clock.finish } else { self.clock.absolute(on_clock) }
+    }
+
+    /// Start and end of the last step on the clock, and how fine times on it are told apart there at least.
+    pub(super) fn last_step_on_clock(&self) -> ([f64; 2], f64) {
+        let step = [self.previous_time, self.time];
+        (step, if self.clock.begins_anew { (step[1] - step[0]).abs() } else { 0.0 })
     }
 
     /// State at [`Stepper::time`].
@@ -174,7 +242,7 @@ impl<S: System> Stepper<S> {
 
     /// Start of the last step.
     pub fn previous_time(&self) -> f64 {
-        self.previous_time
+        self.absolute(self.previous_time)
     }
 
     /// Whether the end was reached.
@@ -208,10 +276,11 @@ impl<S: System> Stepper<S> {
         }
         if self.statistics.accepted_steps + self.statistics.rejected_steps >= self.settings.maximum_steps {
             return Err(IntegrationError::TooManySteps {
-                time: self.time,
+                time: self.time(),
                 steps: self.statistics.accepted_steps,
             });
         }
+        self.wind_clock();
         if self.is_implicit {
             self.advance_implicitly()?;
             if self.settings.method == Method::Automatic {
@@ -258,9 +327,9 @@ impl<S: System> Stepper<S> {
             if step <= self.smallest_step() && !is_last || step == 0.0 {
                 self.restore_slope();
                 return Err(if was_finite {
-                    IntegrationError::StepTooSmall { time: self.time, step }
+                    IntegrationError::StepTooSmall { time: self.time(), step }
                 } else {
-                    IntegrationError::NotFinite { time: self.time }
+                    IntegrationError::NotFinite { time: self.time() }
                 });
             }
             let end = if is_last { self.end } else { self.time + direction * step };
@@ -275,6 +344,7 @@ impl<S: System> Stepper<S> {
             let factor = factor.clamp(STEP_RATIO.0.min(NOT_FINITE_RATIO), STEP_RATIO.1);
             if error <= 1.0 && was_finite {
                 self.statistics.accepted_steps += 1;
+                self.longest_step = self.longest_step.max(step);
                 self.previous_time = self.time;
                 self.time = end;
                 std::mem::swap(&mut self.state, &mut self.previous_state);
@@ -292,8 +362,24 @@ impl<S: System> Stepper<S> {
         }
     }
 
+    /// The step that is too short to be told apart: from the time, or, where the time does not matter, from the longest step. The
+    /// second does not depend on when a motion is looked at, nor on how long it has lasted.
     fn smallest_step(&self) -> f64 {
-        4.0 * f64::EPSILON * self.time.abs()
+        STEP_RESOLUTION * if self.clock.begins_anew { self.longest_step } else { self.time.abs() }
+    }
+
+    /// Lets the clock of an autonomous system begin anew at the present time.
+    fn wind_clock(&mut self) {
+        if self.clock.begins_anew && self.time != 0.0 {
+            let elapsed = self.time;
+            self.clock.advance(elapsed);
+            self.previous_time -= elapsed;
+            if let Some(radau) = &mut self.implicit {
+                radau.wind_clock(elapsed);
+            }
+            self.time = 0.0;
+            self.end = self.clock.remaining();
+        }
     }
 
     fn begin_implicit_steps(&mut self) {
@@ -332,10 +418,10 @@ impl<S: System> Stepper<S> {
 
     fn advance_implicitly(&mut self) -> Result<(), IntegrationError> {
         let n = self.dimension;
+        let smallest = self.smallest_step();
         let radau = self.implicit.get_or_insert_with(|| Box::new(Radau::new(n)));
         let direction = (self.end - self.time).signum();
         let remaining = (self.end - self.time).abs();
-        let smallest = 4.0 * f64::EPSILON * self.time.abs();
         let last = (STAGES - 1) * n..STAGES * n;
         self.dense_is_ready = false;
         let (mut was_rejected, mut was_finite) = (false, true);
@@ -347,9 +433,9 @@ impl<S: System> Stepper<S> {
             }
             if step <= smallest && !is_last || step == 0.0 {
                 return Err(if was_finite {
-                    IntegrationError::StepTooSmall { time: self.time, step }
+                    IntegrationError::StepTooSmall { time: self.time(), step }
                 } else {
-                    IntegrationError::NotFinite { time: self.time }
+                    IntegrationError::NotFinite { time: self.time() }
                 });
             }
             let end = if is_last { self.end } else { self.time + direction * step };
@@ -374,6 +460,7 @@ impl<S: System> Stepper<S> {
                 let factor = radau.accept(origin, trial);
                 self.stages.copy_within(..n, last.start);
                 self.statistics.accepted_steps += 1;
+                self.longest_step = self.longest_step.max(step);
                 self.previous_time = self.time;
                 self.time = end;
                 std::mem::swap(&mut self.state, &mut self.previous_state);
@@ -500,11 +587,29 @@ impl<S: System> Stepper<S> {
     /// `state` must have the dimension of the system. Before the first step it is the initial state.
     pub fn interpolate(&self, time: f64, state: &mut [f64]) {
         if !self.dense_is_ready {
-            state.copy_from_slice(if time == self.previous_time {
+            state.copy_from_slice(if time == self.previous_time() {
                 &self.previous_state
             } else {
                 &self.state
             });
+            return;
+        }
+        let mut on_clock = self.clock.reading(time);
+        if self.clock.begins_anew {
+            // A time is known to rounding only, which may be more than a whole step: there is nothing to extrapolate.
+            let (first, last) = (self.previous_time.min(self.time), self.previous_time.max(self.time));
+            let rounding = STEP_RESOLUTION * time.abs();
+            if (first - rounding..=last + rounding).contains(&on_clock) {
+                on_clock = on_clock.clamp(first, last);
+            }
+        }
+        self.interpolate_on_clock(on_clock, state);
+    }
+
+    /// The same at a time on the clock, after [`Stepper::prepare_dense_output`].
+    pub(super) fn interpolate_on_clock(&self, time: f64, state: &mut [f64]) {
+        if !self.dense_is_ready {
+            state.copy_from_slice(&self.state);
             return;
         }
         if let Some(radau) = self.implicit.as_ref().filter(|_| self.last_is_implicit) {

@@ -13,6 +13,12 @@ pub trait System {
     /// Writes `f(time, state)` into `derivative`; outside its domain, numbers that are not finite.
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]);
 
+    /// Whether the right-hand side is the same at all times. Its steps are then told apart from each other only, not from the time,
+    /// however late that is.
+    fn is_autonomous(&self) -> bool {
+        false
+    }
+
     /// Writes the derivatives of the right-hand side with respect to the state into `jacobian`, column by column; by default they are
     /// difference quotients. Implicit methods use them.
     fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
@@ -81,6 +87,9 @@ impl<S: System> System for &mut S {
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]) {
         (**self).evaluate(time, state, derivative);
     }
+    fn is_autonomous(&self) -> bool {
+        (**self).is_autonomous()
+    }
     fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
         (**self).jacobian(time, state, jacobian);
     }
@@ -108,6 +117,40 @@ impl<F: FnMut(f64, &[f64], &mut [f64])> System for ClosureSystem<F> {
     }
 }
 
+/// A closure as an autonomous system, see [`from_rates`].
+#[derive(Clone, Copy, Debug)]
+pub struct AutonomousClosure<F> {
+    dimension: usize,
+    function: F,
+}
+
+/// The autonomous system of `dimension` equations whose right-hand side is `function(state, derivative)`.
+///
+/// ```
+/// use arclength::integration::{Integrator, from_rates};
+///
+/// let decay = from_rates(1, |x, derivative| derivative[0] = -x[0]);
+/// let end = Integrator::default().integrate(decay, 0.0, &[1.0], 1.0)?.state;
+/// assert!((end[0] - (-1.0_f64).exp()).abs() < 1e-9);
+/// # Ok::<(), arclength::integration::IntegrationError>(())
+/// ```
+pub fn from_rates<F: FnMut(&[f64], &mut [f64])>(dimension: usize, function: F) -> AutonomousClosure<F> {
+    AutonomousClosure { dimension, function }
+}
+
+impl<F: FnMut(&[f64], &mut [f64])> System for AutonomousClosure<F> {
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+    #[inline]
+    fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
+        (self.function)(state, derivative);
+    }
+    fn is_autonomous(&self) -> bool {
+        true
+    }
+}
+
 /// A vector field at fixed parameters as a system, see [`autonomous`].
 #[derive(Clone, Copy, Debug)]
 pub struct Autonomous<'a, F> {
@@ -129,6 +172,9 @@ impl<F: VectorField> System for Autonomous<'_, F> {
     #[inline]
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         self.field.evaluate(state, self.parameters, derivative);
+    }
+    fn is_autonomous(&self) -> bool {
+        true
     }
     fn jacobian(&mut self, _time: f64, state: &[f64], jacobian: &mut [f64]) {
         let parameters: Vec<JacobianColumns> = self.parameters.iter().map(|p| Dual::constant(*p)).collect();

@@ -231,6 +231,59 @@ fn direction_filters() {
     assert!(solution.crossings.is_sorted_by(|a, b| a.time <= b.time));
 }
 
+/// A corner of width 1e-12 in a field takes steps that a late time does not resolve, and they are taken: the motion is the same however
+/// late it begins, and backwards too.
+#[test]
+fn autonomous_steps_are_resolved_however_late_it_is() {
+    let corner = |x: f64| 1.0 - 0.5 * x / x.hypot(1e-12);
+    let integrator = Integrator::default().absolute_tolerance(1e-16);
+    for sense in [1.0, -1.0] {
+        for start in [0.0, 1.0, 41.7, -300.0, 1e6] {
+            let system = from_rates(1, |x: &[f64], f: &mut [f64]| f[0] = sense * corner(x[0]));
+            let end = start + 2.0 * sense;
+            let solution = integrator.integrate(system, start, &[-1.0], end).unwrap();
+            assert_eq!(solution.time, end);
+            // At a rate of 3/2 to zero, at 1/2 from there; the end is known to the rounding of the time.
+            let rounding = 2.0 * f64::EPSILON * start.abs();
+            assert!((solution.state[0] - 2.0 / 3.0).abs() < 1e-9 + rounding, "{start}: {:?}", solution.state);
+        }
+    }
+}
+
+/// Crossings and samples within steps that are shorter than what rounding leaves of the time.
+#[test]
+fn events_and_samples_are_resolved_however_late_it_is() {
+    for start in [0.0, 12.0, 1e5] {
+        // An oscillation of 1e12 rad/s, of which a period at t = 1e5 is less than what time resolves.
+        let rate = 1e12;
+        let fast =
+            from_rates(2, move |x: &[f64], f: &mut [f64]| f.copy_from_slice(&[rate * x[1], -rate * x[0]]));
+        let mut stepper =
+            Stepper::new(fast, &Integrator::default(), start, &[0.0, 1.0], start + 1.0).unwrap();
+        let mut events = [Event::new(|_, x| x[0])];
+        let mut locator = EventLocator::new(&mut events, start, &[0.0, 1.0]);
+        let mut crossings = Vec::new();
+        let mut state = [0.0; 2];
+        let mut turned = 0.0;
+        for _ in 0..200 {
+            let before = stepper.state().to_vec();
+            stepper.advance().unwrap();
+            locator.locate(&mut stepper, &mut events, &mut crossings);
+            stepper.interpolate(stepper.time(), &mut state);
+            assert!(state.iter().all(|value| value.abs() < 1.01), "{state:?}");
+            let now = stepper.state();
+            let (across, along) =
+                (before[1] * now[0] - before[0] * now[1], before[0] * now[0] + before[1] * now[1]);
+            turned += across.atan2(along);
+        }
+        assert!(crossings.len().abs_diff((turned / PI) as usize) <= 1, "{} {turned}", crossings.len());
+        assert!(crossings.len() > 10 && crossings.is_sorted_by(|a, b| a.time <= b.time));
+        assert!(crossings.iter().all(|crossing| crossing.state[0].abs() < 1e-6));
+        let elapsed = stepper.time() - start;
+        assert!((elapsed - turned / rate).abs() <= 2.0 * f64::EPSILON * start + 1e-6 * turned / rate);
+    }
+}
+
 #[test]
 fn errors_are_typed() {
     let integrator = Integrator::default();

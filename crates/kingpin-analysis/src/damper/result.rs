@@ -6,7 +6,7 @@ use super::large_cycles::LargeCycles;
 use crate::description;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
-use kingpin::{CycleForces, Key, Wheel};
+use kingpin::{CycleForces, Key, Tyre, Wheel};
 use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
@@ -290,20 +290,26 @@ pub struct Front {
 }
 
 /// The circles and loads for which dampers were asked.
-struct Ranges([(Key, Option<Range>); 2]);
+struct Ranges {
+    given: [(Key, Option<Range>); 2],
+    /// Whether a load acts on motions that roll: without a tyre it enters friction only.
+    loads_enter: bool,
+}
 
 impl Ranges {
     /// What is said of them in a heading.
     fn in_words(&self) -> String {
-        let given = self.0.iter().filter_map(|(key, range)| Some((key, range.as_ref()?)));
+        let given = self.given.iter().filter_map(|(key, range)| Some((key, range.as_ref()?)));
         given.map(|(key, range)| format!(", {key} {range} {}", key.unit())).collect()
     }
 
     /// A speed and, over several circles and loads, one of them.
     fn place(&self, speed: f64, at: Option<Conditions>) -> String {
         let mut place = vec![description::quantity(Key::V, speed)];
-        for (key, range) in &self.0 {
-            if let (Some(at), Some(_)) = (at, range) {
+        for (key, range) in &self.given {
+            if let (Some(at), Some(_)) = (at, range)
+                && (*key != Key::FAz || self.loads_enter)
+            {
                 let value = if *key == Key::TurningRadius { at.r } else { at.load };
                 place.push(description::quantity(*key, value));
             }
@@ -314,7 +320,10 @@ impl Ranges {
 
 impl DamperResult {
     fn ranges(&self) -> Ranges {
-        Ranges([(Key::TurningRadius, self.radius.clone()), (Key::FAz, self.load.clone())])
+        Ranges {
+            given: [(Key::TurningRadius, self.radius.clone()), (Key::FAz, self.load.clone())],
+            loads_enter: self.wheel.tyre() != Tyre::Rigid,
+        }
     }
 
     /// The wheel's own dampers, which the ones that were found replace, in words; nothing where it has none.
@@ -327,7 +336,7 @@ impl DamperResult {
 
     /// Keys of which the wheel's own values do not count.
     fn replaced(&self) -> Vec<Key> {
-        let given = self.ranges().0.into_iter().filter(|(_, range)| range.is_some()).map(|(key, _)| key);
+        let given = self.ranges().given.into_iter().filter(|(_, range)| range.is_some()).map(|(key, _)| key);
         [Key::V, Key::CQ, Key::CPsi].into_iter().chain(given).collect()
     }
 }
@@ -346,6 +355,12 @@ impl Report for DamperResult {
         let wheel = description::of(&self.wheel, &self.replaced());
         let up_to = readable(self.up_to);
         writeln!(out, "dampers for stability up to v = {up_to} m/s{} at {wheel}\n", ranges.in_words())?;
+        if self.load.is_some() && !ranges.loads_enter {
+            writeln!(
+                out,
+                "all loads alike: on the motions of a wheel that rolls no load acts without a tyre\n"
+            )?;
+        }
         if let Some(own) = self.replaced_dampers() {
             writeln!(out, "in place of the wheel's own, {own}, which are left out\n")?;
         }

@@ -4,14 +4,20 @@ use super::consequences::Consequences;
 use super::record_file::{self, RecordFile};
 use super::record_request::RecordRequest;
 use super::result::FitResult;
+use crate::disturbance::natural_period;
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
 use kingpin::identification::{Identification, IdentificationError, Record, Start};
 use kingpin::{Key, Wheel};
+use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
+
+/// Samples that are farther apart than so many swings tell nothing of what is between them. The wheel is that from which the search
+/// starts, whose stiffness may be wrong a hundred times.
+const SWINGS_BETWEEN_SAMPLES: f64 = 10.0;
 
 /// Part of the time that the fit takes, roughly.
 const PART_OF_FIT: f64 = 0.5;
@@ -125,6 +131,20 @@ impl FitRequest {
                 file.display(),
                 dependent.join(", ")
             ));
+        }
+        let intervals = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let shortest = intervals.fold(f64::INFINITY, f64::min);
+        let period = natural_period(&of_record);
+        if shortest.is_finite() && shortest > SWINGS_BETWEEN_SAMPLES * period {
+            return Err(Error::Record {
+                path: file.clone(),
+                problem: format!(
+                    "samples are at least {} s apart, and this wheel swings in {} s: a motion between them is not told; t is \
+                     taken in seconds, divide milliseconds by 1000, or start from a softer wheel",
+                    readable(shortest),
+                    readable(period)
+                ),
+            });
         }
         let largest_angle =
             columns.iter().filter(|column| column.state == "psi").flat_map(|column| &column.values);

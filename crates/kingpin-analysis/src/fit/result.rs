@@ -45,6 +45,9 @@ pub struct FitResult {
     pub wheel: Wheel,
     #[serde(skip)]
     keys: Vec<Key>,
+    /// What is not the same in all records, or tells of the records and not of the wheel: the table of records has it.
+    #[serde(skip)]
+    of_records: Vec<Key>,
     /// The estimates.
     pub estimates: Vec<EstimateResult>,
     /// Their correlations.
@@ -86,10 +89,15 @@ impl FitResult {
             keys: names(&group.keys),
             correlation: group.correlation,
         };
+        let differs = |key: Key| records.iter().any(|record| record.wheel.get(key) != wheel.get(key));
+        let of_records = keys.iter().copied().chain([Key::V]);
+        let set = wheel.parameters().map(|(key, _)| key).filter(|key| !keys.contains(key) && differs(*key));
+        let of_records = of_records.chain(set).collect();
         let fitted = files.iter().zip(records).zip(identified.records);
         Ok(Self {
             wheel,
             keys: keys.to_vec(),
+            of_records,
             estimates: identified.estimates.iter().map(EstimateResult::new).collect(),
             correlations: Correlations { keys: names(keys), matrix: identified.correlations },
             not_separated: identified.not_separated.iter().map(not_separated).collect(),
@@ -161,7 +169,7 @@ impl Report for FitResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let records = counted(self.records.len(), "record", "records");
-        writeln!(out, "parameters from {records} at {}", description::of(&self.wheel, &self.keys))?;
+        writeln!(out, "parameters from {records} at {}", description::of(&self.wheel, &self.of_records))?;
         writeln!(
             out,
             "{}, {}: {}\n",

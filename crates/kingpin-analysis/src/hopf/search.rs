@@ -64,6 +64,9 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
     if !changes.is_empty() {
         return format!("{message}; {}", changes.join("; "));
     }
+    if let Some(always) = always(wheel, along.key(), [low_stable, high_stable]) {
+        return message + &always;
+    }
     message += &if does_not_act(wheel, along.key(), [low, high]) {
         format!(
             "; {} does not act on the stability of this wheel: the eigenvalues stay the same",
@@ -73,6 +76,38 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
         "; try a wider interval, or see with `kingpin chart` where the stability changes".to_owned()
     };
     message
+}
+
+/// That a wheel has one stability at every speed, where that is known in closed form and the speed varies; an unstable one with what
+/// dry friction about the king pin makes of it.
+fn always(wheel: &Wheel, key: Key, ends: [Option<bool>; 2]) -> Option<String> {
+    if key != Key::V || ends[0].is_none() || ends[0] != ends[1] {
+        return None;
+    }
+    let over_speed = wheel.stability_over_speed(&Control::none()).ok()?;
+    if !over_speed.is_complete || !over_speed.changes.is_empty() || wheel.critical_speed().is_some() {
+        return None;
+    }
+    if ends[0] == Some(true) {
+        return Some("; it is stable at every speed".to_owned());
+    }
+    let with_friction = match wheel.critical_speed_with_friction() {
+        _ if !wheel.get(Key::TurningRadius).is_infinite() => String::new(),
+        Some(0.0) => {
+            "; with dry friction about the king pin small motions grow at every speed all the same".to_owned()
+        }
+        Some(speed) => format!(
+            "; with dry friction about the king pin, however little, small motions die out up to {} m/s",
+            readable(speed)
+        ),
+        None => {
+            "; with dry friction about the king pin, however little, small motions die out at every speed"
+                .to_owned()
+        }
+    };
+    Some(format!(
+        "; it is unstable at every speed; `kingpin damper` tells what makes it stable{with_friction}"
+    ))
 }
 
 /// Whether the eigenvalues are the same, to the last digit, at both ends of an interval of a key and in its middle.

@@ -43,6 +43,8 @@ pub struct SafeKickRequest {
 #[derive(Clone, Debug)]
 pub struct SafeKickAnalysis {
     wheel: Wheel,
+    /// How the wheel was asked for.
+    asked: WheelRequest,
     disturbance: DisturbanceRequest,
     classification: Classification,
     contact: Contact,
@@ -69,7 +71,15 @@ impl SafeKickRequest {
             );
         }
         let (disturbance, classification) = (self.disturbance, self.classification);
-        Ok(SafeKickAnalysis { wheel, disturbance, classification, contact, settings, warnings })
+        Ok(SafeKickAnalysis {
+            wheel,
+            asked: self.wheel.clone(),
+            disturbance,
+            classification,
+            contact,
+            settings,
+            warnings,
+        })
     }
 }
 
@@ -110,7 +120,7 @@ impl SafeKickAnalysis {
             model,
             self.settings,
             self.disturbance.largest(&self.wheel),
-            Search { edges, sliding, motions },
+            Search { edges, sliding, motions, asked: self.asked.clone() },
         ))
     }
 

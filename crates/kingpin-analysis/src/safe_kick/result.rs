@@ -5,6 +5,7 @@ use crate::description;
 use crate::disturbance::{Edge, nearest, reached};
 use crate::margin::Found;
 use crate::parameters::parameters_of;
+use crate::wheel_request::WheelRequest;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, Fate, SafeKick};
 use kingpin::{Key, Tyre, Wheel};
 use kingpin_figure::{Axis, Color, Figure, FigureError, Legend, Line, Panel, palette};
@@ -123,6 +124,8 @@ pub(super) struct Search {
     pub sliding: Option<Found>,
     /// The motions on both sides of the nearer edge.
     pub motions: Option<[DisturbedMotion; 2]>,
+    /// How the wheel was asked for.
+    pub asked: WheelRequest,
 }
 
 impl SafeKickResult {
@@ -133,7 +136,7 @@ impl SafeKickResult {
         model: ContactModel,
         settings: ClassificationSettings,
         largest: f64,
-        Search { edges: [positive, negative], sliding, motions }: Search,
+        Search { edges: [positive, negative], sliding, motions, asked }: Search,
     ) -> Self {
         let edges = [positive, negative];
         let reached = reached(edges.into_iter().take(kind.directions()), largest);
@@ -159,7 +162,8 @@ impl SafeKickResult {
                 Disturbance::ReleaseAngle => format!("--perturb psi={}", edge.fails),
                 Disturbance::Jolt | Disturbance::StepSteer => return None,
             };
-            Some(format!("{disturbance} --contact {} --duration {}", model.name(), rounded_up(replayed)))
+            let (contact, duration) = (model.name(), rounded_up(replayed));
+            Some(format!("{}{disturbance} --contact {contact} --duration {duration}", asked.options()))
         });
         Self {
             wheel,
@@ -304,10 +308,7 @@ impl Report for SafeKickResult {
             None => {}
         }
         if let Some(replay) = &self.replay {
-            writeln!(
-                out,
-                "\nthe smallest that does not return, for the same wheel: kingpin simulate {replay}"
-            )?;
+            writeln!(out, "\nthe smallest that does not return: kingpin simulate {replay}")?;
         }
         if edges().any(|edge| edge.none_returns()) {
             writeln!(

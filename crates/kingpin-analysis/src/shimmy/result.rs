@@ -197,6 +197,14 @@ fn told(end: &SlidingBranchEnd, along: &VaryingParameter, last: NamedNumbers) ->
             last,
             remedy: Some("an interval beyond it, where kicked motions may settle on others".to_owned()),
         },
+        SlidingBranchEnd::Inexact { error, value } => End {
+            cause: format!(
+                "beyond {} the motion is known to a part of {error:.1e} only, however short the step",
+                along.at(*value)
+            ),
+            last,
+            remedy: Some("an interval beyond it, where kicked motions may settle on others".to_owned()),
+        },
         end => End { cause: end.to_string(), last, remedy: None },
     }
 }

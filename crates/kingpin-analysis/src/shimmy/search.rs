@@ -2,11 +2,13 @@
 //! spread over its interval.
 
 use crate::error::Error;
+use arclength::integration::IntegrationError;
 use arclength_analysis::Control;
 use kingpin::Wheel;
 use kingpin::branches::Along;
 use kingpin::parallel;
 use kingpin::shimmy::{Kick, PeriodicSliding, ShimmyError};
+use kingpin::simulation::SimulationError;
 use kingpin::sliding::Contact;
 use kingpin_report::numbers::readable;
 use serde::Serialize;
@@ -132,6 +134,16 @@ fn summary(error: &ShimmyError, settling_time: f64) -> String {
         ShimmyError::DiesOut { .. } => "it dies out".to_owned(),
         error if may_settle(error) => {
             format!("it does not settle on a periodic motion within {} s", readable(settling_time))
+        }
+        // At what time, and by how short a step, differs from kick to kick: motions are counted by their reason.
+        ShimmyError::Simulation(SimulationError::Integration(IntegrationError::StepTooSmall { .. })) => {
+            "it cannot be followed to its end: it is singular, or the tolerances are too small".to_owned()
+        }
+        ShimmyError::Simulation(SimulationError::Integration(IntegrationError::NotFinite { .. })) => {
+            "it cannot be followed to its end: it grows beyond all bounds".to_owned()
+        }
+        ShimmyError::Simulation(SimulationError::Integration(IntegrationError::TooManySteps { .. })) => {
+            "it cannot be followed to its end: it takes too many steps".to_owned()
         }
         error => error.to_string(),
     }

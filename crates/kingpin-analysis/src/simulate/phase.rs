@@ -76,7 +76,8 @@ impl Phase {
         let Some(work) = work else { return Ok(()) };
         let is = |phase: &&Self, word: KingPin| phase.king_pin == Some(king_pin(word));
         let time = |phases: &mut dyn Iterator<Item = &Self>| -> f64 {
-            phases.map(|phase| phase.end - phase.start).sum()
+            // The sum of none is zero, without a sign.
+            phases.fold(0.0, |sum, phase| sum + (phase.end - phase.start))
         };
         let total = time(&mut phases.iter());
         let stuck = time(&mut phases.iter().filter(|phase| is(phase, KingPin::Sticking)));

@@ -73,6 +73,10 @@ fn a_wheel_file_that_cannot_be_used() {
     fails_in(&folder, "steady --wheel typo.toml", 2, &["typo.toml", "line 2", "`mw`", "`m_w`"]);
     std::fs::write(folder.path("range.toml"), "v = 4\n\n  l = -1\n").unwrap();
     fails_in(&folder, "steady --wheel range.toml", 2, &["range.toml", "line 3", "l = -1", "allowed"]);
+    std::fs::write(folder.path("disagree.toml"), "tyre = \"linear\"\n").unwrap();
+    fails_in(&folder, "steady --wheel disagree.toml", 2, &["disagree.toml: tyre = linear needs "]);
+    std::fs::write(folder.path("section.toml"), "[wheel]\nv = 4\n").unwrap();
+    fails_in(&folder, "steady --wheel section.toml", 2, &["section.toml", "line 1", "there are no sections"]);
     std::fs::write(folder.path("syntax.toml"), "v = = 4\n").unwrap();
     fails_in(&folder, "steady --wheel syntax.toml", 2, &["syntax.toml", "TOML"]);
     fails_in(&folder, "steady --wheel .", 2, &["cannot read"]);
@@ -124,6 +128,7 @@ fn no_uniform_motion() {
     fails("stability -s l=2 -o a.json", 1, &["no uniform motion"]);
     fails("damper --up-to l=3", 2, &["--up-to", "v=VALUE"]);
     fails("damper --up-to v=0", 2, &["a speed above 0"]);
+    fails("damper --up-to v=-1", 2, &["--up-to v=-1"]);
     fails("steady -s v=0", 1, &["v = 0", "set v above 0"]);
     fails("steady -s v=0 -s r=inf", 1, &["l = 0.08 m, r = inf: at v = 0"]);
     fails("steady -s v=200", 1, &["m omega^2 < k l fails", "lower v"]);

@@ -131,8 +131,9 @@ fn curves_that_make_no_sense() {
     folder.succeed("hopf --along v=1:12 -q -o hopf.json");
     folder.succeed("cycles --along v=7:9 --at 8 -q -o cycles.json");
     for (arguments, words) in [
-        ("hopf.json:HB1 --in v=1:12", vec!["--in 1 parameters", "two parameters"]),
+        ("hopf.json:HB1 --in v=1:12", vec!["--in v:", "this is one", "two parameters"]),
         ("hopf.json:HB1 --in v=1:12,v=2:9", vec!["`v`", "cannot vary together"]),
+        ("hopf.json:HB1 --in v=1:12,v=0:1", vec!["--in v,v", "`v`", "cannot vary together"]),
         ("hopf.json:HB1 --in v=1:12,l=0.1:0.2", vec!["l = 0.08", "outside 0.1:0.2"]),
         ("hopf.json:HB2 --in v=1:12,l=0.05:0.2", vec!["`HB2`", "the labels are: HB1"]),
         ("cycles.json:AT1 --in v=1:12,l=0.05:0.2", vec!["no curve of special points starts at AT1", "LPC"]),

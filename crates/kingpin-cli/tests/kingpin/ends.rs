@@ -85,3 +85,32 @@ fn the_law_of_the_tyre_is_among_the_keys() {
     let run = Folder::new().run("steady -s foo=1");
     assert!(run.messages.contains("and `tyre`, which is a word"), "{}", run.messages);
 }
+
+/// What no wider interval helps is not answered with one.
+#[test]
+fn a_wheel_that_is_unstable_at_every_speed_is_told_so() {
+    let folder = wheel(include_str!("../../../kingpin/examples/wheels/office.toml"));
+    for command in ["hopf", "cycles"] {
+        let run = folder.run(&format!("{command} --wheel wheel.toml --along v=0.5:5"));
+        assert_eq!(run.exit_code, 1);
+        for told in ["it is unstable at every speed", "kingpin damper", "small motions die out up to "] {
+            assert!(run.messages.contains(told), "{}", run.messages);
+        }
+        assert!(!run.messages.contains("wider interval"), "{}", run.messages);
+    }
+    // The critical speed with friction stands beside the chart, at the length of the wheel.
+    let chart = "chart --wheel wheel.toml -s M_f=0.01 --x v=0.5:5:5 --y l=0.02:0.03:5 -q";
+    let run = folder.succeed(chart);
+    assert!(run.output.contains("at l = 0.022 m with it small motions die out up to "), "{}", run.output);
+}
+
+#[test]
+fn a_load_that_does_not_enter_decides_nothing() {
+    let folder = wheel(include_str!("../../../kingpin/examples/wheels/trolley.toml"));
+    let run = folder.succeed("damper --wheel wheel.toml --up-to v=3 --load=-300:-100 --small-motions -q");
+    assert!(
+        run.output.contains("all loads alike") && run.output.contains("v = 3 m/s decides"),
+        "{}",
+        run.output
+    );
+}

@@ -124,6 +124,9 @@ fn what_is_wrong_with_a_record_is_told_with_its_place() {
         ("nan.csv", "t,psi\n0,0.3\n0.1,NaN\n"),
         ("few.csv", "t,psi\n0,0.3\n0.1,0.2\n"),
         ("still.csv", "t,psi\n0,0.3\n0.1,0.3\n0.2,0.3\n0.3,0.3\n0.4,0.3\n0.5,0.3\n0.6,0.3\n"),
+        // The mean of equal numbers is not always that number.
+        ("same.csv", "t,psi\n0,0.1\n0.1,0.1\n0.2,0.1\n0.3,0.1\n0.4,0.1\n0.5,0.1\n0.6,0.1\n"),
+        ("ms.csv", "t,psi\n0,0.3\n5,0.29\n10,0.2\n15,0.1\n20,0\n25,-0.1\n30,-0.15\n"),
         ("nothing.csv", "t,angle\n0,0.3\n"),
         ("wide.csv", "t,psi\n0,0.3\n0.003,0.30,7\n"),
         ("tyre.toml", "tyre = \"linear\"\nsigma = 0.05\na = 0.02\nC_alpha = 500\nr = inf\n"),
@@ -136,6 +139,8 @@ fn what_is_wrong_with_a_record_is_told_with_its_place() {
         ("nan.csv", "nan.csv: line 3, column psi: `NaN` is no finite number"),
         ("few.csv", "few.csv: line 3: the file ends after 2 samples; allowed: at least 5"),
         ("still.csv --estimate k", "still.csv: psi is the same in all samples: nothing moves"),
+        ("same.csv --estimate k", "same.csv: psi is the same in all samples: nothing moves"),
+        ("ms.csv --estimate k", "ms.csv: samples are at least 5 s apart, and this wheel swings in "),
         (
             "nothing.csv",
             "nothing.csv: line 1: no column is a state; the columns are: t, angle; allowed: u, q, psi, V, Omega",

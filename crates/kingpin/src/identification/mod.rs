@@ -295,6 +295,10 @@ impl Identification {
             .flat_map(|column| &column.values)
             .copied()
             .collect();
+        if values.iter().all(|value| *value == values[0]) {
+            // Their mean is not always the same number.
+            return 0.0;
+        }
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
     }

@@ -358,6 +358,10 @@ impl System for &mut Variations<'_> {
         self.state.len() * (1 + self.directions)
     }
 
+    fn is_autonomous(&self) -> bool {
+        true
+    }
+
     fn evaluate(&mut self, _time: f64, extended: &[f64], derivative: &mut [f64]) {
         let n = self.state.len();
         for chunk in 0..self.parameters.len() {

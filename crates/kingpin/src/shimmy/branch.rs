@@ -1,8 +1,8 @@
 //! Branches of periodic motions with sliding phases along a parameter.
 
-use super::PeriodicSliding;
 use super::curve::{CurvePoint, SlidingCurve};
 use super::error::{Grazing, Refusal, ShimmyError};
+use super::{PeriodicSliding, SAME};
 use crate::branches::Along;
 use crate::error::KingpinError;
 use arclength::branch::SpecialKind;
@@ -10,8 +10,6 @@ use arclength::continuation::{Bound, Origin, Request, Settings, Solution, Stop, 
 use arclength::control::Control;
 use std::ops::ControlFlow;
 
-/// Motions whose period and extrema differ by less than this part are the same.
-const SAME: f64 = 1e-3;
 /// Most renewals of the start on one branch.
 const MOST_SEGMENTS: usize = 1000;
 
@@ -80,6 +78,13 @@ pub enum SlidingBranchEnd {
         /// Distance in the parameter to the nearest value that was tried and refused: how well the change is located.
         located_within: f64,
     },
+    /// Beyond it periods and extrema of the motions are known too badly to tell them apart, however short the step.
+    Inexact {
+        /// Error of the nearest motion beyond it, relative to period and range of the angle.
+        error: f64,
+        /// Parameter value of the last motion.
+        value: f64,
+    },
     /// Another reason.
     Continuation(Stop),
 }
@@ -88,6 +93,10 @@ impl std::fmt::Display for SlidingBranchEnd {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Grazing { change, value, .. } => write!(formatter, "{change} (at {value})"),
+            Self::Inexact { error, value } => write!(
+                formatter,
+                "beyond {value} the motion is known to a part of {error:.1e} only, however short the step"
+            ),
             Self::Continuation(stop) => write!(formatter, "{stop}"),
         }
     }
@@ -231,6 +240,10 @@ impl PeriodicSliding {
                             located_within: (along.convert(tried) - along.convert(at)).abs(),
                         })
                     }
+                    Some(Refusal::Inexact { error }) => Some(SlidingBranchEnd::Inexact {
+                        error,
+                        value: along.convert(last.unknown[last.unknown.len() - 1]),
+                    }),
                     _ => Some(SlidingBranchEnd::Continuation(followed.stop)),
                 },
                 stop => Some(SlidingBranchEnd::Continuation(stop)),

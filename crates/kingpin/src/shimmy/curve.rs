@@ -6,14 +6,14 @@ use super::error::Refusal;
 use super::passage::difference;
 use super::return_map::{Return, ReturnMap, Start};
 use super::variation::{DIRECTIONS, PARAMETER, STATES};
-use super::{PeriodicSliding, SAMPLES_PER_PERIOD, middle_of_longest_passage, search};
+use super::{PeriodicSliding, SAME, SAMPLES_PER_PERIOD, middle_of_longest_passage, search};
 use crate::parameters::Key;
 use crate::sliding::model::SlipState;
 use arclength::branch::SpecialKind;
 use arclength::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use arclength::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop, locate};
 use arclength::control::Control;
-use arclength::error::Error;
+use arclength::error::{CorrectionFailure, Error};
 use arclength::linear::lu;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -64,9 +64,13 @@ fn test(kind: SpecialKind, solution: &Solution<CurvePoint>) -> Option<f64> {
     }
 }
 
-/// Whether a solution where the test changes its sign is the bifurcation: a real pair with product 1 is none.
+/// Whether a solution where the test changes its sign is the bifurcation: a real pair with product 1 is none, nor is a curve that turns
+/// back where no second multiplier is 1.
 fn is_at(kind: SpecialKind, motion: &PeriodicSliding) -> bool {
     match kind {
+        SpecialKind::FoldOfCycles => {
+            motion.nontrivial().any(|multiplier| (multiplier - 1.0).norm() < CRITICAL)
+        }
         SpecialKind::PeriodDoubling => {
             motion.nontrivial().any(|multiplier| (multiplier + 1.0).norm() < CRITICAL)
         }
@@ -256,6 +260,24 @@ impl<'a> SlidingCurve<'a> {
         None
     }
 
+    /// What is made of a curve that seems to turn back where there is no fold: close to a grazing derivatives are so large that a tangent
+    /// points back. The step is made anew and shorter, as long as it may be.
+    fn turned_back(
+        &self,
+        [before, after]: [&Solution<CurvePoint>; 2],
+    ) -> Result<Location<CurvePoint>, Error> {
+        let step: Vec<f64> =
+            after.unknown.iter().zip(&before.unknown).map(|(one, other)| one - other).collect();
+        let mut image = step.clone();
+        self.apply_metric(&step, &mut image);
+        let square: f64 = step.iter().zip(&image).map(|(one, other)| one * other).sum();
+        if square.sqrt() > self.settings.smallest_step {
+            Err(Error::OtherBranch)
+        } else {
+            Ok(Location::Missed)
+        }
+    }
+
     fn is_start_near_event(&self, motion: &PeriodicSliding) -> bool {
         let [first, .., last] = &motion.phases[..] else { return false };
         let (before, after) = (last.end - last.start, first.end - first.start);
@@ -339,6 +361,15 @@ impl Curve for SlidingCurve<'_> {
         debug_assert_eq!(at, unknown);
         let motion = PeriodicSliding::describe(&self.map, &self.start(unknown), &image, self.control)
             .map_err(|refusal| invalid(refusal.to_string()))?;
+        // What tells motions apart has to be known of them.
+        if motion.error_estimate > SAME {
+            let error = motion.error_estimate;
+            self.last = Some((at, image));
+            if !matches!(self.refusal, Some(Refusal::Grazing(_))) {
+                self.refusal = Some(Refusal::Inexact { error });
+            }
+            return Err(Error::NotFound { sought: "periodic motion", cause: CorrectionFailure::Diverged });
+        }
         self.map.expected = Some(image.passages.clone());
         self.last = Some((at, image));
         Ok(CurvePoint { motion })
@@ -376,11 +407,12 @@ impl Curve for SlidingCurve<'_> {
     ) -> Result<Location<CurvePoint>, Error> {
         let settings = self.settings;
         let value = |_: &mut Self, solution: &Solution<CurvePoint>| test(kind, solution);
-        Ok(match locate(self, before, after, &settings, LOCATED, value) {
-            Ok(Some(solution)) if is_at(kind, &solution.point.motion) => Location::At(solution),
-            Ok(_) => Location::Nothing,
-            Err(_) => Location::Missed,
-        })
+        match locate(self, before, after, &settings, LOCATED, value) {
+            Ok(Some(solution)) if is_at(kind, &solution.point.motion) => Ok(Location::At(solution)),
+            _ if kind == SpecialKind::FoldOfCycles => self.turned_back([before, after]),
+            Ok(_) => Ok(Location::Nothing),
+            Err(_) => Ok(Location::Missed),
+        }
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {

@@ -101,6 +101,12 @@ pub enum Refusal {
     /// The linear equations of Newton's method are singular.
     #[error("the linear equations are singular")]
     Singular,
+    /// Period and extrema of the motion are known too badly.
+    #[error("the motion is known to a part of {error:e} only")]
+    Inexact {
+        /// Error relative to the period and the range of the angle.
+        error: f64,
+    },
     /// The updates do not become small.
     #[error("the last update is {update:e} of the size of the motion")]
     Diverged {

@@ -47,6 +47,9 @@ const LOOSER: f64 = 100.0;
 /// tolerance, but on how well the direction of the slip is known.
 const HIGHER: f64 = 10.0;
 
+/// Motions whose period and extrema differ by less than this part are the same; one that is not known as well is none.
+const SAME: f64 = 1e-3;
+
 /// Samples of a period between which extrema are sought.
 const SAMPLES_PER_PERIOD: usize = 400;
 

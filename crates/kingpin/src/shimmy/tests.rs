@@ -495,3 +495,22 @@ fn the_towing_gives_what_dampers_and_sliding_take() {
         assert!((-1e-9..1e-6).contains(&difference), "{difference}");
     }
 }
+
+/// A fold at which no second multiplier is 1 is none: it was told where a step came close to a grazing, at v = 4.2589 m/s, with an error
+/// of 5.3, and the branch turned back there.
+#[test]
+fn no_fold_is_told_that_its_multipliers_refute() {
+    let office = Wheel::from_toml(include_str!("../../examples/wheels/office.toml")).unwrap();
+    let wheel = office.with(Key::V, 2.75).unwrap();
+    let motion = settled(&wheel, 1.2, &wheel.settling_search());
+    let mut options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
+    options.settings.smallest_step = 3e-5;
+    let along = Along::new(Key::V, 0.5, 5.0).unwrap();
+    let go_on = |_: f64, _: &PeriodicSliding| ControlFlow::Continue(());
+    let branch = motion.along(along, &options, &Control::none(), go_on).unwrap();
+    for point in &branch.points {
+        assert!(!matches!(point.role, SlidingRole::Bifurcation(_)), "{}: {:?}", point.value, point.role);
+        assert!(point.motion.error_estimate <= SAME, "{}", point.value);
+        assert_eq!(point.motion.stable, Some(true), "{}", point.value);
+    }
+}

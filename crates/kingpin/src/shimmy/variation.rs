@@ -22,7 +22,7 @@ use crate::sliding::model::{Equations, FrictionMoment, S1, S2, slip_squared};
 use crate::sliding::{ONSET_SLIP, VANISHING_SLIP};
 use crate::wheel::Wheel;
 use arclength::differentiation::{Dual, Scalar};
-use arclength::integration::{Integrator, Stepper, from_fn};
+use arclength::integration::{Integrator, Stepper, from_rates};
 
 /// Number of states.
 pub(super) const STATES: usize = 7;
@@ -84,7 +84,7 @@ pub(super) fn carry(
         extended[STATES..].as_chunks_mut().0.copy_from_slice(columns);
         let end = passage.vanishing.map_or(passage.end, |(time, _)| time);
         let regime = passage.mode.regime;
-        let system = from_fn(EXTENDED, |_, extended: &[f64], derivative: &mut [f64]| {
+        let system = from_rates(EXTENDED, |extended: &[f64], derivative: &mut [f64]| {
             let state = varied_state(extended);
             let mut rate = [Varied::zero(); STATES];
             regime.field(equations, &state, &mut rate);

@@ -6,7 +6,7 @@ use super::{Contact, HybridState, Phase, SlidingWheel, as_slip_state};
 use crate::simulation::SimulationError;
 use arclength::VectorField;
 use arclength::control::Control;
-use arclength::integration::{Crossing, Direction, Event, EventLocator, Solution, Stepper, from_fn};
+use arclength::integration::{Crossing, Direction, Event, EventLocator, Solution, Stepper, from_rates};
 
 /// A piece of a motion, along which one mode holds.
 #[derive(Debug)]
@@ -139,7 +139,7 @@ impl SlidingWheel {
         let exhausted = Event::new(|_, x| equations.static_reserve(&widen(x))).falling();
         let mut events = vec![if self.rolls_always { exhausted } else { exhausted.terminal() }];
         events.extend(end_about_king_pin(equations, mode, widen));
-        let system = from_fn(5, |_, state: &[f64], derivative: &mut [f64]| {
+        let system = from_rates(5, |state: &[f64], derivative: &mut [f64]| {
             self.rolling.evaluate(state, &[], derivative);
             match mode.friction_moment {
                 FrictionMoment::Absent => {}
@@ -170,7 +170,7 @@ impl SlidingWheel {
         stretch: &Stretch<'_>,
     ) -> Result<(Solution, HybridState), SimulationError> {
         let &Stretch { start, state, end, times, control } = stretch;
-        let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
+        let system = from_rates(7, |state: &[f64], derivative: &mut [f64]| {
             equations.derivative(state, equations.incipient_force(state), derivative);
         });
         let mut events = vec![
@@ -198,7 +198,7 @@ impl SlidingWheel {
         stretch: &Stretch<'_>,
     ) -> Result<(Solution, HybridState), SimulationError> {
         let &Stretch { start, state, end, times, control } = stretch;
-        let system = from_fn(7, |_, state: &[f64], derivative: &mut [f64]| {
+        let system = from_rates(7, |state: &[f64], derivative: &mut [f64]| {
             equations.derivative(state, equations.sliding_force(state), derivative);
         });
         // Without friction there is nothing special about zero slip.

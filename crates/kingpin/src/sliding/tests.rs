@@ -20,6 +20,23 @@ fn loaded_by_20(key: Key, value: f64) -> Wheel {
     wheel(&[(Key::FAz, -20.0), (key, value)])
 }
 
+/// Slip that passes close by zero turns within a time that late times do not resolve; such motions ended with an error.
+#[test]
+fn slip_passes_close_by_zero_however_late_it_is() {
+    let office = Wheel::from_toml(include_str!("../../examples/wheels/office.toml")).unwrap();
+    let ends_at_one = |wheel: &Wheel, duration: f64| {
+        let start = wheel.perturbed_uniform_motion(&[("psi", 1.2)]).unwrap();
+        let history = wheel.sliding().unwrap().simulate(&start, duration, 11, &Control::none()).unwrap();
+        assert_eq!((history.times.len(), history.times[10]), (11, duration));
+        assert_eq!(history.phases.last().unwrap().end, duration);
+        assert!(history.phases.windows(2).all(|pair| pair[0].end == pair[1].start));
+    };
+    for tenths in 30..=50 {
+        ends_at_one(&office.with(Key::V, 0.1 * f64::from(tenths)).unwrap(), 0.5);
+    }
+    ends_at_one(&wheel(&[(Key::V, 3.0)]), 42.0);
+}
+
 fn start(wheel: &Wheel) -> [f64; 5] {
     wheel.perturbed_uniform_motion(&[("psi", 0.6)]).unwrap()
 }

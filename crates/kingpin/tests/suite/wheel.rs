@@ -99,6 +99,14 @@ fn every_parameter_refuses_what_is_not_allowed() {
 }
 
 #[test]
+fn sections_of_a_file_are_refused_as_such() {
+    for text in ["v = 1.5\n[wheel]\nl = 0.1\n", "wheel = { l = 0.1 }"] {
+        let error = Wheel::from_toml(text).unwrap_err().to_string();
+        assert!(error.starts_with("line ") && error.contains("[wheel]: there are no sections"), "{error}");
+    }
+}
+
+#[test]
 fn one_key_may_set_two() {
     let mut wheel = Wheel::default();
     wheel.set("k", "70").unwrap();
