@@ -12,9 +12,10 @@ const EXAMPLE: &str = "kingpin report --wheel trolley.toml --up-to v=3 --out rep
 
 /// Report on your wheel: whether it shimmies, what blow starts it, what damper it takes
 ///
-/// Its stability straight and on a circle (its own, or 2 m), up to which speed it rolls, what dry friction about the king pin does,
-/// its limit cycles, the smallest sideways blow from which it does not return, rolling and sliding, and the dampers with which it is
-/// stable at every speed; with pictures, their data, and how each statement was checked.
+/// A verdict in one sentence; then its stability straight and on a circle (its own, or 2 m), up to which speed it rolls, what dry friction
+/// about the king pin does, the dampers with which it is stable at every speed, its limit cycles, also with other caster lengths and on other
+/// circles, the shimmy that remains where it may slide, and the smallest sideways blow from which it does not return, rolling and sliding,
+/// at its own speed and over the speed; with pictures, their data, and how each statement was checked.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct ReportCommand {

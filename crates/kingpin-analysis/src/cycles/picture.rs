@@ -71,7 +71,7 @@ fn smallest(point: &CyclePointResult) -> f64 {
 }
 
 /// Nothing is claimed to be stable that is not known to be.
-fn stability(point: &CyclePointResult) -> Stability {
+pub(crate) fn stability(point: &CyclePointResult) -> Stability {
     if point.is_bifurcation() {
         Stability::Changes
     } else {
@@ -85,7 +85,7 @@ fn is_upright(point: &CyclePointResult) -> bool {
 }
 
 /// Whether the wheel cannot roll like this.
-fn needs_more_friction(point: &CyclePointResult) -> bool {
+pub(crate) fn needs_more_friction(point: &CyclePointResult) -> bool {
     point.forces.rolls == Some(false) && !point.is_rolling_limit()
 }
 

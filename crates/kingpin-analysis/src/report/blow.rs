@@ -85,6 +85,35 @@ pub(super) fn finding(subject: String, result: &SafeKickResult, speed: f64) -> F
     Finding::new(subject, text, check(result)).undecided_if(edge.is_some_and(|edge| edge.is_undecided()))
 }
 
+/// The same in a few words.
+pub(super) fn in_short(result: &SafeKickResult, speed: f64) -> String {
+    let speed = readable(speed);
+    // Where the wheel may slide, that is what is meant.
+    let rolls = may_slide(&result.wheel) && result.contact == Contact::Rolling.model().name();
+    let how = if rolls { ", if it rolls ideally" } else { "" };
+    match result.nearest() {
+        None => {
+            let largest = significant(result.largest, 3);
+            format!("at {speed} m/s it returns from every blow up to {largest} N s{how}")
+        }
+        Some(edge) if edge.is_unstable() => format!("at {speed} m/s no blow is small enough"),
+        Some(edge) if edge.none_returns() => {
+            format!("at {speed} m/s no blow was found from which it returns{how}")
+        }
+        Some(edge) if edge.is_undecided() => {
+            format!("at {speed} m/s it is undecided what blow is too hard{how}")
+        }
+        Some(edge) => {
+            let what = match edge.ending() {
+                "shimmy" => "starts shimmy".to_owned(),
+                ending => format!("ends in {ending}"),
+            };
+            let fails = significant(edge.fails.abs(), 3);
+            format!("smallest blow that {what} at {speed} m/s: {fails} N s{how}")
+        }
+    }
+}
+
 /// What the model of the contact does not have.
 fn limit_of_the_model(wheel: &Wheel) -> &'static str {
     match wheel.tyre() {

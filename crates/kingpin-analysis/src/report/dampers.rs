@@ -64,6 +64,34 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
     Finding::new(subject, text, check).undecided_if(dampers.c_q.is_none() && dampers.c_psi.is_none())
 }
 
+/// The same in a few words: what it takes that nothing was found which does not return or, where that is not known, for small motions.
+pub(super) fn in_short(dampers: &DamperResult) -> String {
+    let up_to = format!("up to {} m/s", readable(dampers.up_to));
+    let quantities = |values: [Option<f64>; 2]| {
+        let units = [("c_q", "N s/m"), ("c_psi", "N m s/rad")];
+        let known =
+            values.into_iter().zip(units).filter_map(|(value, (key, unit))| Some((value?, key, unit)));
+        known
+            .map(|(value, key, unit)| format!("{key} = {} {unit}", significant(value, 4)))
+            .collect::<Vec<_>>()
+    };
+    let none_needed = |values: [Option<f64>; 2]| values.contains(&Some(0.0));
+    let large = dampers.isola_free.as_ref();
+    let safe = [large.and_then(|large| large.c_q.as_ref()), large.and_then(|large| large.c_psi.as_ref())];
+    let safe = safe.map(|found| found.and_then(|found| found.damping));
+    let small = [dampers.c_q, dampers.c_psi];
+    let instead = if dampers.replaced_dampers().is_some() { " instead of yours" } else { "" };
+    match (quantities(safe).as_slice(), quantities(small).as_slice()) {
+        _ if none_needed(safe) => format!("it takes no damper to be safe {up_to}"),
+        ([], _) if none_needed(small) => format!("small motions die out {up_to} without any damper"),
+        ([], []) => format!("no damper that was tried makes it stable {up_to}"),
+        ([], small) => {
+            format!("for small motions to die out {up_to} it takes {}{instead}", small.join(" or "))
+        }
+        (safe, _) => format!("to be safe {up_to} it takes {}{instead}", safe.join(" or ")),
+    }
+}
+
 /// What one damper alone takes so that no large cycle is found; nothing where that is not known.
 fn large_cycles(found: &WithoutCycles, key: &str, unit: &str) -> Option<String> {
     let damping = found.by_continuation?;

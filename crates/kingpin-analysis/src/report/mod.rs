@@ -6,14 +6,19 @@
 mod blow;
 mod cycles;
 mod dampers;
+mod families;
 mod finding;
+mod found;
 mod illustration;
 mod limits;
+mod margin;
 mod page;
 mod request;
 mod result;
 mod rolling;
+mod shimmy;
 mod speeds;
+mod verdict;
 
 pub use finding::Finding;
 pub use request::{ReportAnalysis, ReportRequest};

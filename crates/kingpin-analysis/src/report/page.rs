@@ -13,8 +13,13 @@ pub(super) fn page(name: &str, wheel: &Wheel, findings: &[Finding], figures: &[P
         1 => "<p>One question is left open; it is marked.</p>\n".to_owned(),
         open => format!("<p>{open} questions are left open; they are marked.</p>\n"),
     };
+    // The verdict comes first.
+    let (verdict, findings) = match findings {
+        [verdict, findings @ ..] => (format!("<p><strong>{}</strong></p>\n", prose(&verdict.text)), findings),
+        [] => (String::new(), findings),
+    };
     let mut body = format!(
-        "<header>\n<h1>Does it shimmy? {}</h1>\n{left_open}</header>\n<main>\n<ol class=\"statements\">\n",
+        "<header>\n<h1>Does it shimmy? {}</h1>\n{verdict}{left_open}</header>\n<main>\n<ol class=\"statements\">\n",
         escaped(name)
     );
     for Finding { subject, text, check, undecided } in findings {

@@ -1,14 +1,18 @@
 //! What a report is asked for by, and how it is computed and written.
 
+use super::families::Family;
 use super::finding::Finding;
+use super::found::Found;
 use super::illustration::{Illustration, Pictures};
 use super::page::page;
 use super::result::ReportResult;
 use super::rolling::Motions;
+use super::shimmy::{self, Searched};
 use super::speeds::Speeds;
-use super::{blow, cycles, dampers, limits};
+use super::verdict::{Verdict, sentence};
+use super::{blow, cycles, dampers, limits, margin};
 use crate::chart::ChartRequest;
-use crate::classification::{Contact, may_slide};
+use crate::classification::{Classification, Contact, may_slide};
 use crate::damper::DamperResult;
 use crate::error::{Error, unless_stopped};
 use crate::folder;
@@ -38,11 +42,13 @@ const LONGEST: f64 = 20.0;
 /// Points of the chart along each axis.
 const CHART: [usize; 2] = [160, 120];
 /// Parts of the time that the subjects take, roughly.
-const MOTIONS: Range<f64> = 0.0..0.03;
-const CHARTED: Range<f64> = 0.03..0.2;
-const DAMPED: Range<f64> = 0.2..0.3;
-const FOLLOWED: Range<f64> = 0.3..0.4;
-const STRUCK: Range<f64> = 0.4..1.0;
+const MOTIONS: Range<f64> = 0.0..0.01;
+const CHARTED: Range<f64> = 0.01..0.1;
+const DAMPED: Range<f64> = 0.1..0.2;
+const FOLLOWED: Range<f64> = 0.2..0.25;
+const SHIMMIED: Range<f64> = 0.25..0.45;
+const STRUCK: Range<f64> = 0.45..0.7;
+const STRUCK_ALONG: Range<f64> = 0.7..1.0;
 
 /// A report on a wheel: its stability straight and on a circle, where it rolls, its limit cycles, the smallest blow from which it
 /// does not return, and the dampers that it takes.
@@ -104,34 +110,6 @@ fn rounded(value: f64) -> f64 {
     (value / unit).round() * unit
 }
 
-/// Words as a sentence.
-fn sentence(words: &str) -> String {
-    let (first, rest) = words.split_at(words.chars().next().map_or(0, char::len_utf8));
-    format!("{}{rest}.", first.to_uppercase())
-}
-
-/// What was found so far.
-#[derive(Default)]
-struct Found {
-    findings: Vec<Finding>,
-    illustrations: Vec<Illustration>,
-}
-
-impl Found {
-    /// Takes what was found on a subject, or why nothing was; a stop goes on as an error.
-    fn take(&mut self, subject: &str, found: Result<Found, Error>) -> Result<(), Error> {
-        match found {
-            Ok(found) => {
-                self.findings.extend(found.findings);
-                self.illustrations.extend(found.illustrations);
-            }
-            Err(Error::Stopped) => return Err(Error::Stopped),
-            Err(error) => self.findings.push(Finding::not_computed(subject, &error)),
-        }
-        Ok(())
-    }
-}
-
 impl ReportAnalysis {
     /// What was found of the wheel without its dry friction about the king pin, which says so.
     fn without_dry_friction(&self, found: Found) -> Found {
@@ -185,25 +163,32 @@ impl ReportAnalysis {
 
     fn compute(&self, control: &Control<'_>) -> Result<Found, Error> {
         let own_radius = self.wheel.get(Key::TurningRadius);
+        let speed = self.wheel.get(Key::V);
         let radius = if own_radius.is_finite() { own_radius } else { CIRCLE };
         let straight = "straight".to_owned();
         let circle = format!("r = {} m", readable(radius));
         let own = if own_radius.is_finite() { &circle } else { &straight };
         let mut found = Found::default();
+        let mut verdict = Verdict::default();
         let mut stable_here = None;
+        let mut stable_speeds = None;
         let mut hopf_points = Vec::new();
         for (subject, radius) in [(&straight, f64::INFINITY), (&circle, radius)] {
-            let speeds = self
-                .with_radius(radius)
-                .and_then(|wheel| Speeds::follow(&wheel, self.fastest, &control.part(MOTIONS)));
-            if radius == own_radius {
-                stable_here = speeds.as_ref().ok().and_then(|speeds| speeds.at(self.wheel.get(Key::V)));
-                hopf_points = speeds.as_ref().map_or_else(|_| Vec::new(), Speeds::hopf_points);
+            let speeds = self.speeds(radius, &control.part(MOTIONS));
+            if let Ok(speeds) = &speeds {
+                if radius == own_radius {
+                    stable_here = speeds.at(speed);
+                    stable_speeds = speeds.first_stable();
+                    hopf_points = speeds.hopf_points();
+                }
+                if radius.is_infinite() {
+                    verdict.straight = Some(self.straight(speeds, control)?);
+                } else if radius == own_radius {
+                    verdict.circle = Some(format!("at {circle} {}", speeds.in_short()));
+                }
             }
-            let speeds = speeds.map(|speeds| Found {
-                findings: vec![speeds.finding(format!("stability, {subject}"))],
-                illustrations: Vec::new(),
-            });
+            let speeds =
+                speeds.map(|speeds| Found::new(speeds.finding(format!("stability, {subject}")), None));
             found.take(
                 &format!("stability, {subject}"),
                 speeds.map(|speeds| self.without_dry_friction(speeds)),
@@ -212,24 +197,25 @@ impl ReportAnalysis {
         let dry = self
             .with_dry_friction(own)
             .map(|finding| Found { findings: finding.into_iter().collect(), illustrations: Vec::new() });
+        verdict.dry_friction = self.dry_friction_in_short()?;
         found.take("dry friction", dry)?;
         let subject = format!("rolling, {circle}");
         let rolling = self.with_radius(radius).and_then(|wheel| Motions::compute(&wheel, self.fastest));
-        let rolling = rolling.map(|motions| Found {
-            findings: vec![motions.finding(subject.clone())],
-            illustrations: vec![motions.illustration()],
-        });
+        verdict.rolling = rolling.as_ref().ok().map(Motions::in_short);
+        let rolling =
+            rolling.map(|motions| Found::new(motions.finding(subject.clone()), [motions.illustration()]));
         found.take(&subject, rolling.map(|rolling| self.without_dry_friction(rolling)))?;
         let chart = self.chart(own_radius, &control.part(CHARTED));
         found.take("chart", chart.map(|chart| self.without_dry_friction(chart)))?;
         let subject = "dampers, straight";
         let damped = dampers::seek(&self.request_at(f64::INFINITY), self.fastest, &control.part(DAMPED));
         let large_cycles = self.search_for_large_cycles(damped.as_ref().ok(), stable_here);
+        verdict.dampers = damped.as_ref().ok().map(dampers::in_short);
         let damped = damped.map(|dampers| {
-            self.without_dry_friction(Found {
-                findings: vec![dampers::finding(subject.to_owned(), &dampers)],
-                illustrations: dampers::illustration(&dampers).into_iter().collect(),
-            })
+            self.without_dry_friction(Found::new(
+                dampers::finding(subject.to_owned(), &dampers),
+                dampers::illustration(&dampers),
+            ))
         });
         found.take(subject, damped)?;
         let subject = format!("limit cycles, {own}");
@@ -237,9 +223,60 @@ impl ReportAnalysis {
             self.cycles(&subject, (stable_here, &hopf_points), large_cycles, &control.part(FOLLOWED));
         found.take(&subject, followed.map(|cycles| self.without_dry_friction(cycles)))?;
         unless_stopped(control)?;
+        self.families(own, &mut found, control)?;
+        let subject = format!("shimmy, {own}");
+        let stable = (stable_here, stable_speeds);
+        let shimmy = self.shimmy(&subject, stable, &mut verdict, &control.part(SHIMMIED));
+        found.take(&subject, shimmy)?;
         let subject = format!("blow, {own}");
-        found.take(&subject, self.blow(&subject, stable_here, &control.part(STRUCK)))?;
+        let blow = self.blow(&subject, stable_here, &mut verdict, &control.part(STRUCK));
+        found.take(&subject, blow)?;
+        let subject = format!("blow over the speed, {own}");
+        found.take(&subject, self.margin(&subject, stable_speeds, &control.part(STRUCK_ALONG)))?;
+        found.findings.insert(0, verdict.finding());
         Ok(found)
+    }
+
+    /// The stability on a circle over the speed.
+    fn speeds(&self, radius: f64, control: &Control<'_>) -> Result<Speeds, Error> {
+        Speeds::follow(&self.with_radius(radius)?, self.fastest, control)
+    }
+
+    /// The stability in straight towing in a few words, without the wheel's dampers and with them.
+    fn straight(&self, speeds: &Speeds, control: &Control<'_>) -> Result<String, Error> {
+        let dampers = [Key::CU, Key::CQ, Key::CPsi];
+        let with = speeds.in_short();
+        if dampers.iter().all(|key| self.wheel.get(*key) == 0.0) {
+            return Ok(format!("straight: {with} without damper"));
+        }
+        let undamped = dampers
+            .into_iter()
+            .try_fold(self.with_radius(f64::INFINITY)?, |wheel, key| wheel.with(key, 0.0))
+            .map_err(Error::from);
+        match undamped.and_then(|wheel| Speeds::follow(&wheel, self.fastest, &control.quiet())) {
+            Ok(without) => Ok(format!("straight: {} without damper; {with} with yours", without.in_short())),
+            Err(Error::Stopped) => Err(Error::Stopped),
+            // A motion that cannot be followed without dampers is one that nobody asked for.
+            Err(_) => Ok(format!("straight: {with} with your damper")),
+        }
+    }
+
+    /// What the wheel's own dry friction about the king pin makes of small motions in straight towing, in a few words.
+    fn dry_friction_in_short(&self) -> Result<Option<String>, Error> {
+        if self.wheel.tyre() != Tyre::Rigid || self.wheel.get(Key::MF) == 0.0 {
+            return Ok(None);
+        }
+        let wheel = self.with_radius(f64::INFINITY)?;
+        if wheel.swing_factor().is_none() {
+            return Ok(None);
+        }
+        Ok(Some(match wheel.critical_speed_with_friction() {
+            Some(0.0) => "small motions grow in spite of your dry friction".to_owned(),
+            Some(speed) => {
+                format!("with your dry friction small motions die out up to {} m/s", significant(speed, 4))
+            }
+            None => "with your dry friction small motions die out at every speed".to_owned(),
+        }))
     }
 
     /// The wheel on another circle.
@@ -354,7 +391,22 @@ impl ReportAnalysis {
             Some(cycles) => cycles::finding(subject.to_owned(), cycles, speeds[0], uniform_motion),
             None => cycles::none_is_born(subject.to_owned(), self.fastest, uniform_motion.1, large_cycles),
         };
-        Ok(Found { findings: vec![finding], illustrations: illustration.into_iter().collect() })
+        Ok(Found::new(finding, illustration))
+    }
+
+    /// The cycles for several caster lengths and on several circles.
+    fn families(&self, own: &str, found: &mut Found, control: &Control<'_>) -> Result<(), Error> {
+        let families = [
+            (format!("limit cycles over l, {own}"), Family::of_lengths as fn(&_, &_, _, &_) -> _),
+            ("limit cycles over r".to_owned(), Family::of_radii),
+        ];
+        for (subject, follow) in families {
+            let family = follow(&self.request.wheel, &self.wheel, self.fastest, control);
+            let family =
+                family.map(|family| Found::new(family.finding(subject.clone()), family.illustration()));
+            found.take(&subject, family.map(|family| self.without_dry_friction(family)))?;
+        }
+        Ok(())
     }
 
     /// Whether there may be blows from which the wheel returns.
@@ -362,14 +414,84 @@ impl ReportAnalysis {
         stable != Some(false) || self.wheel.get(Key::MF) > 0.0
     }
 
-    fn blow(&self, subject: &str, stable: Option<bool>, control: &Control<'_>) -> Result<Found, Error> {
+    /// The shimmy of a wheel that is known to slide: whose load is known, and whose sliding is computed.
+    fn shimmy(
+        &self,
+        subject: &str,
+        (stable, stable_speeds): (Option<bool>, Option<[f64; 2]>),
+        verdict: &mut Verdict,
+        control: &Control<'_>,
+    ) -> Result<Found, Error> {
+        let speed = self.wheel.get(Key::V);
+        // Where small motions die out at every speed the blows tell what remains.
+        if self.is_everywhere(stable_speeds) {
+            return Ok(Found::default());
+        }
+        if Classification::default().contact_by_load(&self.wheel) != Contact::Sliding {
+            if stable == Some(true) {
+                return Ok(Found::default());
+            }
+            let reason = if may_slide(&self.wheel) {
+                "no load on the king pin is given (F_Az = 0), and with it how much friction there is"
+            } else {
+                "shimmy that slides is computed of a wheel without a tyre, with a finite k_u"
+            };
+            let text =
+                format!("What the wheel settles on where small motions grow is not computed: {reason}.");
+            return Ok(Found::new(Finding::new(subject, text, "").undecided_if(true), None));
+        }
+        let searched = Searched { speed, fastest: self.fastest, stable, stable_speeds };
+        let found = searched.seek(&self.request.wheel, control)?;
+        verdict.shimmy = searched.in_short(&found);
+        let illustration = shimmy::illustration(&found, self.wheel.get(Key::TurningRadius))?;
+        Ok(Found::new(searched.finding(subject.to_owned(), &found), illustration))
+    }
+
+    /// Whether a range of stable speeds reaches over all that are looked at.
+    fn is_everywhere(&self, stable: Option<[f64; 2]>) -> bool {
+        stable.is_some_and(|[from, to]| from <= 0.01 * self.fastest && to >= self.fastest)
+    }
+
+    /// The smallest blow over the speeds at which small motions die out, of a wheel that is known to slide.
+    fn margin(&self, subject: &str, stable: Option<[f64; 2]>, control: &Control<'_>) -> Result<Found, Error> {
+        if Classification::default().contact_by_load(&self.wheel) != Contact::Sliding {
+            return Ok(Found::default());
+        }
+        // Dry friction keeps small motions small where they would grow without it.
+        let dry = || -> Result<Option<[f64; 2]>, Error> {
+            if self.wheel.get(Key::MF) == 0.0 || self.wheel.get(Key::TurningRadius).is_finite() {
+                return Ok(None);
+            }
+            let critical = self.wheel.critical_speed_with_friction().unwrap_or(f64::INFINITY);
+            Ok(Some([0.0, critical.min(self.fastest)]).filter(|[_, to]| *to > 0.0))
+        };
+        let Some(stable) = dry()?.or(stable) else {
+            return Ok(Found::default());
+        };
+        // Up to a critical speed: where there is none the blow at the wheel's own speed is told.
+        if self.is_everywhere(Some(stable)) {
+            return Ok(Found::default());
+        }
+        let result = margin::seek(&self.request.wheel, stable, control)?;
+        let illustration = margin::illustration(&result, self.wheel.get(Key::TurningRadius))?;
+        Ok(Found::new(margin::finding(subject.to_owned(), &result), illustration))
+    }
+
+    fn blow(
+        &self,
+        subject: &str,
+        stable: Option<bool>,
+        verdict: &mut Verdict,
+        control: &Control<'_>,
+    ) -> Result<Found, Error> {
         let speed = self.wheel.get(Key::V);
         if !self.strikes(stable) {
             let text = format!(
                 "At {} m/s the uniform motion is unstable: without friction about the king pin no blow is small enough.",
                 readable(speed)
             );
-            return Ok(Found { findings: vec![Finding::new(subject, text, "")], illustrations: Vec::new() });
+            verdict.blow = Some(format!("at {} m/s no blow is small enough", readable(speed)));
+            return Ok(Found::new(Finding::new(subject, text, ""), None));
         }
         let mut found = Found::default();
         let slides = may_slide(&self.wheel);
@@ -385,8 +507,9 @@ impl ReportAnalysis {
             let name = if slides { format!(", {}", contact.model().name()) } else { String::new() };
             let subject = format!("{subject}{name}");
             let result = blow::seek(&self.request.wheel, contact, &control.part(part)).and_then(|result| {
-                let illustrations = blow::illustration(&result)?.into_iter().collect();
-                Ok(Found { findings: vec![blow::finding(subject.clone(), &result, speed)], illustrations })
+                verdict.blow.get_or_insert_with(|| blow::in_short(&result, speed));
+                let illustration = blow::illustration(&result)?;
+                Ok(Found::new(blow::finding(subject.clone(), &result, speed), illustration))
             });
             found.take(&subject, result)?;
         }

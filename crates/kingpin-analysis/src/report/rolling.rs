@@ -61,6 +61,23 @@ impl Motions {
         Ok(Self { radius: wheel.get(Key::TurningRadius), fastest, motions, changes })
     }
 
+    /// Where it rolls, in a few words.
+    pub(super) fn in_short(&self) -> String {
+        let circle = format!("at r = {} m", readable(self.radius));
+        match (self.changes.as_slice(), self.motions[0].rolls()) {
+            ([], true) => format!("it rolls at every speed {circle}"),
+            ([], false) => format!("it slides at every speed {circle}"),
+            (changes, _) => {
+                let change = |(speed, rolls): &(f64, bool)| {
+                    let what = if *rolls { "rolls" } else { "slides" };
+                    format!("{what} from {} m/s on", significant(*speed, 4))
+                };
+                let said: Vec<String> = changes.iter().map(change).collect();
+                format!("the wheel {} {circle}", said.join(" and "))
+            }
+        }
+    }
+
     /// What is said of it.
     pub(super) fn finding(&self, subject: String) -> Finding {
         let reach = self.motions.last().map_or(self.fastest, |motion| motion.wheel().get(Key::V));

@@ -22,6 +22,14 @@ struct Part {
     stable: Option<bool>,
 }
 
+fn word(stable: Option<bool>) -> &'static str {
+    match stable {
+        Some(true) => "stable",
+        Some(false) => "unstable",
+        None => "of undecided stability",
+    }
+}
+
 /// The stability of the uniform motion of a wheel over the speed.
 pub(super) struct Speeds {
     wheel: Wheel,
@@ -82,12 +90,28 @@ impl Speeds {
         Finding::new(subject, self.text(), self.check()).undecided_if(undecided)
     }
 
+    /// The slowest range of speeds in which the motion is stable.
+    pub(super) fn first_stable(&self) -> Option<[f64; 2]> {
+        self.parts.iter().find(|part| part.stable == Some(true)).map(|part| [part.from, part.to])
+    }
+
+    /// Its stability in a few words.
+    pub(super) fn in_short(&self) -> String {
+        match self.parts.as_slice() {
+            [only] => format!("{} at every speed up to {} m/s", word(only.stable), readable(only.to)),
+            [first, then] => {
+                let to = significant(first.to, 4);
+                format!("{} up to {to} m/s and {} beyond", word(first.stable), word(then.stable))
+            }
+            parts => {
+                let part =
+                    |part: &Part| format!("{} up to {} m/s", word(part.stable), significant(part.to, 4));
+                parts.iter().map(part).collect::<Vec<_>>().join(", ")
+            }
+        }
+    }
+
     fn text(&self) -> String {
-        let word = |stable: Option<bool>| match stable {
-            Some(true) => "stable",
-            Some(false) => "unstable",
-            None => "of undecided stability",
-        };
         let end = self.parts.last().map_or(f64::NAN, |part| part.to);
         let mut text = match self.parts.as_slice() {
             [only] => {

@@ -23,6 +23,7 @@ mod studies;
 mod tables;
 mod tyre;
 mod verdicts;
+mod wheels;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

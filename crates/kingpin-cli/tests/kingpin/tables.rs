@@ -26,6 +26,26 @@ fn real_wheels() {
     }
 }
 
+/// On a circle of 2 m, at nearly the largest speed at which they roll.
+#[test]
+fn real_wheels_on_a_circle() {
+    let wheels =
+        [("dolly", 20.0), ("nosegear", 18.4), ("office", 42.2), ("trolley", 21.3), ("wheelchair", 18.7)];
+    for (wheel, speed) in wheels {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+        let wheel_there = format!("--wheel {file}/{wheel}.toml -s r=2 -s v={speed}");
+        let rolls = |speed: f64| {
+            let steady = format!("steady --wheel {file}/{wheel}.toml -s r=2 -s v={speed}");
+            Folder::new().json(&steady)["rolls"].as_bool()
+        };
+        assert_eq!([rolls(speed), rolls(1.02 * speed)], [Some(true), Some(false)], "{wheel}");
+        let stability = Folder::new().succeed(&format!("stability {wheel_there}"));
+        insta::assert_snapshot!(format!("stability_circle_{wheel}"), stability.output);
+        let hopf = Folder::new().run(&format!("hopf -q {wheel_there} --along v=0.5:{speed}"));
+        insta::assert_snapshot!(format!("hopf_circle_{wheel}"), format!("{}{}", hopf.output, hopf.messages));
+    }
+}
+
 #[test]
 fn damper() {
     insta::assert_snapshot!(Folder::new().succeed("damper --up-to v=30 --small-motions -q").output);
