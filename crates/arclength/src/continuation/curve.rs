@@ -203,6 +203,30 @@ pub trait Curve: Equations {
     /// are the same; independent of discretisation and phase.
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)>;
 
+    /// The border at which a curve that is smooth piece by piece leaves the piece of the first solution before it reaches the second.
+    ///
+    /// Within a piece the equations are those of the piece, beyond its borders too; [`enter`](Self::enter) has the curve go on in
+    /// that of a solution.
+    ///
+    /// # Errors
+    /// As [`inspect`](Self::inspect); [`Error::OtherBranch`] has the step made anew and shorter.
+    fn passage(
+        &mut self,
+        _before: &Solution<Self::Point>,
+        _after: &Solution<Self::Point>,
+    ) -> Result<Option<PassageOf<Self>>, Error> {
+        Ok(None)
+    }
+
+    /// Goes on in the piece of a solution that has become part of the curve.
+    fn enter(&mut self, _solution: &Solution<Self::Point>) {}
+
+    /// Gives up a piece whose equations make no sense beyond its border; whether there was one. The curve goes on with the equations
+    /// as they are.
+    fn give_up_piece(&mut self) -> bool {
+        false
+    }
+
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
     fn ending(
         &mut self,
@@ -215,6 +239,20 @@ pub trait Curve: Equations {
 
 /// A special point of a curve.
 pub type EventOf<C> = Event<<C as Curve>::Kind, <C as Curve>::Point>;
+
+/// How a curve comes to a border between two pieces and leaves it.
+#[derive(Debug)]
+pub struct Passage<P, K, R> {
+    /// The solution on the border, as one of the piece before it.
+    pub arrival: Solution<P>,
+    /// What is special there.
+    pub special: Vec<(K, Solution<P>)>,
+    /// The same solution as one of the next piece, with the tangent that leads into that, or why the curve ends.
+    pub onward: Result<Solution<P>, Stop<R>>,
+}
+
+/// A passage of a curve.
+pub type PassageOf<C> = Passage<<C as Curve>::Point, <C as Curve>::Kind, <C as Curve>::Reason>;
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]
