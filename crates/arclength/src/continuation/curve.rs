@@ -3,7 +3,7 @@
 use super::events::{Event, Location, Reading, Spectrum, TestFunction};
 use super::solution::Solution;
 use super::stop::{Reason, Stop};
-use crate::error::Error;
+use crate::error::{CorrectionFailure, Error};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -104,9 +104,19 @@ pub trait Curve: Equations {
         true
     }
 
+    /// Why the equations are not finite.
+    fn why_not_finite(&self, _unknown: &[f64]) -> CorrectionFailure {
+        CorrectionFailure::NotFinite
+    }
+
     /// Measures the errors of a solution that becomes part of a run, called right after its Jacobian, bordered by the tangent
     /// or by a parameter, was factorised.
     fn measure(&mut self, _solution: &mut Solution<Self::Point>) {}
+
+    /// Whether [`measure`](Self::measure) could tell the errors of a solution.
+    fn is_measured(&self, _point: &Self::Point) -> bool {
+        true
+    }
 
     /// Whether the discretisation resolves what was found out about a solution. If not, [`adapt`](Self::adapt) makes it finer
     /// and the solution is found once more.
@@ -225,6 +235,12 @@ pub trait Curve: Equations {
     /// as they are.
     fn give_up_piece(&mut self) -> bool {
         false
+    }
+
+    /// Whether unknowns that solve the equations without having been [adapted](Self::adapt) are a solution, where the equations may
+    /// have others that mean nothing.
+    fn holds(&self, _unknown: &[f64]) -> bool {
+        true
     }
 
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
