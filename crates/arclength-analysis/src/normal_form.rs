@@ -47,6 +47,14 @@ pub fn of_equilibrium(special: &SpecialPoint) -> String {
         SpecialPoint::NeutralSaddle(saddle) => {
             format!("neutral saddle, eigenvalues +-{}", significant(saddle.eigenvalue, COEFFICIENT))
         }
+        SpecialPoint::Degenerate { of, at_border: true, .. } => format!(
+            "{}, on a border between two pieces of the field: no normal form",
+            match of {
+                SpecialKind::Fold => "non-smooth fold",
+                SpecialKind::Hopf => "two eigenvalues or more cross the axis at once",
+                _ => "branches meet or an eigenvalue crosses zero",
+            }
+        ),
         SpecialPoint::Degenerate { location_error, .. } => {
             format!("degenerate, bracketed only: +-{}", significant(*location_error, 2))
         }

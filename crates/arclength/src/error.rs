@@ -11,6 +11,9 @@ pub enum CorrectionFailure {
     /// An update was not finite: the vector field was evaluated outside its domain.
     #[error("the vector field is not finite there")]
     NotFinite,
+    /// The vector field is finite, but an event or a border that the cycle has to come to is not passed close to where it was.
+    #[error("an event, a border or the end of a slide that the cycle passed before is passed no more")]
+    GateMissed,
     /// The vector field has a value, but its derivatives have none, as at the tip of a cone.
     #[error("the vector field has no derivatives there")]
     NotDifferentiable,

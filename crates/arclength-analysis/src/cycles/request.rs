@@ -231,6 +231,13 @@ impl CyclesRequest {
                 };
                 Ok((CycleStart::Orbit(orbit), "the cycle on which the time history has settled"))
             }
+            LabelledSolution::Equilibrium(Some(SpecialPoint::Degenerate { at_border: true, .. })) => {
+                Err(reference.failure(format!(
+                    "no cycles can be started at {}: it lies on a border between two pieces of the field, where eigenvalues jump \
+                     and there is no normal form; start from the end (END) of a time history on a cycle",
+                    point.label
+                )))
+            }
             LabelledSolution::Equilibrium(Some(SpecialPoint::Degenerate { of: SpecialKind::Hopf, .. })) => {
                 Err(reference.failure(format!(
                     "no cycles can be started at {}: it is degenerate and only bracketed, either because several pairs of \

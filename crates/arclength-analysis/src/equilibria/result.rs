@@ -240,8 +240,9 @@ impl Report for EquilibriaResult {
         story.tell("start", self.from.text());
         course::tell_ends(&mut story, &self.ends);
         course::tell_way(&mut story, &self.along, &places);
-        let degenerate =
-            |point: &&EquilibriumResult| matches!(point.special, Some(SpecialPoint::Degenerate { .. }));
+        let degenerate = |point: &&EquilibriumResult| {
+            matches!(point.special, Some(SpecialPoint::Degenerate { at_border: false, .. }))
+        };
         for point in self.points.iter().filter(degenerate) {
             let label = point.label.clone().unwrap_or_default();
             story.tell(

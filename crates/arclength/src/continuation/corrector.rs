@@ -92,7 +92,7 @@ pub fn correct<C: Curve>(
         curve.solve(&mut update);
         let length = norm(curve, &update, &mut image);
         if !length.is_finite() {
-            return Err(CorrectionFailure::NotFinite);
+            return Err(curve.why_not_finite(unknown));
         }
         let contraction = length / previous;
         let stands = iteration > 1 && contraction > CHORD_REJECTION;

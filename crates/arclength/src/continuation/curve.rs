@@ -3,7 +3,7 @@
 use super::events::{Event, Location, Reading, Spectrum, TestFunction};
 use super::solution::Solution;
 use super::stop::{Reason, Stop};
-use crate::error::Error;
+use crate::error::{CorrectionFailure, Error};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -104,9 +104,19 @@ pub trait Curve: Equations {
         true
     }
 
+    /// Why the equations are not finite.
+    fn why_not_finite(&self, _unknown: &[f64]) -> CorrectionFailure {
+        CorrectionFailure::NotFinite
+    }
+
     /// Measures the errors of a solution that becomes part of a run, called right after its Jacobian, bordered by the tangent
     /// or by a parameter, was factorised.
     fn measure(&mut self, _solution: &mut Solution<Self::Point>) {}
+
+    /// Whether [`measure`](Self::measure) could tell the errors of a solution.
+    fn is_measured(&self, _point: &Self::Point) -> bool {
+        true
+    }
 
     /// Whether the discretisation resolves what was found out about a solution. If not, [`adapt`](Self::adapt) makes it finer
     /// and the solution is found once more.
@@ -203,6 +213,36 @@ pub trait Curve: Equations {
     /// are the same; independent of discretisation and phase.
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)>;
 
+    /// The border at which a curve that is smooth piece by piece leaves the piece of the first solution before it reaches the second.
+    ///
+    /// Within a piece the equations are those of the piece, beyond its borders too; [`enter`](Self::enter) has the curve go on in
+    /// that of a solution.
+    ///
+    /// # Errors
+    /// As [`inspect`](Self::inspect); [`Error::OtherBranch`] has the step made anew and shorter.
+    fn passage(
+        &mut self,
+        _before: &Solution<Self::Point>,
+        _after: &Solution<Self::Point>,
+    ) -> Result<Option<PassageOf<Self>>, Error> {
+        Ok(None)
+    }
+
+    /// Goes on in the piece of a solution that has become part of the curve.
+    fn enter(&mut self, _solution: &Solution<Self::Point>) {}
+
+    /// Gives up a piece whose equations make no sense beyond its border; whether there was one. The curve goes on with the equations
+    /// as they are.
+    fn give_up_piece(&mut self) -> bool {
+        false
+    }
+
+    /// Whether unknowns that solve the equations without having been [adapted](Self::adapt) are a solution, where the equations may
+    /// have others that mean nothing.
+    fn holds(&self, _unknown: &[f64]) -> bool {
+        true
+    }
+
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
     fn ending(
         &mut self,
@@ -215,6 +255,20 @@ pub trait Curve: Equations {
 
 /// A special point of a curve.
 pub type EventOf<C> = Event<<C as Curve>::Kind, <C as Curve>::Point>;
+
+/// How a curve comes to a border between two pieces and leaves it.
+#[derive(Debug)]
+pub struct Passage<P, K, R> {
+    /// The solution on the border, as one of the piece before it.
+    pub arrival: Solution<P>,
+    /// What is special there.
+    pub special: Vec<(K, Solution<P>)>,
+    /// The same solution as one of the next piece, with the tangent that leads into that, or why the curve ends.
+    pub onward: Result<Solution<P>, Stop<R>>,
+}
+
+/// A passage of a curve.
+pub type PassageOf<C> = Passage<<C as Curve>::Point, <C as Curve>::Kind, <C as Curve>::Reason>;
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]

@@ -6,7 +6,9 @@ use super::corrector::between;
 use super::curve::{Curve, Ending, EventOf};
 use super::events::{EventSearch, Events, Unlocated};
 use super::metric::along;
-use super::requested::{Between, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values};
+use super::requested::{
+    Between, Origin, Purpose, Target, first_exit, fix_last, insert_targets, insert_values,
+};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
 use super::stop::Stop;
@@ -121,6 +123,8 @@ struct Run<'r, 'o, C: Curve> {
 enum Step<P, R> {
     /// The curve goes on from here.
     To(Solution<P>),
+    /// The curve goes on from here in another piece.
+    Into(Solution<P>),
     /// The step led to another branch and is made anew with this length.
     Again(f64),
     End(Stop<R>),
@@ -143,10 +147,20 @@ impl<C: Curve> Run<'_, '_, C> {
             let advanced =
                 match advance(self.curve, &mut current, &mut previous, &mut length, bounds, settings) {
                     Ok(next) => next,
+                    Err(Stop::StepTooSmall { .. }) if self.curve.give_up_piece() => {
+                        (length, previous) = (settings.initial_step, None);
+                        continue;
+                    }
                     Err(stop) => return stop,
                 };
             match self.step(&current, advanced) {
                 Step::To(next) => current = next,
+                Step::Into(next) => {
+                    // Nothing of the piece before says anything about this one.
+                    self.search.restart();
+                    (current, previous) = (next, None);
+                    length = length.min(settings.initial_step);
+                }
                 Step::Again(shorter) => {
                     length = shorter;
                     previous = None;
@@ -175,6 +189,14 @@ impl<C: Curve> Run<'_, '_, C> {
 
     /// What lies between two consecutive solutions, and whether the curve goes on behind the second.
     fn step(&mut self, current: &Solution<C::Point>, advanced: Solution<C::Point>) -> StepOf<C> {
+        let (advanced, passage) = match self.curve.passage(current, &advanced) {
+            Ok(Some(passage)) => (passage.arrival, Some((passage.special, passage.onward))),
+            Ok(None) => (advanced, None),
+            Err(Error::OtherBranch) => {
+                return Step::Again(STEP_REDUCTION * along(self.curve, current, &advanced.unknown));
+            }
+            Err(error) => return Step::End(Stop::Failed(error)),
+        };
         let (advanced, ending) = match self.curve.ending(current, &advanced) {
             Some(Ending::Between(stop)) => return self.last_stretch(current, &advanced, stop, false),
             Some(Ending::Approached(stop)) => return self.last_stretch(current, &advanced, stop, true),
@@ -200,13 +222,25 @@ impl<C: Curve> Run<'_, '_, C> {
         if let Some(stop) = self.stopping_target(&mut between) {
             return Step::End(self.ended(between, stop));
         }
-        between.push((advanced.clone(), Origin::Step));
+        let (special, onward) =
+            passage.map_or((Vec::new(), None), |(special, onward)| (special, Some(onward)));
+        if special.is_empty() {
+            between.push((advanced.clone(), Origin::Step));
+        }
+        between.extend(special.into_iter().map(|(kind, solution)| (solution, Origin::Special(kind))));
         if self.accept(between).is_break() {
             return Step::End(Stop::Interrupted);
         }
-        match ending {
-            Some(stop) => Step::End(stop),
-            None => Step::To(advanced),
+        match (ending, onward) {
+            (Some(stop), _) | (None, Some(Err(stop))) => Step::End(stop),
+            (None, Some(Ok(onward))) => {
+                self.curve.enter(&onward);
+                Step::Into(onward)
+            }
+            (None, None) => {
+                self.curve.enter(&advanced);
+                Step::To(advanced)
+            }
         }
     }
 
@@ -295,7 +329,7 @@ impl<C: Curve> Run<'_, '_, C> {
         }
         let near = between.last().map_or(current, |(solution, _)| solution).clone();
         let from_end = bounds[bound].from_end;
-        match fix(self.curve, &near, &beyond, from_end, value, &self.request.settings) {
+        match fix_last(self.curve, &near, &beyond, from_end, value, &self.request.settings) {
             Ok(end) => {
                 // A value asked for at the end of the range has been found already.
                 let is_known = between.last().is_some_and(|(last, origin)| {
@@ -352,6 +386,11 @@ impl<C: Curve> Run<'_, '_, C> {
         for _ in 0..if approached { APPROACH_HALVINGS } else { LAST_STRETCH_HALVINGS } {
             let fraction = 0.5 * (inside + outside);
             let Ok(trial) = between(self.curve, current, advanced, fraction, settings) else { break };
+            // Beyond the end the equations may have solutions that mean nothing.
+            if !self.curve.holds(&trial.unknown) {
+                outside = fraction;
+                continue;
+            }
             match self.curve.ending(current, &trial) {
                 Some(Ending::Between(_) | Ending::Approached(_)) => outside = fraction,
                 _ => (inside, last) = (fraction, Some(trial)),

@@ -27,7 +27,7 @@ pub(crate) use bracket::{Bracket, locate_value};
 pub use bracket::{locate, locate_by_defining_system};
 pub use corrector::{Correction, correct};
 pub(crate) use corrector::{finish, rounding_updates};
-pub use curve::{Adaptation, Curve, Discretised, Ending, Equations, EventOf};
+pub use curve::{Adaptation, Curve, Discretised, Ending, Equations, EventOf, Passage, PassageOf};
 pub(crate) use follow::exact_start;
 pub use follow::{Followed, FollowedCurve, Observer, Request, follow};
 pub(crate) use metric::{along, distance, metric_image, norm};

@@ -97,6 +97,22 @@ impl CycleCurve<'_> {
         true
     }
 
+    /// Whether a cycle comes to every event at which it jumps, in their order: where it does not, the equations have no meaning.
+    pub(super) fn comes_to_its_events(&self, unknown: &[f64]) -> bool {
+        if !self.collocation.problem.segments.as_ref().is_some_and(Segments::has_jumps) {
+            return true;
+        }
+        let times = jump_times(&self.collocation, unknown);
+        times.is_some_and(|times| times.windows(2).all(|pair| pair[0] < pair[1]))
+    }
+
+    /// Whether a cycle passes its borders and events close to their mesh points.
+    pub(super) fn passes_its_gates(&self, unknown: &[f64]) -> bool {
+        self.collocation.problem.segments.is_none()
+            || !unknown.iter().all(|value| value.is_finite())
+            || jump_times(&self.collocation, unknown).is_some()
+    }
+
     /// The event that a cycle does not come to where it has to, or with other events than known; `moved` is how far mesh points were
     /// moved to the gates.
     fn lost_event(&self, unknown: &[f64], moved: Option<f64>) -> Option<usize> {

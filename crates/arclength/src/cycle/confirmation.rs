@@ -185,6 +185,8 @@ impl<'a> Asked<'a> {
             correct(&mut curve, &mut unknown, &border, &settings).ok()?;
             correction.distance = f64::INFINITY;
         }
+        // Without the guard of a step along the branch Newton's method may come to what is no cycle.
+        curve.holds(&unknown).then_some(())?;
         let mut update = vec![0.0; unknown.len()];
         if correction.distance < CLOSE {
             curve.residual(&unknown, &mut update);

@@ -103,6 +103,19 @@ impl Curve for CycleCurve<'_> {
         Ok(adaptation)
     }
 
+    fn why_not_finite(&self, unknown: &[f64]) -> CorrectionFailure {
+        if self.passes_its_gates(unknown) {
+            CorrectionFailure::NotFinite
+        } else {
+            CorrectionFailure::GateMissed
+        }
+    }
+
+    fn holds(&self, unknown: &[f64]) -> bool {
+        let end = unknown.len() - 2;
+        unknown[end] > 0.0 && !self.sizes.is_equilibrium(&unknown[..end]) && self.comes_to_its_events(unknown)
+    }
+
     fn carry_over(&self, point: &mut CycleInspection) {
         point.mesh = self.collocation.mesh().to_vec();
     }
@@ -160,6 +173,10 @@ impl Curve for CycleCurve<'_> {
         }
         let [fixed, across] = errors;
         point.error_estimate = if point.is_neutral { across } else { fixed };
+    }
+
+    fn is_measured(&self, point: &CycleInspection) -> bool {
+        point.error_estimate < NOTHING_KNOWN
     }
 
     fn resolves(&mut self, point: &CycleInspection) -> bool {
@@ -290,11 +307,19 @@ impl Curve for CycleCurve<'_> {
         after: &Solution<CycleInspection>,
     ) -> Option<Ending<CycleEnd>> {
         self.follows_neutral_family = before.point.is_neutral && after.point.is_neutral;
+        // The place of a grazing in this step is known more closely than cycles beyond it are told from those before.
+        let known = self.grazes.take().filter(|(_, from)| *from == before.unknown);
+        if let Some((end, _)) = known.as_ref().filter(|(end, _)| lies_beyond(end, before, after)) {
+            let end = end.clone();
+            self.grazes = known;
+            return Some(Ending::Approached(Stop::Problem(end)));
+        }
         if let Some(touch) = self.touch(&after.unknown) {
-            let grazes = self.grazes.take().unwrap_or_else(|| self.grazing(before, after, touch));
-            self.grazes = Some(grazes.clone());
+            let grazes = known.map_or_else(|| self.grazing(before, after, touch), |(end, _)| end);
+            self.grazes = Some((grazes.clone(), before.unknown.clone()));
             return Some(Ending::Approached(Stop::Problem(grazes)));
         }
+        self.grazes = known;
         let end = after.unknown.len() - 2;
         let (period, parameter) = (after.unknown[end], after.unknown[end + 1]);
         if self.turn(&after.tangent).abs() < STANDING && self.sizes.growth() > UNBOUNDED_GROWTH {
@@ -343,4 +368,15 @@ impl Curve for CycleCurve<'_> {
         }
         None
     }
+}
+
+/// Whether the parameter has passed a located end between two solutions.
+fn lies_beyond(
+    end: &CycleEnd,
+    before: &Solution<CycleInspection>,
+    after: &Solution<CycleInspection>,
+) -> bool {
+    let CycleEnd::Grazing { parameter, located: true, .. } = end else { return false };
+    let [here, there] = [before, after].map(|solution| solution.unknown[solution.unknown.len() - 1]);
+    (parameter - here) * (there - parameter) > 0.0
 }

@@ -120,8 +120,8 @@ pub(crate) struct CycleCurve<'a> {
     pub(super) lost: Option<usize>,
     /// Whether a cycle was met that passes no event without its jump.
     pub(super) is_clear: bool,
-    /// The grazing in which the curve ends.
-    pub(super) grazes: Option<CycleEnd>,
+    /// The grazing in which the curve ends, with the unknowns of the solution before it.
+    pub(super) grazes: Option<(CycleEnd, Vec<f64>)>,
 }
 
 impl<'a> CycleCurve<'a> {

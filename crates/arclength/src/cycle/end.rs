@@ -63,6 +63,9 @@ pub enum CycleEnd {
 pub enum Grazed {
     /// The condition of an event, by its number, counted from one.
     Event(usize),
+    /// Not touched but passed: the condition of an event, by its number, at the time of another one. Beyond, both happen in another order,
+    /// or one of them no more.
+    Together(usize),
     /// A border at which the field jumps.
     Border,
 }
@@ -104,6 +107,19 @@ impl Reason for CycleEnd {
                 wording.at(0, *parameter),
                 wording.time(*period)
             )),
+            Self::Grazing { of: Grazed::Together(event), parameter, period, located } => {
+                let (about, place) = if *located {
+                    ("", wording.at(0, *parameter))
+                } else {
+                    ("about ", wording.near(0, *parameter))
+                };
+                Explanation::of(format!(
+                    "two events at once: at {about}{place} another event comes at the time of event {event} of the cycle of period {}, \
+                     and beyond it they happen in another order, or not both",
+                    wording.time(*period)
+                ))
+                .try_this("simulate beyond, and cycles from the end of that motion")
+            }
             Self::Grazing { of, parameter, period, located } => {
                 let (about, place) = if *located {
                     ("", wording.at(0, *parameter))
@@ -111,7 +127,9 @@ impl Reason for CycleEnd {
                     ("about ", wording.near(0, *parameter))
                 };
                 let touched = match of {
-                    Grazed::Event(event) => format!("the condition of event {event}"),
+                    Grazed::Event(event) | Grazed::Together(event) => {
+                        format!("the condition of event {event}")
+                    }
                     Grazed::Border => "a border at which the field jumps".to_owned(),
                 };
                 Explanation::of(format!(

@@ -39,22 +39,27 @@ impl CycleCurve<'_> {
     ) -> CycleEnd {
         let settings = self.settings;
         let found = locate(self, before, after, &settings, LOCATION, |curve, solution| {
-            curve.reach(&solution.unknown, touch)
+            curve.reach(&solution.unknown, touch).map(|(reach, _)| reach)
         });
         let [period, parameter] = match &found {
             Ok(Some(solution)) => last_two(&solution.unknown),
             _ => last_two(&before.unknown),
         };
         let located = matches!(found, Ok(Some(_)));
+        let turns = match &found {
+            Ok(Some(solution)) => self.reach(&solution.unknown, touch).is_none_or(|(_, turns)| turns),
+            _ => true,
+        };
         let of = match touch.place {
+            Place::Condition { event } if !turns => Grazed::Together(event + 1),
             Place::Condition { event } => Grazed::Event(event + 1),
             Place::Border { .. } | Place::Pull { .. } => Grazed::Border,
         };
         CycleEnd::Grazing { of, parameter, period, located }
     }
 
-    /// How far the condition of an event gets beyond zero, near where it is touched.
-    fn reach(&self, unknown: &[f64], touch: Touch) -> Option<f64> {
+    /// How far the condition of an event gets beyond zero, near where it is touched, and whether it turns there.
+    fn reach(&self, unknown: &[f64], touch: Touch) -> Option<(f64, bool)> {
         let problem = &self.collocation.problem;
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = *unknown.last()?;
@@ -91,7 +96,9 @@ impl CycleCurve<'_> {
             if slows { [at_rest(1), at_rest(2)] } else { [last_parameter, last_period] };
         // What is left out of the extrapolation is of a higher order than what it adds.
         let located = slows && (parameter - last_parameter).abs() < CLOSE * self.parameter_scale;
-        Some(CycleEnd::Grazing { of: Grazed::Event(event + 1), parameter, period, located })
+        // An event that is passed at a speed to the last is not touched: it is lost because another one comes at its time.
+        let of = if slows { Grazed::Event(event + 1) } else { Grazed::Together(event + 1) };
+        Some(CycleEnd::Grazing { of, parameter, period, located })
     }
 
     /// The rate of the condition of an event where it happens on a cycle, the smallest if it does more than once.

@@ -8,7 +8,9 @@ use super::special::SpecialPoint;
 use crate::algebraic::DenseSystem;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
-use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop, distance, events};
+use crate::continuation::{
+    Adaptation, Curve, Discretised, Ending, PassageOf, Solution, Stop, distance, events,
+};
 use crate::error::Error;
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -83,7 +85,8 @@ impl Curve for EquilibriumCurve<'_> {
             }
             Err(_) => vec![Complex64::ZERO; n],
         };
-        Ok(Inspection { spectrum, rates, orientation, determinant, special: None })
+        let cells = self.system.problem.cells().to_vec();
+        Ok(Inspection { spectrum, rates, orientation, determinant, cells, special: None })
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
@@ -172,6 +175,22 @@ impl Curve for EquilibriumCurve<'_> {
             SpecialPoint::BranchPoint(point) => Some(point.turns()),
             _ => None,
         }
+    }
+
+    fn passage(
+        &mut self,
+        before: &Solution<Inspection>,
+        after: &Solution<Inspection>,
+    ) -> Result<Option<PassageOf<Self>>, Error> {
+        self.corner_between(before, after)
+    }
+
+    fn enter(&mut self, solution: &Solution<Inspection>) {
+        self.enter_piece_of(solution);
+    }
+
+    fn give_up_piece(&mut self) -> bool {
+        self.give_up()
     }
 
     fn ending(

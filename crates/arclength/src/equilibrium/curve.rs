@@ -8,6 +8,7 @@ use crate::algebraic::DenseSystem;
 use crate::continuation::{Bound, Settings, Solution};
 use crate::error::Error;
 use crate::linear::eigenvalues::EigenvalueWorkspace;
+use crate::pieces::Pieces;
 use num_complex::Complex64;
 
 /// What is known about an equilibrium on a curve.
@@ -19,6 +20,8 @@ pub(crate) struct Inspection {
     pub orientation: f64,
     /// Modulus of the determinant of the scaled Jacobian bordered by the tangent: zero at a branch point.
     pub determinant: f64,
+    /// The cells of the piece in which it was computed; none where the field was taken as it is.
+    pub cells: Vec<f64>,
     pub special: Option<Box<SpecialPoint>>,
 }
 
@@ -31,6 +34,10 @@ pub(crate) struct EquilibriumCurve<'a> {
     pub(super) idle_way: f64,
     /// Whether it has moved since the start.
     pub(super) has_moved: bool,
+    /// The pieces of a field that is smooth piece by piece.
+    pub(super) pieces: Option<Pieces<'a>>,
+    /// The piece that was given up, until the curve has left it.
+    pub(super) given_up: Vec<f64>,
     pub(super) first_scales: Vec<f64>,
     pub(super) workspace: EigenvalueWorkspace,
     pub(super) scratch: Vec<f64>,
@@ -45,12 +52,15 @@ impl<'a> EquilibriumCurve<'a> {
         settings: Settings,
     ) -> Self {
         let workspace = EigenvalueWorkspace::new(problem.dimension);
+        let pieces = Pieces::of_erased(problem.field);
         Self {
             system: DenseSystem::new(problem, scales.clone()),
             settings,
             bound,
             idle_way: 0.0,
             has_moved: false,
+            pieces,
+            given_up: Vec::new(),
             first_scales: scales,
             workspace,
             scratch: Vec::new(),
@@ -61,6 +71,7 @@ impl<'a> EquilibriumCurve<'a> {
     pub(super) fn restart(&mut self) {
         self.idle_way = 0.0;
         self.has_moved = false;
+        self.given_up.clear();
         self.system.restart();
     }
 
@@ -102,7 +113,8 @@ impl<'a> EquilibriumCurve<'a> {
         let tangent = point.tangents[0].clone();
         let special = Some(Box::new(SpecialPoint::BranchPoint(point)));
         let rates = vec![Complex64::ZERO; spectrum.eigenvalues.len()];
-        let point = Inspection { spectrum, rates, orientation: 0.0, determinant: 0.0, special };
+        let cells = self.system.problem.cells().to_vec();
+        let point = Inspection { spectrum, rates, orientation: 0.0, determinant: 0.0, cells, special };
         Ok(Solution { unknown, tangent, orientation: 0.0, point })
     }
 

@@ -20,6 +20,11 @@ pub enum EquilibriumEnd {
         /// That value.
         parameter: f64,
     },
+    /// The branch comes to a border between two pieces of the field and no equilibrium lies beyond: the field jumps there.
+    Border {
+        /// The value of the parameter there.
+        parameter: f64,
+    },
 }
 
 impl WithParameters for EquilibriumEnd {
@@ -29,6 +34,7 @@ impl WithParameters for EquilibriumEnd {
             Self::ParameterStandsStill { parameter } => {
                 Self::ParameterStandsStill { parameter: convert(0, parameter) }
             }
+            Self::Border { parameter } => Self::Border { parameter: convert(0, parameter) },
         }
     }
 }
@@ -47,6 +53,10 @@ impl Reason for EquilibriumEnd {
                 readable(*parameter)
             ))
             .try_this("another parameter; where a state is to end the branch, --until STATE=VALUE"),
+            Self::Border { parameter } => Explanation::of(format!(
+                "at {key} = {} the equilibrium comes to a border at which the field jumps, and no equilibrium lies beyond it",
+                readable(*parameter)
+            )),
         }
     }
 }

@@ -107,7 +107,8 @@ fn degenerate(
     let n = curve.dimension();
     let value = node.unknown[n];
     let location_error = LAST_BRACKET * distance * curve.system.scales[n];
-    node.point.special = Some(Box::new(SpecialPoint::Degenerate { of, value, location_error }));
+    node.point.special =
+        Some(Box::new(SpecialPoint::Degenerate { of, value, location_error, at_border: false }));
     Ok(node)
 }
 
@@ -418,7 +419,8 @@ pub(super) fn crossing(
     let n = curve.dimension();
     let value = near.unknown[n];
     let location_error = half * curve.system.scales[n];
-    near.point.special = Some(Box::new(SpecialPoint::Degenerate { of, value, location_error }));
+    near.point.special =
+        Some(Box::new(SpecialPoint::Degenerate { of, value, location_error, at_border: false }));
     Ok(vec![Event { kind: of, is_located: false, solution: near }])
 }
 

@@ -9,6 +9,7 @@ mod branch_point;
 pub(crate) mod coefficient_error;
 mod conservation;
 mod contract;
+mod corner;
 mod curve;
 pub(crate) mod defining;
 mod departure;

@@ -12,11 +12,30 @@ pub(crate) struct EquilibriumProblem<'a> {
     pub parameters: Vec<f64>,
     pub active: Vec<usize>,
     pub dimension: usize,
+    /// The parameters and behind them the cells of the piece in which the field is evaluated, if it is in one.
+    values: Vec<f64>,
 }
 
 impl<'a> EquilibriumProblem<'a> {
     pub(crate) fn new(field: ErasedField<'a>, parameters: &[f64], active: &[usize]) -> Self {
-        Self { field, parameters: parameters.to_vec(), active: active.to_vec(), dimension: field.dimension() }
+        Self {
+            field,
+            parameters: parameters.to_vec(),
+            active: active.to_vec(),
+            dimension: field.dimension(),
+            values: parameters.to_vec(),
+        }
+    }
+
+    /// Evaluates the field by [one of its pieces](crate::pieces) from now on, beyond its borders too; without cells as it is.
+    pub(super) fn enter(&mut self, cells: &[f64]) {
+        self.values.truncate(self.parameters.len());
+        self.values.extend_from_slice(cells);
+    }
+
+    /// The cells of the piece by which the field is evaluated; none where it is evaluated as it is.
+    pub(super) fn cells(&self) -> &[f64] {
+        &self.values[self.parameters.len()..]
     }
 
     /// The full list of parameters at `values` of the active ones.
@@ -28,11 +47,11 @@ impl<'a> EquilibriumProblem<'a> {
         parameters
     }
 
-    /// Writes `f` at the unknowns `(x, active parameters)`.
-    fn write_field<T: FieldScalar>(&self, unknown: &[T], value: &mut [T]) {
+    /// Writes `f` at the unknowns `(x, active parameters)`, and the switch functions behind it where there is room.
+    pub(super) fn write_field<T: FieldScalar>(&self, unknown: &[T], value: &mut [T]) {
         let (state, values) = unknown.split_at(self.dimension);
         let active = self.active.iter().copied().zip(values.iter().copied());
-        with_parameters(&self.parameters, active, |parameters| self.field.evaluate(state, parameters, value));
+        with_parameters(&self.values, active, |parameters| self.field.evaluate(state, parameters, value));
     }
 
     /// Writes `f` into `value` and its derivative along `direction` into `image`; `direction` lies in the space of

@@ -2,17 +2,19 @@
 
 use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
+use super::corner::HalfBranch;
 use super::curve::{EquilibriumCurve, Inspection};
 use super::departure::{branch_point_along, is_branching};
+use super::end::EquilibriumEnd;
 use super::first::{FoundBy, FoundEquilibrium, seek_erased};
 use super::newton::find_erased;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, length};
 use crate::branch::{Branch, Continuation, Label, SpecialKind, check_length, invalid, observer, request};
-use crate::continuation::events::around_start;
+use crate::continuation::events::{Event, Events, around_start};
 use crate::continuation::{
-    BothWays, BothWaysOf, Bound, Followed, FollowedCurve, Origin, Request, Settings, Solution, Stop,
+    BothWays, BothWaysOf, Bound, Curve, Followed, FollowedCurve, Origin, Request, Settings, Solution, Stop,
     both_ways, follow,
 };
 use crate::error::Error;
@@ -93,6 +95,8 @@ struct Departure {
     is_vertical: bool,
     /// The branch point from which the branch leaves, with its own branch second.
     branch_point: Option<BranchPoint>,
+    /// How the branch leaves a start on a border between two pieces of the field, backward and forward.
+    halves: Option<[Option<HalfBranch>; 2]>,
 }
 
 impl<'a> Equilibria<'a> {
@@ -229,13 +233,15 @@ impl<'a> Equilibria<'a> {
             unknown,
             is_vertical: false,
             branch_point: Some(point),
+            halves: None,
         };
         let known = match known {
             Some(point) if point.active == index => return Ok(leaves(unknown, point)),
             known => known,
         };
         if !is_branching(problem, &unknown, scales)? {
-            return Ok(Departure { unknown, tangent: Vec::new(), is_vertical: false, branch_point: None });
+            let tangent = Vec::new();
+            return Ok(Departure { unknown, tangent, is_vertical: false, branch_point: None, halves: None });
         }
         // From a branch point found along another parameter the other branch is followed here too.
         let point = match &known {
@@ -269,7 +275,12 @@ impl Departure {
     /// With a unit tangent that points forward: the parameter grows, or where it stands still the first state that moves.
     fn directed(mut self, curve: &mut EquilibriumCurve<'_>) -> Result<Self, Error> {
         if self.branch_point.is_none() {
-            self.tangent = curve.system.tangent(&self.unknown)?;
+            self.halves = leaving_border(curve, &self.unknown);
+            let forward = self.halves.iter().flatten().flatten().last();
+            self.tangent = match forward {
+                Some(half) => half.tangent.clone(),
+                None => curve.system.tangent(&self.unknown)?,
+            };
         }
         let size = length(&self.tangent, &curve.system.scales);
         self.is_vertical = curve.turn(&self.tangent).abs() < VERTICAL_START * size;
@@ -298,15 +309,27 @@ impl Departure {
     ) -> Result<FollowedCurve<EquilibriumCurve<'static>>, Error> {
         let bound = request.bounds[0];
         let value = bound.value(&self.unknown);
-        let end = if sign > 0.0 { bound.upper } else { bound.lower };
+        let (mut tangent, mut cells): (Vec<f64>, _) =
+            (self.tangent.iter().map(|entry| sign * entry).collect(), Vec::new());
+        if let Some(halves) = &self.halves {
+            let Some(half) = &halves[usize::from(sign > 0.0)] else {
+                return Ok(Followed::nothing(Stop::Problem(EquilibriumEnd::Border { parameter: value })));
+            };
+            (tangent, cells) = (half.tangent.clone(), half.cells.clone());
+        }
+        let end = if tangent.last().is_some_and(|rate| *rate > 0.0) { bound.upper } else { bound.lower };
         let is_at_end = (value - end).abs() <= f64::EPSILON * end.abs() && self.branch_point.is_none();
         if !self.is_vertical && is_at_end {
             return Ok(Followed::nothing(Stop::RangeEnd { bound: 0, value }));
         }
-        let tangent: Vec<f64> = self.tangent.iter().map(|entry| sign * entry).collect();
         let start = self.unknown.iter().zip(&tangent).map(|(value, slope)| value + self.distance() * slope);
+        let start: Vec<f64> = start.collect();
         curve.restart();
-        follow(curve, start.collect(), tangent, request, observer)
+        if cells.is_empty() {
+            cells = curve.piece_at(&start).map_or(Vec::new(), |(cells, _)| cells);
+        }
+        curve.system.problem.enter(&cells);
+        follow(curve, start, tangent, request, observer)
     }
 
     /// Both directions with the branch point between them, or the special points at and around the start.
@@ -320,11 +343,23 @@ impl Departure {
         let [backward, mut forward] = directions;
         let Some(mut point) = self.branch_point else {
             let first = [&backward, &forward].map(|direction| direction.first.clone());
+            let starts = [&backward, &forward].map(|direction| direction.solutions.first().cloned());
             let mut followed = BothWays::join([backward, forward], None);
             let Some((start, _)) = followed.solutions.get(followed.start).cloned() else {
                 return Ok(followed);
             };
-            let events = around_start(curve, &start, first, &[bound], settings)?;
+            let events = match (self.halves.is_some(), starts) {
+                (true, [Some((backward, _)), Some((forward, _))]) => {
+                    let special = curve.special_at_border([&backward.reversed(), &forward], false, 0.0);
+                    let event = |(kind, solution)| Event { kind, is_located: false, solution };
+                    Events { found: special.into_iter().map(event).collect(), unlocated: Vec::new() }
+                }
+                (true, _) => Events::default(),
+                (false, _) => {
+                    curve.enter(&start);
+                    around_start(curve, &start, first, &[bound], settings)?
+                }
+            };
             followed.insert_at_start(curve, events);
             return Ok(followed);
         };
@@ -336,6 +371,18 @@ impl Departure {
         let middle = (middle, Origin::Special(SpecialKind::BranchPoint));
         Ok(BothWays::join([backward, forward], Some(middle)))
     }
+}
+
+/// How a branch leaves a start on a border between two pieces of the field, backward and forward; `None` where the start is on none.
+fn leaving_border(curve: &mut EquilibriumCurve<'_>, start: &[f64]) -> Option<[Option<HalfBranch>; 2]> {
+    let (cells, true) = curve.piece_at(start)? else { return None };
+    let mut halves = curve.half_branches(start, &cells);
+    let rate = |half: &HalfBranch| half.tangent.last().copied().unwrap_or(0.0);
+    halves.sort_by(|one, other| rate(one).total_cmp(&rate(other)));
+    // Of several branches the one on which the parameter changes fastest.
+    let forward = halves.pop()?;
+    let backward = if halves.is_empty() { None } else { Some(halves.swap_remove(0)) };
+    Some([backward, Some(forward)])
 }
 
 /// Has a closed branch end at the branch point from which it started, which it finds again, and not the distance of the

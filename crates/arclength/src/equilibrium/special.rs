@@ -46,6 +46,9 @@ pub enum SpecialPoint {
         value: f64,
         /// Half of the length of the bracket.
         location_error: f64,
+        /// Whether it is a border between two pieces of the field: what changes jumps there, and there is no normal form.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        at_border: bool,
     },
 }
 

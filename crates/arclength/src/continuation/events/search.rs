@@ -30,6 +30,12 @@ impl EventSearch {
         self.first
     }
 
+    /// Forgets the step before: the curve goes on in another piece.
+    pub(crate) fn restart(&mut self) {
+        self.memory = Memory::default();
+        self.known = None;
+    }
+
     /// Special points between two consecutive solutions; those at the start itself belong to
     /// [`around_start`](super::around_start).
     ///

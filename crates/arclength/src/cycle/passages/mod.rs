@@ -266,19 +266,22 @@ impl<'a> Along<'a> {
 }
 
 impl Along<'_> {
-    /// How far the function at a place gets beyond zero at its turn next to where it is touched, between two of the times at which the
-    /// course changes.
-    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> f64 {
+    /// How far the function at a place gets beyond zero next to where it is touched, between two of the times at which the course
+    /// changes, and whether it turns there: otherwise it is largest at one of these times.
+    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> (f64, bool) {
         let from = jumps.iter().copied().filter(|time| *time <= touch.time).fold(0.0, f64::max);
         let until = jumps.iter().copied().filter(|time| *time > touch.time).fold(1.0, f64::min);
         let gate = Gate { place: touch.place, upwards: touch.side < 0.0, events: Vec::new() };
         let switches = self.pieces.thresholds().len();
         // The course may be one of other values of the parameters.
         let now: Vec<(usize, f64)> = self.parameters.iter().copied().enumerate().collect();
+        // The state before the jump at the end belongs to this part, too.
+        let interval = self.cycle.mesh.partition_point(|point| *point < until).saturating_sub(1);
+        let end = (until < 1.0).then_some((until, interval));
         let value =
-            |time: f64| -touch.side * gate.value(self.field, course, &self.state(time, None), &now, switches);
-        let times: Vec<f64> =
-            self.samples.iter().copied().filter(|time| from <= *time && *time < until).collect();
+            |time: f64| -touch.side * gate.value(self.field, course, &self.state(time, end), &now, switches);
+        let inside = self.samples.iter().copied().filter(|time| from <= *time && *time < until);
+        let times: Vec<f64> = inside.chain(end.map(|(until, _)| until)).collect();
         let values: Vec<f64> = times.iter().map(|time| value(*time)).collect();
         let mut top = times.partition_point(|time| *time < touch.time).min(times.len().saturating_sub(1));
         // Uphill from sample to sample, then between the neighbours of the highest.
@@ -290,7 +293,11 @@ impl Along<'_> {
         {
             top = higher;
         }
-        let Some(middle) = times.get(top) else { return f64::NAN };
+        let Some(middle) = times.get(top) else { return (f64::NAN, false) };
+        let is_first = top == 0 && from > 0.0;
+        if is_first || end.is_some_and(|(until, _)| until == *middle) {
+            return (values[top], false);
+        }
         let mut low = if top == 0 { *middle } else { times[top - 1] };
         let mut high = times.get(top + 1).copied().unwrap_or(*middle);
         for _ in 0..HALVINGS {
@@ -301,7 +308,7 @@ impl Along<'_> {
                 high = other;
             }
         }
-        value(0.5 * (low + high))
+        (value(0.5 * (low + high)), true)
     }
 }
 

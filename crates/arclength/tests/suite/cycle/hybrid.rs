@@ -384,3 +384,110 @@ fn a_block_on_a_belt_sticks_and_slips() {
         );
     }
 }
+
+/// A drug that dies out with the rate .23 and of which .81 is given, and a hundredth is lost, whenever the clock has come to 1.39.
+struct Doses;
+
+impl VectorField for Doses {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into(), "clock".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], slope: &mut [T]) {
+        slope[0] = x[0] * -0.23;
+        slope[1] = p[0];
+    }
+    fn events(&self) -> Vec<Direction> {
+        vec![Direction::Rising]
+    }
+    fn evaluate_event<T: Scalar>(&self, _event: usize, x: &[T], _p: &[T], values: &mut [T]) {
+        values[0] = x[1] - 1.39;
+        if let [_, next @ ..] = values
+            && !next.is_empty()
+        {
+            next[0] = x[0] * 0.99 + 0.81;
+            next[1] = T::zero();
+        }
+    }
+}
+
+/// Wherever the unit time begins, and whatever cycles are asked for before.
+#[test]
+fn doses_have_their_closed_form_up_to_the_last_cycle() {
+    let dosed = |p: f64| {
+        let period = 1.39 / p;
+        (period, 0.81 / (1.0 - 0.99 * (-0.23 * period).exp()))
+    };
+    let (period, most) = dosed(1.0);
+    let asked = [&[][..], &[0.8, 1.1, 1.4, 1.7], &[1.9], &[1.95, 1.99]];
+    // The unit time begins this long before a dose.
+    for (at, left) in asked.into_iter().flat_map(|at| [0.12, 0.7, 1.3].map(|left| (at, left))) {
+        let start = orbit(period, &[left], |time| {
+            let since = if time < left { time + period - left } else { time - left };
+            vec![most * (-0.23 * since).exp(), since]
+        });
+        let found = branch(&Doses, start, &[1.0], "p", [0.5, 2.0], at);
+        let ends = [found.points.first().unwrap(), found.points.last().unwrap()];
+        assert_eq!(ends.map(|point| point.value), [0.5, 2.0]);
+        for point in at.iter().map(|value| requested(&found, *value)).chain(ends) {
+            let (period, most) = dosed(point.value);
+            assert!((point.period / period - 1.0).abs() < 1e-9, "{at:?} {} {}", point.value, point.period);
+            assert!((point.max[0] / most - 1.0).abs() < 1e-7, "{at:?} {} {}", point.value, point.max[0]);
+            assert_eq!(point.stable, Some(true));
+        }
+    }
+}
+
+/// Two cells, each of which gives the other .1 where it fires: `x' = 1.5 p - x`, `y' = 1.6 - y`, both reset at 1.
+struct Pair;
+
+impl VectorField for Pair {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into(), "y".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["p".into()]
+    }
+    fn evaluate<T: Scalar>(&self, x: &[T], p: &[T], slope: &mut [T]) {
+        slope[0] = p[0] * 1.5 - x[0];
+        slope[1] = -x[1] + 1.6;
+    }
+    fn events(&self) -> Vec<Direction> {
+        vec![Direction::Rising; 2]
+    }
+    fn evaluate_event<T: Scalar>(&self, event: usize, x: &[T], _p: &[T], values: &mut [T]) {
+        values[0] = x[event] - 1.0;
+        if let [_, next @ ..] = values
+            && !next.is_empty()
+        {
+            next[event] = T::zero();
+            next[1 - event] = x[1 - event] + 0.1;
+        }
+    }
+}
+
+/// The cells fire together as long as y is between .9 and 1 when x fires: nothing is touched at either end, and what is told last is
+/// a cycle.
+#[test]
+fn two_events_that_part_end_a_branch_and_say_so() {
+    let period = |p: f64| ((1.5 * p - 0.1) / (1.5 * p - 1.0)).ln();
+    let p: f64 = 1.1;
+    let half = 0.5 * period(p);
+    let start = orbit(period(p), &[half], |time| {
+        let since = if time < half { time + half } else { time - half };
+        vec![1.5 * p + (0.1 - 1.5 * p) * (-since).exp(), 1.6 - 1.6 * (-since).exp()]
+    });
+    let found = branch(&Pair, start, &[p], "p", [0.7, 1.5], &[1.05, 1.1]);
+    let ends = [found.points.first().unwrap(), found.points.last().unwrap()];
+    let expected = [0.9625 / 0.9375, 0.95625 / 0.84375];
+    for ((stop, point), expected) in found.stops.iter().zip(ends).zip(expected) {
+        let (of, value, _) = grazing(stop);
+        assert!(matches!(of, Grazed::Together(_)), "{of:?}");
+        assert!((value - expected).abs() < 1e-5, "{value} instead of {expected}");
+        assert!((point.value - expected).abs() < 1e-5, "{} instead of {expected}", point.value);
+        assert!((point.period / period(point.value) - 1.0).abs() < 1e-7, "{}", point.period);
+        assert!((point.max[0] - 1.0).abs() < 1e-7 && (point.min[0] - 0.1).abs() < 1e-7);
+    }
+}
