@@ -113,11 +113,6 @@ pub trait Curve: Equations {
     /// or by a parameter, was factorised.
     fn measure(&mut self, _solution: &mut Solution<Self::Point>) {}
 
-    /// Whether [`measure`](Self::measure) could tell the errors of a solution.
-    fn is_measured(&self, _point: &Self::Point) -> bool {
-        true
-    }
-
     /// Whether the discretisation resolves what was found out about a solution. If not, [`adapt`](Self::adapt) makes it finer
     /// and the solution is found once more.
     fn resolves(&mut self, _point: &Self::Point) -> bool {

@@ -6,9 +6,7 @@ use super::corrector::between;
 use super::curve::{Curve, Ending, EventOf};
 use super::events::{EventSearch, Events, Unlocated};
 use super::metric::along;
-use super::requested::{
-    Between, Origin, Purpose, Target, first_exit, fix_last, insert_targets, insert_values,
-};
+use super::requested::{Between, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
 use super::stop::Stop;
@@ -329,7 +327,7 @@ impl<C: Curve> Run<'_, '_, C> {
         }
         let near = between.last().map_or(current, |(solution, _)| solution).clone();
         let from_end = bounds[bound].from_end;
-        match fix_last(self.curve, &near, &beyond, from_end, value, &self.request.settings) {
+        match fix(self.curve, &near, &beyond, from_end, value, &self.request.settings) {
             Ok(end) => {
                 // A value asked for at the end of the range has been found already.
                 let is_known = between.last().is_some_and(|(last, origin)| {

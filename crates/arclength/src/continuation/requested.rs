@@ -2,7 +2,7 @@
 
 use super::bracket::{locate, locate_value};
 use super::corrector::{between as solution_between, correct, finish_measured};
-use super::curve::{Adaptation, Curve};
+use super::curve::Curve;
 use super::metric::along;
 use super::settings::Settings;
 use super::solution::{Bound, Solution, interpolate};
@@ -57,8 +57,6 @@ impl<P> fmt::Debug for Target<'_, P> {
 
 /// Part of a step to which the place of a parameter value is narrowed down for a second attempt.
 const CLOSE: f64 = 1e-3;
-/// Times that the discretisation is adapted to a solution at the end of a range, where the one of the step does not serve.
-const MOST_ADAPTATIONS: usize = 12;
 /// Part of a step to which the place of a target is narrowed down, unless the monitor has its value to this part of itself before.
 const TARGET_BRACKET: f64 = 1e-13;
 const TARGET_VALUE: f64 = 1e-11;
@@ -281,52 +279,6 @@ pub(crate) fn fix<C: Curve>(
         return Err(Error::NotFound { sought: "solution at the value asked for", cause });
     }
     finish_measured(curve, unknown, &before.tangent)
-}
-
-/// As [`fix`], from solutions that are nearer, and at last with the discretisation adapted to it: for the last one of a curve.
-pub(super) fn fix_last<C: Curve>(
-    curve: &mut C,
-    before: &Solution<C::Point>,
-    after: &Solution<C::Point>,
-    from_end: usize,
-    value: f64,
-    settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
-    let found = fix(curve, before, after, from_end, value, settings)
-        .or_else(|error| fix_closely(curve, before, after, from_end, value, settings)?.ok_or(error));
-    match found {
-        Ok(found) if curve.is_measured(&found.point) => Ok(found),
-        Err(error) if !matches!(error, Error::NotFound { .. }) => Err(error),
-        found => match fix_adapted(curve, before, after, from_end, value, settings) {
-            Ok(adapted) if curve.is_measured(&adapted.point) || found.is_err() => Ok(adapted),
-            _ => found,
-        },
-    }
-}
-
-/// As [`fix`], with the discretisation adapted to the solution.
-fn fix_adapted<C: Curve>(
-    curve: &mut C,
-    before: &Solution<C::Point>,
-    after: &Solution<C::Point>,
-    from_end: usize,
-    value: f64,
-    settings: &Settings,
-) -> Result<Solution<C::Point>, Error> {
-    let (mut unknown, mut tangent) = (after.unknown.clone(), before.tangent.clone());
-    for _ in 0..MOST_ADAPTATIONS {
-        let index = unknown.len() - from_end;
-        unknown[index] = value;
-        let mut border = vec![0.0; unknown.len()];
-        border[index] = 1.0;
-        correct(curve, &mut unknown, &border, settings)
-            .map_err(|cause| Error::NotFound { sought: "solution at the value asked for", cause })?;
-        unknown[index] = value;
-        if curve.adapt(&mut unknown, &mut [&mut tangent])? == Adaptation::Unchanged {
-            break;
-        }
-    }
-    finish_measured(curve, unknown, &tangent)
 }
 
 /// As [`fix`], from a start for which the place of the value was narrowed down before: next to a turning point of the unknown

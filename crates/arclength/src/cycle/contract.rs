@@ -175,10 +175,6 @@ impl Curve for CycleCurve<'_> {
         point.error_estimate = if point.is_neutral { across } else { fixed };
     }
 
-    fn is_measured(&self, point: &CycleInspection) -> bool {
-        point.error_estimate < NOTHING_KNOWN
-    }
-
     fn resolves(&mut self, point: &CycleInspection) -> bool {
         let floquet = &point.floquet;
         let tolerance = self.resolution.tolerance;
