@@ -155,11 +155,6 @@ impl Model {
         self.time_dependence().is_none()
     }
 
-    /// Whether the field contains the time, be that frozen or not: whether [`evaluate_at`](Self::evaluate_at) depends on it.
-    pub fn contains_time(&self) -> bool {
-        self.time.is_some()
-    }
-
     /// The first place where the field uses the time `t`, unless that is frozen.
     pub fn time_dependence(&self) -> Option<&Place> {
         self.time.as_ref().filter(|_| self.frozen.is_none())

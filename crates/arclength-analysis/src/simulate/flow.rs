@@ -215,10 +215,6 @@ impl System for Flow<'_> {
         self.model.states().len()
     }
 
-    fn is_autonomous(&self) -> bool {
-        !self.model.contains_time()
-    }
-
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]) {
         if self.slide.is_some() {
             derivative.copy_from_slice(&self.velocity(time, state));

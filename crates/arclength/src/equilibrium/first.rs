@@ -121,10 +121,6 @@ impl System for Flow<'_> {
         self.dimension
     }
 
-    fn is_autonomous(&self) -> bool {
-        true
-    }
-
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         self.field.evaluate(state, self.parameters, derivative);
     }

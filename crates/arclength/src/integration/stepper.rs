@@ -41,7 +41,7 @@ pub struct Statistics {
 
 /// What is read on the clock of an integration, and what time that is.
 ///
-/// Where the right-hand side contains the time, the clock tells the time. Where it does not, no time is better than another, and the
+/// It tells the time, but for systems that have a clock of their own: no time is better than another to them, and the
 /// clock begins anew at every step: steps are told apart however late it is, and the time is the sum of all steps, of which nothing is
 /// lost to rounding.
 #[derive(Clone, Copy, Debug, Default)]
@@ -145,7 +145,7 @@ impl<S: System> Stepper<S> {
         let dimension = system.dimension();
         settings.check(dimension)?;
         let mut stepper = Self {
-            clock: Clock { begins_anew: system.is_autonomous(), ..Clock::default() },
+            clock: Clock { begins_anew: system.has_own_clock(), ..Clock::default() },
             system,
             settings: settings.clone(),
             dimension,
@@ -368,7 +368,7 @@ impl<S: System> Stepper<S> {
         STEP_RESOLUTION * if self.clock.begins_anew { self.longest_step } else { self.time.abs() }
     }
 
-    /// Lets the clock of an autonomous system begin anew at the present time.
+    /// Lets the clock of a system that has its own begin anew at the present time.
     fn wind_clock(&mut self) {
         if self.clock.begins_anew && self.time != 0.0 {
             let elapsed = self.time;

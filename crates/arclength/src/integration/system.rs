@@ -13,9 +13,9 @@ pub trait System {
     /// Writes `f(time, state)` into `derivative`; outside its domain, numbers that are not finite.
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]);
 
-    /// Whether the right-hand side is the same at all times. Its steps are then told apart from each other only, not from the time,
-    /// however late that is.
-    fn is_autonomous(&self) -> bool {
+    /// Whether steps are told apart from each other only, not from the time, however late that is: for right-hand sides that are the
+    /// same at all times and turn within less than what rounding makes of the time, as slip does that passes close by zero.
+    fn has_own_clock(&self) -> bool {
         false
     }
 
@@ -87,8 +87,8 @@ impl<S: System> System for &mut S {
     fn evaluate(&mut self, time: f64, state: &[f64], derivative: &mut [f64]) {
         (**self).evaluate(time, state, derivative);
     }
-    fn is_autonomous(&self) -> bool {
-        (**self).is_autonomous()
+    fn has_own_clock(&self) -> bool {
+        (**self).has_own_clock()
     }
     fn jacobian(&mut self, time: f64, state: &[f64], jacobian: &mut [f64]) {
         (**self).jacobian(time, state, jacobian);
@@ -124,7 +124,7 @@ pub struct AutonomousClosure<F> {
     function: F,
 }
 
-/// The autonomous system of `dimension` equations whose right-hand side is `function(state, derivative)`.
+/// The autonomous system of `dimension` equations whose right-hand side is `function(state, derivative)`, with a clock of its own.
 ///
 /// ```
 /// use arclength::integration::{Integrator, from_rates};
@@ -146,7 +146,7 @@ impl<F: FnMut(&[f64], &mut [f64])> System for AutonomousClosure<F> {
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         (self.function)(state, derivative);
     }
-    fn is_autonomous(&self) -> bool {
+    fn has_own_clock(&self) -> bool {
         true
     }
 }
@@ -172,9 +172,6 @@ impl<F: VectorField> System for Autonomous<'_, F> {
     #[inline]
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         self.field.evaluate(state, self.parameters, derivative);
-    }
-    fn is_autonomous(&self) -> bool {
-        true
     }
     fn jacobian(&mut self, _time: f64, state: &[f64], jacobian: &mut [f64]) {
         let parameters: Vec<JacobianColumns> = self.parameters.iter().map(|p| Dual::constant(*p)).collect();

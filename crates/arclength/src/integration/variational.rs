@@ -40,10 +40,6 @@ impl<F: VectorField> System for VariationalEquations<F> {
         self.dimension * (1 + self.columns)
     }
 
-    fn is_autonomous(&self) -> bool {
-        true
-    }
-
     fn evaluate(&mut self, _time: f64, state: &[f64], derivative: &mut [f64]) {
         let n = self.dimension;
         // Without columns the field itself is still evaluated once.

@@ -358,7 +358,7 @@ impl System for &mut Variations<'_> {
         self.state.len() * (1 + self.directions)
     }
 
-    fn is_autonomous(&self) -> bool {
+    fn has_own_clock(&self) -> bool {
         true
     }
 
