@@ -105,7 +105,11 @@ fn files_that_cannot_be_started_from() {
     );
     folder.fails("locus --from equilibria.json:EP1 --in p1=0:1,p2=1:4", 2, &["EP1", "LP", "HB", "BP"]);
     folder.fails("locus --from equilibria.json:HB1 --in p1=0:1", 2, &["--in p1:", "this is one", "two"]);
-    folder.fails("locus --from equilibria.json:HB1 --in p1=0:1,p1=0:1", 2, &["`p1` and `p1` cannot vary together"]);
+    folder.fails(
+        "locus --from equilibria.json:HB1 --in p1=0:1,p1=0:1",
+        2,
+        &["`p1` and `p1` cannot vary together"],
+    );
     folder.fails("locus --from equilibria.json:HB1 --in p1=0:1,x=0:1", 2, &["--in x", "p1, p2, p3, p4"]);
     folder.fails("simulate --from equilibria.json:XX1 --duration 1", 2, &["XX1", "HB1"]);
     folder.fails(

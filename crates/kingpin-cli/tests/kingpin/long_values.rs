@@ -65,6 +65,6 @@ fn of_options_and_result_files() {
     is_refused_briefly(
         &folder,
         &["cycles", "--from", &label, "--along", "v=1:2"],
-        &["it is a qqq", "allowed"],
+        &["it is of qqq", "allowed"],
     );
 }

@@ -35,12 +35,9 @@ fn type_in(document: &str) -> usize {
     commands.len()
 }
 
-/// What is the same everywhere. How many kicks of a tumbling wheel come back hangs on the last digit of the damper, and so on the sines and
-/// cosines of the system: elsewhere than where the documents were written they are left out.
+/// What is the same everywhere. How many kicks of a tumbling wheel come back hangs on the last digit of the damper.
 fn comparable(text: &str) -> Vec<String> {
-    let here = cfg!(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"));
-    let lines = text.trim_end().lines().filter(|line| here || !line.contains("random kicks"));
-    lines.map(String::from).collect()
+    text.trim_end().lines().filter(|line| !line.contains("random kicks")).map(String::from).collect()
 }
 
 #[test]

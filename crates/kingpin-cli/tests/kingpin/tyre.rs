@@ -171,7 +171,7 @@ fn what_is_missing_or_not_taken_is_said() {
     fails(&format!("hopf {SOFT} -s k=inf --along c_q=0:1"), &["`c_q` cannot vary", "finite k_q"]);
     fails(&format!("simulate {SOFT} -s k=inf --duration 1 --perturb q=0.1"), &["`q`", "psi, Omega, y_t"]);
     let possible =
-        ["tyre = linear", "with a tyre there are", "cycles", "simulations", "kicked wheels", "tyre = rigid"];
+        ["tyre = linear", "with a tyre there are", "cycles", "simulations", "safe kicks", "tyre = rigid"];
     for command in [
         "basin --x psi=-1:1:3 --y Omega=-1:1:3 --contact sliding",
         "safe-kick --contact sliding",
