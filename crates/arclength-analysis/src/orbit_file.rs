@@ -13,8 +13,6 @@ const TIME: &str = "t";
 const MOST_PERIODS: usize = 6;
 /// Agreement of two states, relative to the size of the orbit, from which on they are the same.
 const SAME_STATE: f64 = 1e-4;
-/// Samples of the orbit that are compared.
-const COMPARED: usize = 100;
 
 /// Reads an orbit of a field with these states from comma-separated values.
 ///
@@ -131,7 +129,7 @@ impl File<'_> {
                 None => error.into(),
             }
         })?;
-        match (2..=MOST_PERIODS).rev().find(|periods| repeats(&orbit, *periods, &sizes)) {
+        match (2..=MOST_PERIODS).rev().find(|periods| orbit.repeats(*periods, SAME_STATE)) {
             Some(periods) => {
                 let problem =
                     format!("the rows reach over {periods} periods; try: cut the file to exactly one period");
@@ -157,17 +155,4 @@ fn sizes(samples: &[Vec<f64>]) -> Vec<f64> {
         high - low
     };
     (0..samples[0].len()).map(size).collect()
-}
-
-/// Whether an orbit is a shorter one, passed several times.
-fn repeats(orbit: &Orbit, periods: usize, sizes: &[f64]) -> bool {
-    let shift = orbit.period / periods as f64;
-    orbit.sample(COMPARED).into_iter().all(|(time, state)| {
-        let later = orbit.state_at(time + shift);
-        state
-            .iter()
-            .zip(&later)
-            .zip(sizes)
-            .all(|((one, other), size)| (one - other).abs() <= SAME_STATE * size)
-    })
 }

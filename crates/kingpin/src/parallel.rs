@@ -4,6 +4,7 @@
 //! failure it meets first, these loops return that of the first thing in order, however many threads there are.
 
 use rayon::prelude::*;
+use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -13,9 +14,8 @@ use std::sync::{Mutex, PoisonError};
 /// assert_eq!(kingpin::parallel::map(&[1, 2, 3], |number| number * number), [1, 4, 9]);
 /// ```
 pub fn map<I: Sync, T: Send>(items: &[I], of: impl Fn(&I) -> T + Sync) -> Vec<T> {
-    let slots: Vec<Mutex<Option<T>>> = empty(items.len());
-    for_each(items.len(), &|index| keep(&slots[index], of(&items[index])));
-    slots.into_iter().filter_map(taken).collect()
+    let Ok(all) = try_map(items, |item| Ok::<_, Infallible>(of(item)));
+    all
 }
 
 /// Returns what becomes of every item, in their order, or the failure of the first item that fails. What comes after a failure
@@ -44,7 +44,7 @@ pub fn try_map_indices<T: Send, E: Send>(
     count: usize,
     of: impl Fn(usize) -> Result<T, E> + Sync,
 ) -> Result<Vec<T>, E> {
-    let slots: Vec<Mutex<Option<Result<T, E>>>> = empty(count);
+    let slots: Vec<Mutex<Option<Result<T, E>>>> = (0..count).map(|_| Mutex::new(None)).collect();
     let first_failure = AtomicUsize::new(usize::MAX);
     for_each(count, &|index| {
         if index > first_failure.load(Ordering::Relaxed) {
@@ -54,9 +54,9 @@ pub fn try_map_indices<T: Send, E: Send>(
         if outcome.is_err() {
             first_failure.fetch_min(index, Ordering::Relaxed);
         }
-        keep(&slots[index], outcome);
+        *unlocked(slots[index].lock()) = Some(outcome);
     });
-    slots.into_iter().filter_map(taken).collect()
+    slots.into_iter().filter_map(|slot| unlocked(slot.into_inner())).collect()
 }
 
 /// Changes every item, or returns the failure of the first one, in their order, that fails.
@@ -68,7 +68,11 @@ pub(crate) fn try_change<I: Send, E: Send>(
     change: impl Fn(&mut I) -> Result<(), E> + Sync,
 ) -> Result<(), E> {
     let items: Vec<Mutex<&mut I>> = items.iter_mut().map(Mutex::new).collect();
-    try_map(&items, |item| change(&mut item.lock().unwrap_or_else(PoisonError::into_inner))).map(drop)
+    try_map(&items, |item| {
+        let mut item = unlocked(item.lock());
+        change(&mut item)
+    })
+    .map(drop)
 }
 
 fn for_each(count: usize, action: &(dyn Fn(usize) + Sync)) {
@@ -76,17 +80,9 @@ fn for_each(count: usize, action: &(dyn Fn(usize) + Sync)) {
     (0..count).into_par_iter().with_max_len(1).for_each(action);
 }
 
-fn empty<T>(count: usize) -> Vec<Mutex<Option<T>>> {
-    (0..count).map(|_| Mutex::new(None)).collect()
-}
-
-// A slot is poisoned by a panic in it only, which is on its way up already.
-fn keep<T>(slot: &Mutex<Option<T>>, outcome: T) {
-    *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(outcome);
-}
-
-fn taken<T>(slot: Mutex<Option<T>>) -> Option<T> {
-    slot.into_inner().unwrap_or_else(PoisonError::into_inner)
+// A lock is poisoned by a panic under it only, which is on its way up already.
+fn unlocked<T>(lock: Result<T, PoisonError<T>>) -> T {
+    lock.unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

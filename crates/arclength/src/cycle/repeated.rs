@@ -5,8 +5,10 @@
 //! multipliers are powers, and no period doubling can be located on its branch.
 
 use super::orbit::Orbit;
+use super::sizes::extent;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::mesh::SAME_TIME;
+use crate::collocation::polynomials::Polynomials;
 
 /// Numbers of turns that are looked for; others are their products.
 const TURNS: [usize; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
@@ -19,38 +21,30 @@ const RESTING: f64 = 1e-5;
 impl Orbit {
     /// The orbit of the first of several turns that differ by less than `closeness` of the size of each state; `None` where it has one.
     pub(super) fn traversed_once(&self, closeness: f64) -> Option<Self> {
-        let count = TURNS.into_iter().find(|&count| self.largest_difference(count) < closeness)?;
+        let count = TURNS.into_iter().find(|&count| self.repeats(count, closeness))?;
         let part = self.first_of(count);
         Some(part.traversed_once(closeness).unwrap_or(part))
     }
 
-    /// How far the states of parts of equal length are from those of the first one at most, by the size of each state.
-    fn largest_difference(&self, parts: usize) -> f64 {
+    /// Whether the states are the same again after one of several parts of equal length, within `closeness` of the size of each.
+    pub fn repeats(&self, parts: usize, closeness: f64) -> bool {
         let gauss = Gauss::of(self.degree);
-        let sizes: Vec<f64> = (0..self.dimension)
+        let allowed: Vec<f64> = (0..self.dimension)
             .map(|component| {
-                let values = self.states.iter().skip(component).step_by(self.dimension);
-                let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
-                    (low.min(*value), high.max(*value))
-                });
-                (high - low).max(RESTING * high.abs().max(low.abs()))
+                let (low, high) = extent(&self.states, self.dimension, component);
+                closeness * (high - low).max(RESTING * high.abs().max(low.abs()))
             })
             .collect();
-        let mut largest = 0.0_f64;
-        for sample in 0..SAMPLES {
-            let place = (sample as f64 + FIRST_SAMPLE) / SAMPLES as f64;
-            let first = self.state_with(&gauss, place / parts as f64);
-            for part in 1..parts {
-                let state = self.state_with(&gauss, (part as f64 + place) / parts as f64);
-                for ((a, b), size) in first.iter().zip(&state).zip(&sizes) {
-                    // A state that rests at zero has none.
-                    if *size > 0.0 {
-                        largest = largest.max((a - b).abs() / size);
-                    }
-                }
-            }
-        }
-        largest
+        let count = SAMPLES * parts;
+        (0..count).all(|sample| {
+            let [state, later] = [sample, (sample + SAMPLES) % count]
+                .map(|sample| self.state_with(&gauss, (sample as f64 + FIRST_SAMPLE) / count as f64));
+            state
+                .iter()
+                .zip(&later)
+                .zip(&allowed)
+                .all(|((one, other), allowed)| (one - other).abs() <= *allowed)
+        })
     }
 
     /// The first of parts of equal length.
@@ -59,14 +53,8 @@ impl Orbit {
         let end = 1.0 / parts as f64;
         let mut mesh: Vec<f64> = self.mesh.iter().copied().filter(|time| *time < end - SAME_TIME).collect();
         mesh.push(end);
-        let states = mesh
-            .windows(2)
-            .flat_map(|pair| {
-                let inner = gauss.points.iter().map(|place| pair[0] + place * (pair[1] - pair[0]));
-                std::iter::once(pair[0]).chain(inner).collect::<Vec<f64>>()
-            })
-            .flat_map(|time| self.state_with(&gauss, time))
-            .collect();
+        let nodes = Polynomials { mesh: &mesh, gauss: &gauss, n: 0, states: &[] }.node_times();
+        let states = nodes.into_iter().flat_map(|time| self.state_with(&gauss, time)).collect();
         mesh.iter_mut().for_each(|time| *time *= parts as f64);
         if let Some(last) = mesh.last_mut() {
             *last = 1.0;

@@ -23,6 +23,7 @@
 //! ```
 
 mod chebyshev;
+mod clock;
 mod equal_steps;
 mod error;
 mod event;

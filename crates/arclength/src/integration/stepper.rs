@@ -1,5 +1,6 @@
 //! One step at a time: the Runge-Kutta stages, the error estimate, step control and dense output; or an implicit step.
 
+use super::clock::Clock;
 use super::integrator::Method;
 use super::radau::{Origin, Radau};
 use super::stiffness::StiffnessWatch;
@@ -37,52 +38,6 @@ pub struct Statistics {
     pub rejected_steps: usize,
     /// Evaluations of the right-hand side.
     pub evaluations: usize,
-}
-
-/// What is read on the clock of an integration, and what time that is.
-///
-/// It tells the time, but for systems that have a clock of their own: no time is better than another to them, and the
-/// clock begins anew at every step: steps are told apart however late it is, and the time is the sum of all steps, of which nothing is
-/// lost to rounding.
-#[derive(Clone, Copy, Debug, Default)]
-struct Clock {
-    begins_anew: bool,
-    /// The time at which the clock reads zero, and what of it rounding took.
-    origin: f64,
-    rest: f64,
-    /// The time at which the integration ends.
-    finish: f64,
-}
-
-impl Clock {
-    /// Sets the clock for an integration between two times, and reads it at the first.
-    fn start(&mut self, time: f64, finish: f64) -> f64 {
-        *self = Self { origin: if self.begins_anew { time } else { 0.0 }, rest: 0.0, finish, ..*self };
-        if self.begins_anew { 0.0 } else { time }
-    }
-
-    fn absolute(&self, reading: f64) -> f64 {
-        self.origin + (self.rest + reading)
-    }
-
-    fn reading(&self, time: f64) -> f64 {
-        (time - self.origin) - self.rest
-    }
-
-    /// The reading at the end of the integration.
-    fn remaining(&self) -> f64 {
-        self.reading(self.finish)
-    }
-
-    /// Lets it begin anew after some time.
-    fn advance(&mut self, elapsed: f64) {
-        // The sum of two numbers with what rounding takes from it (Knuth, The Art of Computer Programming 2, 4.2.2, theorem B).
-        let shift = self.rest + elapsed;
-        let sum = self.origin + shift;
-        let part = sum - self.origin;
-        self.rest = (self.origin - (sum - part)) + (shift - part);
-        self.origin = sum;
-    }
 }
 
 /// An integration that is advanced step by step.
@@ -145,7 +100,7 @@ impl<S: System> Stepper<S> {
         let dimension = system.dimension();
         settings.check(dimension)?;
         let mut stepper = Self {
-            clock: Clock { begins_anew: system.has_own_clock(), ..Clock::default() },
+            clock: Clock::new(system.has_own_clock()),
             system,
             settings: settings.clone(),
             dimension,
@@ -221,13 +176,13 @@ impl<S: System> Stepper<S> {
     /// The time at a time on the clock.
     pub(super) fn absolute(&self, on_clock: f64) -> f64 {
         // The end is met to the last bit.
-        if on_clock == self.end { self.clock.finish } else { self.clock.absolute(on_clock) }
+        if on_clock == self.end { self.clock.finish() } else { self.clock.absolute(on_clock) }
     }
 
     /// Start and end of the last step on the clock, and how fine times on it are told apart there at least.
     pub(super) fn last_step_on_clock(&self) -> ([f64; 2], f64) {
         let step = [self.previous_time, self.time];
-        (step, if self.clock.begins_anew { (step[1] - step[0]).abs() } else { 0.0 })
+        (step, if self.clock.begins_anew() { (step[1] - step[0]).abs() } else { 0.0 })
     }
 
     /// State at [`Stepper::time`].
@@ -365,12 +320,12 @@ impl<S: System> Stepper<S> {
     /// The step that is too short to be told apart: from the time, or, where the time does not matter, from the longest step. The
     /// second does not depend on when a motion is looked at, nor on how long it has lasted.
     fn smallest_step(&self) -> f64 {
-        STEP_RESOLUTION * if self.clock.begins_anew { self.longest_step } else { self.time.abs() }
+        STEP_RESOLUTION * if self.clock.begins_anew() { self.longest_step } else { self.time.abs() }
     }
 
     /// Lets the clock of a system that has its own begin anew at the present time.
     fn wind_clock(&mut self) {
-        if self.clock.begins_anew && self.time != 0.0 {
+        if self.clock.begins_anew() && self.time != 0.0 {
             let elapsed = self.time;
             self.clock.advance(elapsed);
             self.previous_time -= elapsed;
@@ -595,7 +550,7 @@ impl<S: System> Stepper<S> {
             return;
         }
         let mut on_clock = self.clock.reading(time);
-        if self.clock.begins_anew {
+        if self.clock.begins_anew() {
             // A time is known to rounding only, which may be more than a whole step: there is nothing to extrapolate.
             let (first, last) = (self.previous_time.min(self.time), self.previous_time.max(self.time));
             let rounding = STEP_RESOLUTION * time.abs();
