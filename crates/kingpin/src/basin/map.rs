@@ -213,6 +213,16 @@ impl<'a> BasinMap<'a> {
         finished: impl Fn(usize) -> bool + Sync,
         on_tile: impl Fn(&Tile) + Sync,
     ) -> Result<Vec<Tile>, SimulationError> {
+        self.run_told_to(control, &finished, &on_tile)
+    }
+
+    /// [`run`](Self::run), compiled once and not for every caller.
+    fn run_told_to(
+        &self,
+        control: &Control<'_>,
+        finished: &dyn Fn(usize) -> bool,
+        on_tile: &(dyn Fn(&Tile) + Sync),
+    ) -> Result<Vec<Tile>, SimulationError> {
         let wanted: Vec<usize> = (0..self.tiles()).filter(|&index| !finished(index)).collect();
         let known = self.tiles() - wanted.len();
         if wanted.is_empty() {

@@ -75,6 +75,16 @@ impl HopfPoint {
         options: &CurveOptions,
         mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
     ) -> Result<HopfCurve, KingpinError> {
+        self.curve_told_to(plane, options, &mut observer)
+    }
+
+    /// [`curve`](Self::curve), compiled once and not for every observer.
+    fn curve_told_to(
+        &self,
+        plane: [Along; 2],
+        options: &CurveOptions,
+        observer: &mut dyn FnMut([f64; 2]) -> ControlFlow<()>,
+    ) -> Result<HopfCurve, KingpinError> {
         let (model, values) = self.wheel.in_plane(plane)?;
         let start = arclength::equilibrium::HopfPoint { parameters: values.to_vec(), ..self.detail.clone() };
         let branch = EquilibriumLocus::of(&model)
@@ -121,6 +131,18 @@ impl Wheel {
         plane: [Along; 2],
         options: &CurveOptions,
         mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
+    ) -> Result<CycleCurve, KingpinError> {
+        self.cycle_curve_told_to(kind, orbit, plane, options, &mut observer)
+    }
+
+    /// [`cycle_curve`](Self::cycle_curve), compiled once and not for every observer.
+    fn cycle_curve_told_to(
+        &self,
+        kind: SpecialKind,
+        orbit: &Orbit,
+        plane: [Along; 2],
+        options: &CurveOptions,
+        observer: &mut dyn FnMut([f64; 2]) -> ControlFlow<()>,
     ) -> Result<CycleCurve, KingpinError> {
         let (model, values) = self.in_plane(plane)?;
         model.check_forwards(orbit, &values)?;

@@ -119,6 +119,16 @@ impl HopfPoint {
         options: &CycleOptions,
         mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
+        self.cycles_told_to(along, options, &mut observer)
+    }
+
+    /// [`cycles`](Self::cycles), compiled once and not for every observer.
+    fn cycles_told_to(
+        &self,
+        along: Along,
+        options: &CycleOptions,
+        observer: &mut dyn FnMut(&CyclePoint) -> ControlFlow<()>,
+    ) -> Result<WheelCycles, KingpinError> {
         let width = along.range().end() - along.range().start();
         let uniform = self.wheel.motion_in(&self.state).forces()?.friction_ratio_max().unwrap_or(f64::NAN);
         let mut options = options.clone();
@@ -182,6 +192,17 @@ impl Wheel {
         along: Along,
         options: &CycleOptions,
         mut observer: impl FnMut(&CyclePoint) -> ControlFlow<()>,
+    ) -> Result<WheelCycles, KingpinError> {
+        self.cycles_told_to(start, along, options, &mut observer)
+    }
+
+    /// [`cycles_from`](Self::cycles_from), compiled once and not for every observer.
+    fn cycles_told_to(
+        &self,
+        start: CycleStart,
+        along: Along,
+        options: &CycleOptions,
+        observer: &mut dyn FnMut(&CyclePoint) -> ControlFlow<()>,
     ) -> Result<WheelCycles, KingpinError> {
         let value = self.get(along.key());
         if !along.contains(value) {

@@ -162,6 +162,16 @@ impl Wheel {
         settings: Settings,
         mut observer: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<MotionBranch, KingpinError> {
+        self.motion_branch_told_to(along, settings, &mut observer)
+    }
+
+    /// [`motion_branch`](Self::motion_branch), compiled once and not for every observer.
+    fn motion_branch_told_to(
+        &self,
+        along: Along,
+        settings: Settings,
+        observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<MotionBranch, KingpinError> {
         let mut first_error = None;
         let key = along.followed();
         for candidate in along.candidates(self) {
