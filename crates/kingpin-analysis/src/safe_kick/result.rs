@@ -320,7 +320,7 @@ impl Report for SafeKickResult {
         if ends_in(Fate::Irregular) {
             writeln!(
                 out,
-                "\nirregular swinging lasted to the end, ten times {} s: whether for ever is undecided",
+                "\nirregular swinging lasted to the end, up to ten times {} s: whether for ever is undecided",
                 readable(self.duration)
             )?;
         }

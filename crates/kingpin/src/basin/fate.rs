@@ -46,7 +46,7 @@ pub enum Fate {
     /// It grows beyond fifty times the reference speed.
     Escape,
     /// The caster swings to and fro irregularly, with a size that has no trend, to the end of the time it was followed, ten times the
-    /// duration: whether for ever or as a long transient is undecided.
+    /// duration, or once where small motions grow, so that it cannot return: whether for ever or as a long transient is undecided.
     Irregular,
     /// It comes to where the equations cease to hold, `V1 = 0` with a tyre and `psi = +-pi/2` with `k_u = inf`: what becomes of it
     /// is undecided.

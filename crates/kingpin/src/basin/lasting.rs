@@ -126,7 +126,8 @@ impl<'a> Lasting<'a> {
         Ok(Seen::Swings)
     }
 
-    /// Follows a motion to the end of the patience.
+    /// Follows a motion to the end of the patience; where small motions grow, one that swings irregularly only to the end of a
+    /// duration: it cannot return, and no time of following tells whether it will settle.
     ///
     /// # Errors
     /// As [`follow`](Self::follow).
@@ -137,11 +138,25 @@ impl<'a> Lasting<'a> {
         control: &Control<'_>,
     ) -> Result<Fate, SimulationError> {
         let until = PATIENCE * watch.duration();
+        while target.attracts() == Some(false) && self.time < until {
+            let next = (self.time + watch.duration()).min(until);
+            if let Seen::Ends(fate) = self.follow(next, target, &mut watch, control)? {
+                return Ok(fate);
+            }
+            if self.is_irregular_for_good(target) {
+                return Ok(Fate::Irregular);
+            }
+        }
         match self.follow(until, target, &mut watch, control)? {
             Seen::Ends(fate) => Ok(fate),
             Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Irregular),
             Seen::Swings => Ok(Fate::Undecided),
         }
+    }
+
+    /// Whether the motion swings irregularly and cannot return.
+    pub(super) fn is_irregular_for_good(&self, target: &Target) -> bool {
+        target.attracts() == Some(false) && self.maxima.is_irregular()
     }
 
     /// Whether it comes back to the maxima of its cycle, pushed outwards and inwards.

@@ -303,8 +303,9 @@ impl Destinations {
             .collect();
         let duration = self.settings.duration;
         self.go_on(ensemble, &mut motions, duration, control)?;
-        let brief = BRIEF * self.target.natural_period;
-        self.look_at(&mut motions, (duration + brief).min(PATIENCE * duration), control)?;
+        let periods = if self.target.attracts() == Some(false) { THOROUGH } else { BRIEF };
+        let look = periods * self.target.natural_period;
+        self.look_at(&mut motions, (duration + look).min(PATIENCE * duration), control)?;
         let thorough = (THOROUGH * self.target.natural_period).min(0.5 * PATIENCE * duration);
         self.go_on(ensemble, &mut motions, PATIENCE * duration - thorough, control)?;
         let fate = |motion: &Followed| match motion.fate {
@@ -372,9 +373,10 @@ impl Destinations {
                 return Ok(());
             }
             let mut lasting = Lasting::new(Course::rolling(&self.wheel, motion.state)?, motion.time, &[]);
-            if let Seen::Ends(fate) = lasting.follow(until, &self.target, &mut motion.watch, control)? {
-                motion.fate = Some(fate);
-            }
+            motion.fate = match lasting.follow(until, &self.target, &mut motion.watch, control)? {
+                Seen::Ends(fate) => Some(fate),
+                Seen::Swings => lasting.is_irregular_for_good(&self.target).then_some(Fate::Irregular),
+            };
             (motion.state, motion.time) = (lasting.state(), lasting.time());
             Ok(())
         })

@@ -34,6 +34,9 @@ const MARGIN: f64 = 0.2;
 const CROSSINGS: [f64; 4] = [1e-6, 1e-5, 1e-4, 1e-3];
 /// A motion beyond a grazing is on the same branch when it differs by less than this part of its size.
 const NEAR_GRAZING: f64 = 0.03;
+/// Cosine of the angle between the motion and the normal of the plane that fixes its start, below which the plane is laid anew: where
+/// the motion becomes tangent to the plane, a branch would turn back that does not.
+const ACROSS: f64 = 0.9;
 /// Growth of the period after which everything is scaled anew.
 const RESCALE: f64 = 1.3;
 
@@ -285,6 +288,16 @@ impl<'a> SlidingCurve<'a> {
     }
 }
 
+impl SlidingCurve<'_> {
+    /// Cosine of the angle between the motion at its start and the normal of the plane.
+    fn cosine_to_normal(&self, unknown: &[f64]) -> Option<f64> {
+        let rate = self.map.sliding().ok()?.rate(&self.start(unknown).state);
+        let scaled: SlipState = std::array::from_fn(|i| rate[i] / self.map.scales[i]);
+        let along: f64 = scaled.iter().zip(&self.map.normal).map(|(rate, normal)| rate * normal).sum();
+        Some(along / scaled.iter().map(|rate| rate * rate).sum::<f64>().sqrt())
+    }
+}
+
 impl Refusal {
     fn from_wheel(error: &crate::KingpinError) -> Self {
         Self::Integration(error.to_string())
@@ -429,8 +442,9 @@ impl Curve for SlidingCurve<'_> {
     ) -> Option<Ending<Infallible>> {
         let motion = &after.point.motion;
         let ratio = motion.period / self.map.period_scale;
-        self.wants_new_start =
-            self.is_start_near_event(motion) || !(RESCALE.recip()..RESCALE).contains(&ratio);
+        self.wants_new_start = self.is_start_near_event(motion)
+            || !(RESCALE.recip()..RESCALE).contains(&ratio)
+            || self.cosine_to_normal(&after.unknown).is_none_or(|cosine| cosine < ACROSS);
         self.wants_new_start.then_some(Ending::After(Stop::Interrupted))
     }
 }
