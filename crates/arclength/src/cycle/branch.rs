@@ -90,8 +90,8 @@ impl CyclePoint {
         Self {
             value,
             period,
-            max: inspection.ranges.iter().map(|range| range.largest).collect(),
-            min: inspection.ranges.iter().map(|range| range.smallest).collect(),
+            max: inspection.extremes.iter().map(|extremes| extremes.largest).collect(),
+            min: inspection.extremes.iter().map(|extremes| extremes.smallest).collect(),
             multipliers: inspection.floquet.multipliers(),
             multiplier_errors: inspection.multiplier_errors.clone(),
             trivial_multiplier_error: inspection.floquet.trivial_error,
@@ -116,7 +116,7 @@ impl CyclePoint {
                 degree,
                 states: states.to_vec(),
                 period,
-                dimension: inspection.ranges.len(),
+                dimension: inspection.extremes.len(),
             },
         }
     }

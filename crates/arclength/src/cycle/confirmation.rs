@@ -200,7 +200,7 @@ impl<'a> Asked<'a> {
         let [fixed, across] = curve.errors(&unknown, &border);
         let estimate = if neutral { across } else { fixed };
         let extremes: Vec<[f64; 2]> =
-            inspection.ranges.iter().map(|range| [range.largest, range.smallest]).collect();
+            inspection.extremes.iter().map(|extremes| [extremes.largest, extremes.smallest]).collect();
         // A state counts as what it is, or as its amplitude where that is more.
         let sizes: Vec<f64> = extremes
             .iter()

@@ -2,7 +2,7 @@
 
 use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
-use super::extrema::ranges;
+use super::extrema::extremes;
 use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::special;
@@ -148,7 +148,7 @@ impl Curve for CycleCurve<'_> {
             parameter_error: None,
             floquet,
             multiplier_errors,
-            ranges: ranges(&self.collocation, unknown, n),
+            extremes: extremes(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
             segments: self.collocation.problem.segments.clone(),
             fitted: None,
@@ -164,7 +164,7 @@ impl Curve for CycleCurve<'_> {
         point.error_across = errors[1];
         match self.fitted(&solution.unknown, &solution.tangent) {
             Ok(Some(refitted)) => {
-                (point.fitted, point.ranges) = (Some(refitted.fitted), refitted.ranges);
+                (point.fitted, point.extremes) = (Some(refitted.fitted), refitted.extremes);
                 errors = refitted.errors;
             }
             Ok(None) => {}
@@ -293,7 +293,7 @@ impl Curve for CycleCurve<'_> {
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let n = self.collocation.problem.dimension();
         let mut signature = vec![(unknown[unknown.len() - 2].ln(), 1.0)];
-        signature.extend(self.sizes.signature(&ranges(&self.collocation, unknown, n)));
+        signature.extend(self.sizes.signature(&extremes(&self.collocation, unknown, n)));
         signature
     }
 

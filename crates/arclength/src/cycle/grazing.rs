@@ -7,7 +7,7 @@
 
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::{CycleEnd, Grazed};
-use super::gate::Place;
+use super::gate::GateFunction;
 use super::passages::{Along, Touch};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Solution, locate};
@@ -50,10 +50,10 @@ impl CycleCurve<'_> {
             Ok(Some(solution)) => self.reach(&solution.unknown, touch).is_none_or(|(_, turns)| turns),
             _ => true,
         };
-        let of = match touch.place {
-            Place::Condition { event } if !turns => Grazed::Together(event + 1),
-            Place::Condition { event } => Grazed::Event(event + 1),
-            Place::Border { .. } | Place::Pull { .. } => Grazed::Border,
+        let of = match touch.function {
+            GateFunction::Condition { event } if !turns => Grazed::Together(event + 1),
+            GateFunction::Condition { event } => Grazed::Event(event + 1),
+            GateFunction::Border { .. } | GateFunction::Pull { .. } => Grazed::Border,
         };
         CycleEnd::Grazing { of, parameter, period, located }
     }

@@ -1,7 +1,7 @@
 //! Branch points of equilibria: the coefficients of the bifurcation equation and the other branch.
 
 use super::branching_equation::BranchingEquation;
-use super::coefficient_error::{self, Place};
+use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::branch::Criticality;
@@ -87,8 +87,13 @@ impl BranchPoint {
     /// The same with the errors of its coefficients.
     fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
         let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
-        let place = Place::on_branch(problem, (&self.state, &self.parameters), scales, self.location_error);
-        let errors = coefficient_error::errors(known, place, |state, parameters| {
+        let equilibrium = UncertainEquilibrium::on_branch(
+            problem,
+            (&self.state, &self.parameters),
+            scales,
+            self.location_error,
+        );
+        let errors = coefficient_error::errors(known, equilibrium, |state, parameters| {
             let moved = EquilibriumProblem::new(problem.field, parameters, &problem.active);
             let unknown = [state, &[parameters[self.active]]].concat();
             let near = Self::without_errors(&moved, &unknown, tangent, scales, 0.0).ok()??;

@@ -7,7 +7,7 @@
 //! nothing happens where the eigenvalues are on the same sides. Source: di Bernardo, Budd, Champneys and Kowalczyk, *Piecewise-smooth
 //! Dynamical Systems* (2008), section 5.2; Leine and Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems* (2004).
 
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::end::EquilibriumEnd;
 use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
@@ -40,7 +40,7 @@ const ASIDE: f64 = 1.5;
 /// Rate of change of the parameter, as part of its range, whose sign may be rounding.
 const NO_TURN: f64 = 1e-9;
 
-type Node = Solution<Inspection>;
+type Node = Solution<EquilibriumInspection>;
 
 /// The field and its switch functions.
 struct WithSwitches<'p, 'a> {

@@ -1,6 +1,6 @@
 //! Folds of equilibria and their quadratic coefficient.
 
-use super::coefficient_error::{self, Place};
+use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{AlgebraicEquations, Differentiator};
@@ -83,8 +83,9 @@ impl FoldPoint {
         let quadratic = simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
         let unfolding = simple.then(|| project(forms.real(&[&along])));
         let quadratic_error = quadratic.and_then(|value| {
-            let place = Place::on_branch(problem, (&state, &parameters), scales, location_error);
-            let [error] = coefficient_error::errors([value], place, |state, parameters| {
+            let equilibrium =
+                UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
+            let [error] = coefficient_error::errors([value], equilibrium, |state, parameters| {
                 let moved = EquilibriumProblem::new(problem.field, parameters, &[]);
                 let (right, left, simple) = null_vectors(&moved, state).ok()?;
                 let square =

@@ -3,7 +3,7 @@
 use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
 use super::corner::HalfBranch;
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::departure::{branch_point_along, is_branching};
 use super::end::EquilibriumEnd;
 use super::first::{FoundBy, FoundEquilibrium, seek_erased};
@@ -166,8 +166,9 @@ impl<'a> Equilibria<'a> {
         let departure = departure.directed(&mut curve)?;
 
         let Continuation { field, at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| EquilibriumPoint::new(solution, None, bound.width());
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare =
+            |solution: &Solution<EquilibriumInspection>| EquilibriumPoint::new(solution, None, bound.width());
+        let point = |solution: &Solution<EquilibriumInspection>, label: Option<Label>| {
             let mut point = EquilibriumPoint::new(solution, label, bound.width());
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -179,7 +180,7 @@ impl<'a> Equilibria<'a> {
         drop(observe);
         let mut followed = departure.join(&mut curve, directions, (bound, settings))?;
         followed.mark_requested(at, |solution| solution.unknown[n]);
-        let point = |solution: Solution<Inspection>, label| point(&solution, label);
+        let point = |solution: Solution<EquilibriumInspection>, label| point(&solution, label);
         Ok(Branch::assemble(field, (&parameters, &active), followed, point))
     }
 
@@ -304,8 +305,8 @@ impl Departure {
         &self,
         curve: &mut EquilibriumCurve<'_>,
         sign: f64,
-        request: &Request<'_, Inspection>,
-        observer: &mut crate::continuation::Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumInspection>,
+        observer: &mut crate::continuation::Observer<'_, EquilibriumInspection, SpecialKind>,
     ) -> Result<FollowedCurve<EquilibriumCurve<'static>>, Error> {
         let bound = request.bounds[0];
         let value = bound.value(&self.unknown);
@@ -388,8 +389,8 @@ fn leaving_border(curve: &mut EquilibriumCurve<'_>, start: &[f64]) -> Option<[Op
 /// Has a closed branch end at the branch point from which it started, which it finds again, and not the distance of the
 /// departure behind it.
 fn end_at(
-    branch_point: &Solution<Inspection>,
-    solutions: &mut Vec<(Solution<Inspection>, Origin<SpecialKind>)>,
+    branch_point: &Solution<EquilibriumInspection>,
+    solutions: &mut Vec<(Solution<EquilibriumInspection>, Origin<SpecialKind>)>,
     reach: f64,
     scales: &[f64],
 ) {

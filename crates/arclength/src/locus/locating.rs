@@ -1,13 +1,13 @@
 //! Locates points of codimension two that were bracketed on a curve.
 
 use super::codimension_two::CodimensionTwoPoint;
-use super::curve::{Inspection, LocusCurve};
+use super::curve::{EquilibriumLocusInspection, LocusCurve};
 use super::newton::{Newton, newton};
 use super::normal_form;
 use crate::algebraic::length;
 use crate::branch::SpecialKind;
 use crate::continuation::{Solution, correct, finish, locate};
-use crate::equilibrium::coefficient_error::Place;
+use crate::equilibrium::coefficient_error::UncertainEquilibrium;
 use crate::equilibrium::spectrum::{critical_pair, without};
 use crate::error::Error;
 use num_complex::Complex64;
@@ -21,7 +21,7 @@ const POLE: f64 = 1e-3;
 /// A located point may be this many bracket lengths away from the bracket.
 const NEAR: f64 = 1.0;
 
-type Node = Solution<Inspection>;
+type Node = Solution<EquilibriumLocusInspection>;
 
 /// The point of codimension two between two neighbours; `None` if a test function has a pole there or the point is not of the
 /// kind sought (two real eigenvalues of opposite sign are no Hopf-Hopf point).
@@ -161,14 +161,14 @@ fn complete(
     let part =
         location_error.iter().zip(curve.ranges).map(|(error, range)| error / range).fold(0.0, f64::max);
     let scales = [&curve.states[..], &curve.ranges[..]].concat();
-    let place = Place {
+    let equilibrium = UncertainEquilibrium {
         state: &unknown[..n],
         parameters: &parameters,
         active: &active,
         scales: &scales,
         location_error: part,
     };
-    let coefficients = normal_form::with_errors(place, |state, parameters| {
+    let coefficients = normal_form::with_errors(equilibrium, |state, parameters| {
         normal_form::coefficients(kind, problem.field, state, parameters, &curve.states, frequency)
     });
     let point = CodimensionTwoPoint {

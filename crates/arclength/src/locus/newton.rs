@@ -1,7 +1,7 @@
 //! Newton's method on the defining systems of points of codimension two, from a solution of the curve close by.
 
 use super::codimension_two::{BogdanovTakensSystem, CuspSystem, HopfHopfSystem, ZeroHopfSystem};
-use super::curve::{Inspection, LocusCurve};
+use super::curve::{EquilibriumLocusInspection, LocusCurve};
 use crate::algebraic::{AlgebraicEquations, Solved, length, solve_square};
 use crate::branch::SpecialKind;
 use crate::continuation::Solution;
@@ -39,7 +39,7 @@ impl Newton {
 /// Newton's method from a point close by.
 pub(super) fn newton(
     curve: &mut LocusCurve<'_>,
-    near: &Solution<Inspection>,
+    near: &Solution<EquilibriumLocusInspection>,
     kind: SpecialKind,
 ) -> Result<Newton, Error> {
     let jacobian = curve.jacobian(&near.unknown).to_vec();

@@ -1,7 +1,7 @@
 //! Asking for a curve of special equilibria.
 
 use super::branch::{EquilibriumLocusBranch, LocusPoint};
-use super::curve::{Inspection, LocusCurve};
+use super::curve::{EquilibriumLocusInspection, LocusCurve};
 use super::held::Held;
 use super::held_equilibria::HeldSystem;
 use super::request::{TwoParameters, point_forward};
@@ -72,7 +72,7 @@ impl Problem for Option<EquilibriumLocusStart> {
 /// ```
 pub type EquilibriumLocus<'a> = Continuation<'a, Option<EquilibriumLocusStart>>;
 
-type FollowedLocus = BothWays<Inspection, SpecialKind, Infallible>;
+type FollowedLocus = BothWays<EquilibriumLocusInspection, SpecialKind, Infallible>;
 
 impl<'a> EquilibriumLocus<'a> {
     /// A curve of special equilibria of `field`.
@@ -141,8 +141,10 @@ impl<'a> EquilibriumLocus<'a> {
         let run = Run { field: self.field, parameters: parameters.clone(), ordered, settings: self.settings };
 
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| LocusPoint::new(solution, None, (n, ordered.swapped));
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare = |solution: &Solution<EquilibriumLocusInspection>| {
+            LocusPoint::new(solution, None, (n, ordered.swapped))
+        };
+        let point = |solution: &Solution<EquilibriumLocusInspection>, label: Option<Label>| {
             let mut point = LocusPoint::new(solution, label, (n, ordered.swapped));
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -172,8 +174,8 @@ impl<'a> Run<'a> {
         &self,
         start: &EquilibriumLocusStart,
         state: &[f64],
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumLocusInspection>,
+        observer: &mut Observer<'_, EquilibriumLocusInspection, SpecialKind>,
     ) -> Result<FollowedLocus, Error> {
         let n = state.len();
         let ranges = self.ordered.ranges();
@@ -275,8 +277,8 @@ impl<'a> Run<'a> {
         kind: LocusSystem<'a>,
         mut unknown: Vec<f64>,
         scales: Vec<f64>,
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumLocusInspection>,
+        observer: &mut Observer<'_, EquilibriumLocusInspection, SpecialKind>,
     ) -> Result<FollowedLocus, Error> {
         let ranges = self.ordered.ranges();
         let mut curve = LocusCurve::new(kind, scales, ranges, self.settings);

@@ -9,7 +9,7 @@ mod jumps;
 mod slides;
 mod walk;
 
-use super::gate::{Course, Gate, Place};
+use super::gate::{Course, Gate, GateFunction};
 use crate::collocation::polynomials::Polynomials;
 use crate::direction::Direction;
 use crate::erased::ErasedField;
@@ -56,7 +56,7 @@ pub(super) struct Passage {
 /// A condition of an event that a cycle passes, in unit time, without the jump, or a border without changing over to the field beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Touch {
-    pub place: Place,
+    pub function: GateFunction,
     /// Sign before it of the function that is zero there.
     pub side: f64,
     pub time: f64,
@@ -266,12 +266,12 @@ impl<'a> Along<'a> {
 }
 
 impl Along<'_> {
-    /// How far the function at a place gets beyond zero next to where it is touched, between two of the times at which the course
+    /// How far the function of a gate gets beyond zero next to where it is touched, between two of the times at which the course
     /// changes, and whether it turns there: otherwise it is largest at one of these times.
     pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> (f64, bool) {
         let from = jumps.iter().copied().filter(|time| *time <= touch.time).fold(0.0, f64::max);
         let until = jumps.iter().copied().filter(|time| *time > touch.time).fold(1.0, f64::min);
-        let gate = Gate { place: touch.place, upwards: touch.side < 0.0, events: Vec::new() };
+        let gate = Gate { function: touch.function, upwards: touch.side < 0.0, events: Vec::new() };
         let switches = self.pieces.thresholds().len();
         // The course may be one of other values of the parameters.
         let now: Vec<(usize, f64)> = self.parameters.iter().copied().enumerate().collect();

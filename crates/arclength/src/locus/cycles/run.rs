@@ -1,7 +1,7 @@
 //! Asking for a curve of special cycles.
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
-use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
+use super::curve::{CycleLocusCurve, CycleLocusInspection, sizes_of_resting};
 use super::end::CycleLocusEnd;
 use super::hold::Hold;
 use crate::branch::{
@@ -149,8 +149,9 @@ impl<'a> CycleLocus<'a> {
             settings: self.settings,
         };
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| CycleLocusPoint::new(solution, None, orbit.degree);
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare =
+            |solution: &Solution<CycleLocusInspection>| CycleLocusPoint::new(solution, None, orbit.degree);
+        let point = |solution: &Solution<CycleLocusInspection>, label: Option<Label>| {
             let mut point = CycleLocusPoint::new(solution, label, orbit.degree);
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -188,9 +189,9 @@ impl<'a> Asked<'a> {
         &self,
         kind: Kind,
         orbit: &Orbit,
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
-    ) -> Result<BothWays<Inspection, SpecialKind, CycleLocusEnd>, Error> {
+        request: &Request<'_, CycleLocusInspection>,
+        observer: &mut Observer<'_, CycleLocusInspection, SpecialKind>,
+    ) -> Result<BothWays<CycleLocusInspection, SpecialKind, CycleLocusEnd>, Error> {
         let mut forward: Vec<f64> = Vec::new();
         let directions = both_ways(|sign| {
             // Mesh and sizes move on along the way: every direction begins with those of the start.
