@@ -14,6 +14,8 @@ use std::borrow::Cow;
 pub struct CyclePoint {
     /// Value of the parameter.
     pub value: f64,
+    /// All parameters.
+    pub parameters: Vec<f64>,
     /// Period.
     pub period: f64,
     /// Largest value of each state, of the interpolating polynomial.
@@ -69,16 +71,31 @@ impl Labelled for CyclePoint {
     }
 }
 
+/// What all cycles of a branch have in common.
+pub(super) struct FollowedParameter<'a> {
+    /// All parameters.
+    pub parameters: &'a [f64],
+    /// Index of the one that is followed.
+    pub active: usize,
+    /// Length of its range.
+    pub range: f64,
+    /// Degree of the polynomials.
+    pub degree: usize,
+}
+
 impl CyclePoint {
-    /// A solution of the curve as plain data; `range` is the length of the parameter's range, `degree` that of the polynomials.
+    /// A solution of the curve as plain data.
     pub(super) fn new(
         solution: &Solution<CycleInspection>,
         label: Option<Label>,
-        (range, degree): (f64, usize),
+        along: &FollowedParameter<'_>,
     ) -> Self {
+        let FollowedParameter { parameters, active, range, degree } = *along;
+        let mut parameters = parameters.to_vec();
         let inspection = &solution.point;
         let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
         let [period, value] = inspection.place.unwrap_or([scalars[0], scalars[1]]);
+        parameters[active] = value;
         let (mesh, states) = inspection
             .fitted
             .as_ref()
@@ -89,6 +106,7 @@ impl CyclePoint {
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
         Self {
             value,
+            parameters,
             period,
             max: inspection.extremes.iter().map(|extremes| extremes.largest).collect(),
             min: inspection.extremes.iter().map(|extremes| extremes.smallest).collect(),

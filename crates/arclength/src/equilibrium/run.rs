@@ -86,6 +86,13 @@ impl crate::branch::Problem for EquilibriumStart {
 /// ```
 pub type Equilibria<'a> = Continuation<'a, EquilibriumStart>;
 
+impl BranchPoint {
+    /// The other branch through this point.
+    pub fn other<'a, F: VectorField>(&self, field: &'a F) -> Equilibria<'a> {
+        Equilibria::of(field).from_branch_point(self)
+    }
+}
+
 /// A start in the space of the states and the parameter, with the directions in which the branch leaves it.
 struct Departure {
     unknown: Vec<f64>,

@@ -54,7 +54,7 @@ impl Problem for Option<EquilibriumLocusStart> {
 /// vary over ranges.
 ///
 /// ```
-/// use arclength::{Scalar, VectorField, equilibrium::Equilibria, locus::EquilibriumLocus};
+/// use arclength::{Scalar, VectorField, equilibrium::Equilibria};
 /// struct Cusp;
 /// impl VectorField for Cusp {
 ///     fn state_names(&self) -> Vec<String> { vec!["x".into()] }
@@ -65,12 +65,34 @@ impl Problem for Option<EquilibriumLocusStart> {
 /// }
 /// let branch = Equilibria::of(&Cusp).start(&[-2.0]).parameters(&[-2.0, 1.0]).along("a", -2.0..=2.0).run()?;
 /// let fold = branch.folds().next().expect("a fold");
-/// let folds = EquilibriumLocus::of(&Cusp).from_fold(fold).along("a", -2.0..=2.0).and("b", -1.0..=2.0).run()?;
+/// let folds = fold.curve(&Cusp).along("a", -2.0..=2.0).and("b", -1.0..=2.0).run()?;
 /// let cusp = folds.special_points().next().expect("a cusp");
 /// assert!(cusp.values.iter().all(|value| value.abs() < 1e-12));
 /// # Ok::<(), arclength::Error>(())
 /// ```
 pub type EquilibriumLocus<'a> = Continuation<'a, Option<EquilibriumLocusStart>>;
+
+impl FoldPoint {
+    /// The curve of folds through this one, in two parameters.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_fold(self)
+    }
+}
+
+impl HopfPoint {
+    /// The curve of Hopf points through this one, in two parameters.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_hopf(self)
+    }
+}
+
+impl BranchPoint {
+    /// The curve of branch points through this one, in two parameters. There is one only if branch points persist, by symmetry or because
+    /// a state stays zero.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_branch_point(self)
+    }
+}
 
 type FollowedLocus = BothWays<EquilibriumLocusInspection, SpecialKind, Infallible>;
 

@@ -6,7 +6,7 @@ use arclength::branch::{Monitor, SpecialKind, Unlocated, WithParameters};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{Orbit, Resolution};
 use arclength::equilibrium::equilibrium_settings;
-use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, EquilibriumLocus, LocusPoint};
+use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, LocusPoint};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
@@ -77,8 +77,8 @@ impl HopfPoint {
     ) -> Result<HopfCurve, KingpinError> {
         let (model, values) = self.wheel.in_plane(plane)?;
         let start = arclength::equilibrium::HopfPoint { parameters: values.to_vec(), ..self.detail.clone() };
-        let branch = EquilibriumLocus::of(&model)
-            .from_hopf(&start)
+        let branch = start
+            .curve(&model)
             .along(plane[0].followed().name(), plane[0].range())
             .and(plane[1].followed().name(), plane[1].range())
             .at(&options.at.iter().map(|value| plane[0].convert(*value)).collect::<Vec<_>>())

@@ -32,7 +32,7 @@ pub struct WheelCycles {
     pub wheel: Wheel,
     /// The parameter and its interval.
     pub along: Along,
-    /// The cycles, with `value` a value of the key; extrema are those of [all states](Wheel::states), the states of the orbits are the
+    /// The cycles, with `value` a value of the key, which alone is in `parameters`; extrema are those of [all states](Wheel::states), the states of the orbits are the
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
@@ -194,6 +194,7 @@ impl Wheel {
         let complete = |point: &mut CyclePoint| {
             model.complete_extrema(&point.orbit, &mut point.max, &mut point.min, &[point.value]);
             point.value = along.convert(point.value);
+            point.parameters = vec![point.value];
         };
         if let CycleStart::Orbit(orbit) = &start {
             model.check_forwards(orbit, &[along.convert(value)])?;
