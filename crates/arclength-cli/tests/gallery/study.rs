@@ -117,7 +117,7 @@ impl Study {
             .parameters(parameters)
             .along(&range.key, range.start..=range.end)
             .at(at)
-            .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+            .settings(Settings::default().largest_parameter_change(FINE))
             .run()
             .unwrap();
         let report =
@@ -146,7 +146,7 @@ impl Study {
                 .from_cycle(kind, &cycle.orbit, &cycle.parameters)
                 .along(&first.key, first.start..=first.end)
                 .and(&second.key, second.start..=second.end)
-                .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+                .settings(Settings::default().largest_parameter_change(FINE))
                 .run()
                 .unwrap()
         };
@@ -176,7 +176,7 @@ impl Study {
         let branch = start(EquilibriumLocus::of(&self.chosen.model))
             .along(&first.key, first.start..=first.end)
             .and(&second.key, second.start..=second.end)
-            .settings(Settings { largest_parameter_change: FINE, ..equilibrium_settings() })
+            .settings(equilibrium_settings().largest_parameter_change(FINE))
             .run()
             .unwrap();
         let report = EquilibriumLocusResult::new(

@@ -12,6 +12,7 @@ use std::ops::ControlFlow;
 
 /// How a curve in two parameters is computed.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct CurveOptions {
     /// Values of the first parameter at which points are wanted exactly.
     pub at: Vec<f64>,
@@ -19,6 +20,26 @@ pub struct CurveOptions {
     pub resolution: Resolution,
     /// Settings of the continuation; those of the engine where there are none.
     pub settings: Option<Settings>,
+}
+
+impl CurveOptions {
+    /// The same with values of the first parameter at which points are wanted exactly.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.at = values.to_vec();
+        self
+    }
+
+    /// The same with another resolution of the cycles.
+    pub fn resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// The same with settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = Some(settings);
+        self
+    }
 }
 
 /// A curve of Hopf points of the uniform motion.

@@ -307,7 +307,7 @@ impl Isola {
             .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?
             .along("v", ranges.speeds.0..=ranges.speeds.1)
             .and("c_q", ranges.fold_dampings.0..=ranges.fold_dampings.1)
-            .settings(Settings { predictor_error: FOLD_PREDICTOR_ERROR, ..settings() })
+            .settings(settings().predictor_error(FOLD_PREDICTOR_ERROR))
             .run()?;
         control.done(0.9);
         unless_stopped(control)?;
@@ -361,11 +361,7 @@ impl Isola {
 }
 
 fn settings() -> Settings {
-    Settings {
-        largest_parameter_change: LARGEST_CHANGE,
-        predictor_error: PREDICTOR_ERROR,
-        ..Settings::default()
-    }
+    Settings::default().largest_parameter_change(LARGEST_CHANGE).predictor_error(PREDICTOR_ERROR)
 }
 
 /// The range of a branch and why it ends, in words.
