@@ -100,7 +100,6 @@ impl CyclePoint {
             .fitted
             .as_ref()
             .map_or((&inspection.mesh[..], states), |fitted| (&fitted.mesh, &fitted.states));
-        let (outside, _) = inspection.floquet.unstable();
         let is_special = label.is_some_and(|label| label.kind != SpecialKind::Requested);
         let turn = solution.tangent.last().map_or(0.0, |rate| rate / range);
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
@@ -113,7 +112,7 @@ impl CyclePoint {
             multipliers: inspection.floquet.multipliers(),
             multiplier_errors: inspection.multiplier_errors.clone(),
             trivial_multiplier_error: inspection.floquet.trivial_error,
-            unstable_multipliers: outside,
+            unstable_multipliers: inspection.floquet.unstable().count,
             // At a bifurcation a multiplier is on the unit circle by definition.
             stable: if is_special || inspection.is_neutral { None } else { inspection.floquet.is_stable() },
             neutral: inspection.is_neutral,
@@ -126,7 +125,7 @@ impl CyclePoint {
                 test(SpecialKind::FoldOfCycles, turn),
                 test(SpecialKind::BranchPointOfCycles, solution.orientation),
                 test(SpecialKind::PeriodDoubling, inspection.doubling_test()),
-                test(SpecialKind::Torus, inspection.floquet.torus_test().0),
+                test(SpecialKind::Torus, inspection.floquet.torus_test().product),
             ],
             monitors: Vec::new(),
             orbit: Orbit {

@@ -227,8 +227,8 @@ impl Curve for CycleCurve<'_> {
             SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
             SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
             SpecialKind::Torus => {
-                let (value, undecided) = floquet.torus_test();
-                Reading::exact(value).in_class(undecided)
+                let test = floquet.torus_test();
+                Reading::exact(test.product).in_class(test.undecided)
             }
             _ => return None,
         };
@@ -245,8 +245,8 @@ impl Curve for CycleCurve<'_> {
         if self.follows_neutral_family {
             return 0;
         }
-        let (_, certain) = solution.point.floquet.unstable();
-        usize::from(!certain) + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+        usize::from(!solution.point.floquet.unstable().is_certain)
+            + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
     }
 
     fn locate(

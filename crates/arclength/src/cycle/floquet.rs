@@ -55,6 +55,21 @@ pub(crate) struct Floquet {
     pub measured_error: f64,
 }
 
+/// How many multipliers are outside the unit circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct UnstableCount {
+    pub count: usize,
+    /// Whether that is certain: none is closer to the circle than the error of the trivial one, and they do not contradict each other.
+    pub is_certain: bool,
+}
+
+/// The test function of torus bifurcations.
+pub(crate) struct TorusTest {
+    pub product: f64,
+    /// Number of pairs that are on the unit circle within the error.
+    pub undecided: usize,
+}
+
 impl Floquet {
     /// All multipliers as complex numbers, the trivial one among them, largest modulus first.
     pub(crate) fn multipliers(&self) -> Vec<Complex64> {
@@ -73,13 +88,12 @@ impl Floquet {
         all
     }
 
-    /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
-    /// closer to the circle than the error of the trivial one, and they do not contradict each other.
-    pub(crate) fn unstable(&self) -> (usize, bool) {
+    /// The nontrivial multipliers outside the unit circle.
+    pub(crate) fn unstable(&self) -> UnstableCount {
         let margin = self.margin();
         let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
-        let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
-        (outside, certain && !self.is_contradictory())
+        let is_certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
+        UnstableCount { count: outside, is_certain: is_certain && !self.is_contradictory() }
     }
 
     /// Whether the cycle is stable, where that is certain: one multiplier that is outside for certain decides it.
@@ -106,7 +120,7 @@ impl Floquet {
 
     /// What the search for special cycles compares from cycle to cycle: logarithms of the multipliers.
     pub(crate) fn growth(&self) -> Spectrum {
-        let (unstable, decided) = self.unstable();
+        let UnstableCount { count: unstable, is_certain: decided } = self.unstable();
         let exponent = |multiplier: &Multiplier| {
             Complex64::new(multiplier.log_modulus.max(SMALLEST_LOGARITHM), multiplier.argument)
         };
@@ -121,15 +135,15 @@ impl Floquet {
 
     /// Product over all pairs of multipliers that are complex conjugate or real of one sign of the logarithm of their product's
     /// modulus, each saturating at +-1: changes sign where a pair is on the unit circle. Pairs that are so within the error do
-    /// not count; their number is the second result. Two real ones of different signs never have the product one: they count as
+    /// not count. Two real ones of different signs never have the product one: they count as
     /// a product inside the circle, so that the sign of one that is rounding does not matter.
-    pub(crate) fn torus_test(&self) -> (f64, usize) {
-        let (mut product, mut undecided) = (1.0, 0);
+    pub(crate) fn torus_test(&self) -> TorusTest {
+        let mut test = TorusTest { product: 1.0, undecided: 0 };
         for (index, one) in self.nontrivial.iter().enumerate() {
             for other in &self.nontrivial[index + 1..] {
                 let together = if one.is_real() && other.is_real() {
                     if one.argument != other.argument {
-                        product = -product;
+                        test.product = -test.product;
                     }
                     one.argument == other.argument
                 } else {
@@ -145,13 +159,13 @@ impl Floquet {
                     multiplier.argument == 0.0 && multiplier.log_modulus.abs() <= self.margin()
                 };
                 if sum.abs() <= 2.0 * self.margin() || is_one(one) || is_one(other) {
-                    undecided += 1;
+                    test.undecided += 1;
                 } else {
-                    product *= sum / sum.hypot(SATURATION);
+                    test.product *= sum / sum.hypot(SATURATION);
                 }
             }
         }
-        (product, undecided)
+        test
     }
 
     /// The multipliers at a special cycle, one of which is known: of two the integral of the divergence gives the other. `None` of

@@ -70,7 +70,7 @@ pub(super) fn locate(
 ) -> Result<Location<CycleInspection>, Error> {
     let Some(defining) = defining(kind) else { return Ok(Location::Nothing) };
     // The pair that changes sides when the multipliers are counted from outside.
-    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
+    let outside = [before, after].map(|node| node.point.floquet.unstable().count);
     let rank = outside[0].min(outside[1]);
     if kind == SpecialKind::Torus && !is_pair_between(before, after, rank) {
         return Ok(Location::Nothing);
@@ -283,7 +283,7 @@ pub(super) fn crossing(
     [before, after]: [&Node; 2],
     change: usize,
 ) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
-    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
+    let outside = [before, after].map(|node| node.point.floquet.unstable().count);
     let mut found = Vec::new();
     for pair in 0..change / 2 {
         let rank = outside[0].min(outside[1]) + 2 * pair;

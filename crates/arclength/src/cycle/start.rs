@@ -4,6 +4,7 @@ use super::branch::{CycleBranch, CyclePoint, FollowedParameter};
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::expansion::Expansion;
+use super::floquet::UnstableCount;
 use super::hopf_start::HopfStart;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
@@ -509,7 +510,7 @@ impl<'a> Asked<'a> {
         let mut curve = self.curve(&start);
         let Ok(found) = exact_start(&mut curve, start.unknown, start.tangent, request) else { return false };
         if let Some(expected) = unstable_at_birth {
-            return found.point.floquet.unstable() == (expected, true);
+            return found.point.floquet.unstable() == UnstableCount { count: expected, is_certain: true };
         }
         let expected = -amplitude * amplitude * hopf.cubic_coefficient / hopf.crossing_speed;
         let ratio = (found.unknown[found.unknown.len() - 1] - place) / expected;

@@ -1,7 +1,7 @@
 //! The branching equation at a branch point of equilibria: second-order terms along the null vector and across it.
 
 use super::bordered_jacobian::BorderedJacobian;
-use super::fold::null_vectors;
+use super::fold::{NullVectors, null_vectors};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, length};
@@ -39,7 +39,7 @@ impl<'a> BranchingEquation<'a> {
         scales: &[f64],
     ) -> Result<Option<Self>, Error> {
         let n = problem.dimension;
-        let (null_vector, left, _) = null_vectors(problem, unknown)?;
+        let NullVectors { right: null_vector, left, .. } = null_vectors(problem, unknown)?;
         let mut jacobian = vec![0.0; n * (n + 1)];
         let mut residual = vec![0.0; n];
         Differentiator::default().jacobian(problem, unknown, &mut residual, &mut jacobian, n);

@@ -2,7 +2,7 @@
 
 use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
-use super::corner::HalfBranch;
+use super::corner::{HalfBranch, Piece};
 use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::departure::{branch_point_along, is_branching};
 use super::end::EquilibriumEnd;
@@ -334,7 +334,7 @@ impl Departure {
         let start: Vec<f64> = start.collect();
         curve.restart();
         if cells.is_empty() {
-            cells = curve.piece_at(&start).map_or(Vec::new(), |(cells, _)| cells);
+            cells = curve.piece_at(&start).map_or(Vec::new(), |piece| piece.cells);
         }
         curve.system.problem.enter(&cells);
         follow(curve, start, tangent, request, observer)
@@ -383,7 +383,7 @@ impl Departure {
 
 /// How a branch leaves a start on a border between two pieces of the field, backward and forward; `None` where the start is on none.
 fn leaving_border(curve: &mut EquilibriumCurve<'_>, start: &[f64]) -> Option<[Option<HalfBranch>; 2]> {
-    let (cells, true) = curve.piece_at(start)? else { return None };
+    let Piece { cells, is_on_border: true } = curve.piece_at(start)? else { return None };
     let mut halves = curve.half_branches(start, &cells);
     let rate = |half: &HalfBranch| half.tangent.last().copied().unwrap_or(0.0);
     halves.sort_by(|one, other| rate(one).total_cmp(&rate(other)));

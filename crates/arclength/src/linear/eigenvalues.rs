@@ -332,16 +332,16 @@ fn francis(
 /// One double-shift sweep over rows `first..=last`, at least three of them.
 fn sweep(h: &mut [f64], n: usize, first: usize, last: usize, count: usize) {
     let shifts = shifts(h, n, first, last, count);
-    let (start, mut vector) = bulge(h, n, first, last, &shifts);
+    let Bulge { row: start, mut vector } = bulge(h, n, first, last, &shifts);
     for k in start..last {
         let three = k + 2 <= last;
         if k > start {
             let below = n * (k - 1) + k;
-            vector = (h[below], h[below + 1], if three { h[below + 2] } else { 0.0 });
+            vector = [h[below], h[below + 1], if three { h[below + 2] } else { 0.0 }];
         } else if !three {
-            vector.2 = 0.0;
+            vector[2] = 0.0;
         }
-        let reflector = SmallReflector::annihilating(vector.0, vector.1, vector.2);
+        let reflector = SmallReflector::annihilating(vector);
         if k > start {
             let below = n * (k - 1) + k;
             h[below] = reflector.beta;
@@ -378,10 +378,16 @@ fn shifts(h: &[f64], n: usize, first: usize, last: usize, count: usize) -> Shift
     }
 }
 
-/// The row in which a sweep starts, below two consecutive small subdiagonal entries if there are any, and the first column of the shifted
-/// square there.
+/// Where a sweep starts.
+struct Bulge {
+    row: usize,
+    /// The first column of the shifted square there, up to a factor.
+    vector: [f64; 3],
+}
+
+/// Starts a sweep below two consecutive small subdiagonal entries, if there are any.
 #[inline]
-fn bulge(h: &[f64], n: usize, first: usize, last: usize, shifts: &Shifts) -> (usize, (f64, f64, f64)) {
+fn bulge(h: &[f64], n: usize, first: usize, last: usize, shifts: &Shifts) -> Bulge {
     let at = |row: usize, column: usize| h[row + n * column];
     let mut start = last - 2;
     loop {
@@ -395,14 +401,14 @@ fn bulge(h: &[f64], n: usize, first: usize, last: usize, shifts: &Shifts) -> (us
         let y = ratio * (a + d - shifts.re[0] - shifts.re[1]);
         let z = ratio * at(start + 2, start + 1);
         let size = x.abs() + y.abs() + z.abs();
-        let vector = (x / size, y / size, z / size);
+        let vector = [x / size, y / size, z / size];
         if start == first {
-            return (start, vector);
+            return Bulge { row: start, vector };
         }
         let neighbours = at(start - 1, start - 1).abs() + a.abs() + d.abs();
-        let coupling = at(start, start - 1).abs() * (vector.1.abs() + vector.2.abs());
-        if coupling <= f64::EPSILON * vector.0.abs() * neighbours {
-            return (start, vector);
+        let coupling = at(start, start - 1).abs() * (vector[1].abs() + vector[2].abs());
+        if coupling <= f64::EPSILON * vector[0].abs() * neighbours {
+            return Bulge { row: start, vector };
         }
         start -= 1;
     }
@@ -413,14 +419,14 @@ fn bulge(h: &[f64], n: usize, first: usize, last: usize, shifts: &Shifts) -> (us
 fn reflect_three(h: &mut [f64], n: usize, k: usize, first: usize, last: usize, reflector: &SmallReflector) {
     for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
         let rows = &mut column[k..k + 3];
-        (rows[0], rows[1], rows[2]) = reflector.apply(rows[0], rows[1], rows[2]);
+        [rows[0], rows[1], rows[2]] = reflector.apply([rows[0], rows[1], rows[2]]);
     }
     let rows = first..(k + 3).min(last) + 1;
     let (a, rest) = h[n * k..n * (k + 3)].split_at_mut(n);
     let (b, c) = rest.split_at_mut(n);
     let (a, b, c) = (&mut a[rows.clone()], &mut b[rows.clone()], &mut c[rows]);
     for ((x, y), z) in a.iter_mut().zip(b).zip(c) {
-        (*x, *y, *z) = reflector.apply(*x, *y, *z);
+        [*x, *y, *z] = reflector.apply([*x, *y, *z]);
     }
 }
 
@@ -429,11 +435,11 @@ fn reflect_three(h: &mut [f64], n: usize, k: usize, first: usize, last: usize, r
 fn reflect_two(h: &mut [f64], n: usize, k: usize, first: usize, last: usize, reflector: &SmallReflector) {
     for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
         let rows = &mut column[k..k + 2];
-        (rows[0], rows[1]) = reflector.apply_to_pair(rows[0], rows[1]);
+        [rows[0], rows[1]] = reflector.apply_to_pair([rows[0], rows[1]]);
     }
     let (a, b) = h[n * k..n * (k + 2)].split_at_mut(n);
     for (x, y) in a[first..=last].iter_mut().zip(&mut b[first..=last]) {
-        (*x, *y) = reflector.apply_to_pair(*x, *y);
+        [*x, *y] = reflector.apply_to_pair([*x, *y]);
     }
 }
 

@@ -265,10 +265,18 @@ impl<'a> Along<'a> {
     }
 }
 
+/// How far the function of a gate that is touched gets.
+pub(super) struct Reach {
+    /// Its largest value beyond zero; not a number where it is not known.
+    pub beyond: f64,
+    /// Whether it turns there; otherwise it is largest where the course changes.
+    pub turns: bool,
+}
+
 impl Along<'_> {
     /// How far the function of a gate gets beyond zero next to where it is touched, between two of the times at which the course
-    /// changes, and whether it turns there: otherwise it is largest at one of these times.
-    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> (f64, bool) {
+    /// changes.
+    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> Reach {
         let from = jumps.iter().copied().filter(|time| *time <= touch.time).fold(0.0, f64::max);
         let until = jumps.iter().copied().filter(|time| *time > touch.time).fold(1.0, f64::min);
         let gate = Gate { function: touch.function, upwards: touch.side < 0.0, events: Vec::new() };
@@ -293,10 +301,10 @@ impl Along<'_> {
         {
             top = higher;
         }
-        let Some(middle) = times.get(top) else { return (f64::NAN, false) };
+        let Some(middle) = times.get(top) else { return Reach { beyond: f64::NAN, turns: false } };
         let is_first = top == 0 && from > 0.0;
         if is_first || end.is_some_and(|(until, _)| until == *middle) {
-            return (values[top], false);
+            return Reach { beyond: values[top], turns: false };
         }
         let mut low = if top == 0 { *middle } else { times[top - 1] };
         let mut high = times.get(top + 1).copied().unwrap_or(*middle);
@@ -308,7 +316,7 @@ impl Along<'_> {
                 high = other;
             }
         }
-        (value(0.5 * (low + high)), true)
+        Reach { beyond: value(0.5 * (low + high)), turns: true }
     }
 }
 

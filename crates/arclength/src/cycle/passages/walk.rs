@@ -14,6 +14,23 @@ pub(super) struct Standing {
     pub left: Option<usize>,
 }
 
+/// Where a course ends.
+struct Exit {
+    time: f64,
+    function: GateFunction,
+    /// Whether the function that is zero there grows.
+    upwards: bool,
+}
+
+/// A function at whose value a course would end.
+struct PossibleGate {
+    /// Its index among all functions of the course.
+    index: usize,
+    value: f64,
+    upwards: bool,
+    function: GateFunction,
+}
+
 impl Along<'_> {
     /// Where a stretch begins; what is at zero there but for rounding is where it is a little later.
     pub(super) fn start(&self, stretch: &Stretch) -> Standing {
@@ -66,7 +83,7 @@ impl Along<'_> {
         let (first, known) = (standing.course.clone(), found.len());
         for (index, pair) in stretch.times.windows(2).enumerate() {
             let [mut from, until] = [pair[0], pair[1]];
-            while let Some((time, function, upwards)) = self.exit(standing, from, until, end) {
+            while let Some(Exit { time, function, upwards }) = self.exit(standing, from, until, end) {
                 let state = self.state(time, end);
                 from = time;
                 if let GateFunction::Condition { event } = function {
@@ -137,13 +154,7 @@ impl Along<'_> {
 
     /// The first function that passes its border between two times, and when: between them it is taken for a parabola, whose turn
     /// is looked at too.
-    fn exit(
-        &self,
-        standing: &Standing,
-        from: f64,
-        until: f64,
-        end: Option<(f64, usize)>,
-    ) -> Option<(f64, GateFunction, bool)> {
+    fn exit(&self, standing: &Standing, from: f64, until: f64, end: Option<(f64, usize)>) -> Option<Exit> {
         let course = &standing.course;
         let switches = self.pieces.thresholds().len();
         let functions = |time: f64| self.functions(course, &self.state(time, end));
@@ -151,27 +162,36 @@ impl Along<'_> {
         let [start, half, last] = [from, middle, until].map(functions);
         let [below, _] = course.cells(switches);
         let slide = course.slide.as_ref().map(|slide| slide.switch);
-        let mut exits: Vec<(usize, f64, bool, GateFunction)> = Vec::new();
+        let mut gates: Vec<PossibleGate> = Vec::new();
         for (switch, threshold) in self.pieces.thresholds().iter().enumerate() {
             let [lower, upper] = threshold.borders(below[switch]);
             for (value, upwards) in [(lower, false), (upper, true)] {
                 if value.is_finite() && slide != Some(switch) {
-                    exits.push((switch, value, upwards, GateFunction::Border { switch, value }));
+                    let function = GateFunction::Border { switch, value };
+                    gates.push(PossibleGate { index: switch, value, upwards, function });
                 }
             }
         }
         for (event, side) in standing.sides.iter().enumerate() {
             if *side != 0.0 {
-                exits.push((switches + event, 0.0, *side < 0.0, GateFunction::Condition { event }));
+                let function = GateFunction::Condition { event };
+                gates.push(PossibleGate {
+                    index: switches + event,
+                    value: 0.0,
+                    upwards: *side < 0.0,
+                    function,
+                });
             }
         }
         if let Some(switch) = slide {
             let first = switches + self.directions.len();
-            exits.push((first, 0.0, false, GateFunction::Pull { switch, above: false }));
-            exits.push((first + 1, 0.0, true, GateFunction::Pull { switch, above: true }));
+            for (index, above) in [(first, false), (first + 1, true)] {
+                let function = GateFunction::Pull { switch, above };
+                gates.push(PossibleGate { index, value: 0.0, upwards: above, function });
+            }
         }
-        let mut first: Option<(f64, GateFunction, bool)> = None;
-        for (index, value, upwards, function) in exits {
+        let mut first: Option<Exit> = None;
+        for PossibleGate { index, value, upwards, function } in gates {
             let sign = if upwards { 1.0 } else { -1.0 };
             let beyond = |values: &[f64]| sign * (values[index] - value);
             let is_left =
@@ -185,7 +205,7 @@ impl Along<'_> {
                 && !is_left
                 && lands(b)
                 && lands(c)
-                && first.is_none_or(|(time, ..)| from < time)
+                && first.as_ref().is_none_or(|first| from < first.time)
                 && self.behind(course, function, upwards, &self.state(until, end)).0.slide.is_some()
             {
                 let near = -NEAR * self.sizes[index];
@@ -194,7 +214,7 @@ impl Along<'_> {
                 } else {
                     crossing((from, middle), |time| beyond(&functions(time)) - near)
                 };
-                first = Some((landing, function, upwards));
+                first = Some(Exit { time: landing, function, upwards });
                 continue;
             }
             let place_of_turn = 0.5 - 0.25 * (c - a) / (a - 2.0 * b + c);
@@ -208,8 +228,8 @@ impl Along<'_> {
             let Some(far) = candidates.into_iter().find(is_beyond) else { continue };
             let crossing =
                 if a > 0.0 { from } else { crossing((from, far), |time| beyond(&functions(time))) };
-            if first.is_none_or(|(time, ..)| crossing < time) {
-                first = Some((crossing, function, upwards));
+            if first.as_ref().is_none_or(|first| crossing < first.time) {
+                first = Some(Exit { time: crossing, function, upwards });
             }
         }
         first

@@ -1,7 +1,7 @@
 //! Where branches of equilibria end that reach no end of a range, and what special points do not say.
 
 use arclength::branch::{Criticality, Stability};
-use arclength::continuation::{Settings, Stop};
+use arclength::continuation::Stop;
 use arclength::equilibrium::{Equilibria, EquilibriumBranch, EquilibriumEnd, equilibrium_settings};
 use arclength::{Scalar, VectorField};
 
