@@ -79,6 +79,7 @@ pub struct Assignment {
 
 /// Why a text is no interval, list of values or assignment.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum IntervalError {
     /// Not of the form asked for.
     #[error("it must have the form {form}, such as {example}")]

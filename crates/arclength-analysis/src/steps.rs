@@ -40,16 +40,14 @@ impl Steps {
     /// The settings of a continuation with these steps.
     pub fn settings(&self, settings: Settings) -> Settings {
         let finer = f64::from(self.finer);
-        Settings {
-            most_steps: self.steps as usize,
-            initial_step: settings.initial_step / finer,
-            largest_step: settings.largest_step / finer,
-            largest_parameter_change: settings.largest_parameter_change / finer,
+        settings
+            .most_steps(self.steps as usize)
+            .initial_step(settings.initial_step / finer)
+            .largest_step(settings.largest_step / finer)
+            .largest_parameter_change(settings.largest_parameter_change / finer)
             // The distance between prediction and solution falls with the square of the step.
-            predictor_error: settings.predictor_error / (finer * finer),
-            smallest_step: settings.smallest_step.min(settings.initial_step / finer / 1e3),
-            ..settings
-        }
+            .predictor_error(settings.predictor_error / (finer * finer))
+            .smallest_step(settings.smallest_step.min(settings.initial_step / finer / 1e3))
     }
 }
 

@@ -9,7 +9,7 @@ use crate::expression::{Expression, Node, parse_expression, parse_number, reserv
 use crate::name::Name;
 use crate::options::Options;
 use crate::source::Text;
-use crate::statement::{EventStatement, Statement, classify};
+use crate::statement::{EventStatement, Statement, TableRange, classify};
 use arclength::Direction;
 use std::collections::HashMap;
 
@@ -115,18 +115,7 @@ impl Declarations {
                 let expression = self.perhaps_unused(line, right)?;
                 self.symbols.functions.push(FunctionDefinition { name, arguments, expression });
             }
-            Statement::Table(name, range, right) => {
-                self.declare(&name, Symbol::Table(self.symbols.tables.len()))?;
-                let expression = self.expression(line, right)?;
-                self.warnings.push(Warning::new(
-                    name.span,
-                    format!(
-                        "the table `{}` is taken as its formula from {} to {}, where XPPAUT draws straight lines between {} points",
-                        name.text, range.low, range.high, range.points
-                    ),
-                ));
-                self.symbols.tables.push(TableDefinition { name, range, expression });
-            }
+            Statement::Table(name, range, right) => self.table(line, name, range, right)?,
             Statement::Auxiliary(name, right) => {
                 let expression = self.perhaps_unused(line, right)?;
                 self.auxiliaries.push(QuantityDefinition { name, expression });
@@ -136,55 +125,81 @@ impl Declarations {
                 let expression = self.expression(line, right)?;
                 self.initial.push((name, InitialValue::Formula(expression)));
             }
-            Statement::Event(event) => {
-                let EventStatement { span, direction, condition: (start, end), assignments } = event;
-                let condition = parse_expression(line, start, end, &mut self.warnings)?;
-                let assignments = assignments
-                    .into_iter()
-                    .map(|(name, start, end)| {
-                        let expression = parse_expression(line, start, end, &mut self.warnings)?;
-                        Ok(QuantityDefinition { name, expression })
-                    })
-                    .collect::<Result<_, OdeError>>()?;
-                self.events.push(EventDefinition { span, direction, condition, assignments });
-            }
-            Statement::Parameters(rest) => {
-                for assignment in assignments(line, rest, line.len())? {
-                    let value = self.value(line, &assignment, Declares::Parameter)?;
-                    let symbol = Symbol::Parameter(self.parameters.len());
-                    self.declare(&assignment.name, symbol)?;
-                    self.symbols.constants.push((assignment.name.key(), symbol));
-                    self.parameters.push(Value { name: assignment.name, value });
-                }
-            }
-            Statement::Numbers(rest) => {
-                for assignment in assignments(line, rest, line.len())? {
-                    let symbol = Symbol::Number(self.value(line, &assignment, Declares::Parameter)?);
-                    self.declare(&assignment.name, symbol)?;
-                    self.symbols.constants.push((assignment.name.key(), symbol));
-                }
-            }
+            Statement::Event(event) => self.event(line, event)?,
+            Statement::Parameters(rest) => self.parameters(line, rest)?,
+            Statement::Numbers(rest) => self.numbers(line, rest)?,
             Statement::Initial(rest) => {
                 for assignment in assignments(line, rest, line.len())? {
                     let value = self.value(line, &assignment, Declares::Initial)?;
                     self.initial.push((assignment.name, InitialValue::Number(value)));
                 }
             }
-            Statement::Set(name, start, end) => {
-                let entries = assignments(line, start, end)?
-                    .into_iter()
-                    .map(|assignment| {
-                        let value = assignment.value(line).into_owned();
-                        let span = line.span(assignment.value_start, assignment.value_end);
-                        (assignment.name, value, span)
-                    })
-                    .collect();
-                self.sets.push(SetDefinition { name, entries });
-            }
+            Statement::Set(name, start, end) => self.set(line, name, (start, end))?,
             Statement::Options(rest) => self.options.read(line, rest, &mut self.warnings)?,
             Statement::Refused(names, error, _) => self.refused(names, &error)?,
             Statement::Ignored(span, message) => self.warnings.push(Warning::new(span, message)),
         }
+        Ok(())
+    }
+
+    fn table(&mut self, line: &Text, name: Name, range: TableRange, right: usize) -> Result<(), OdeError> {
+        self.declare(&name, Symbol::Table(self.symbols.tables.len()))?;
+        let expression = self.expression(line, right)?;
+        self.warnings.push(Warning::new(
+            name.span,
+            format!(
+                "the table `{}` is taken as its formula from {} to {}, where XPPAUT draws straight lines between {} points",
+                name.text, range.low, range.high, range.points
+            ),
+        ));
+        self.symbols.tables.push(TableDefinition { name, range, expression });
+        Ok(())
+    }
+
+    fn event(&mut self, line: &Text, event: EventStatement) -> Result<(), OdeError> {
+        let EventStatement { span, direction, condition: (start, end), assignments } = event;
+        let condition = parse_expression(line, start, end, &mut self.warnings)?;
+        let assignments = assignments
+            .into_iter()
+            .map(|(name, start, end)| {
+                let expression = parse_expression(line, start, end, &mut self.warnings)?;
+                Ok(QuantityDefinition { name, expression })
+            })
+            .collect::<Result<_, OdeError>>()?;
+        self.events.push(EventDefinition { span, direction, condition, assignments });
+        Ok(())
+    }
+
+    fn parameters(&mut self, line: &Text, start: usize) -> Result<(), OdeError> {
+        for assignment in assignments(line, start, line.len())? {
+            let value = self.value(line, &assignment, Declares::Parameter)?;
+            let symbol = Symbol::Parameter(self.parameters.len());
+            self.declare(&assignment.name, symbol)?;
+            self.symbols.constants.push((assignment.name.key(), symbol));
+            self.parameters.push(Value { name: assignment.name, value });
+        }
+        Ok(())
+    }
+
+    fn numbers(&mut self, line: &Text, start: usize) -> Result<(), OdeError> {
+        for assignment in assignments(line, start, line.len())? {
+            let symbol = Symbol::Number(self.value(line, &assignment, Declares::Parameter)?);
+            self.declare(&assignment.name, symbol)?;
+            self.symbols.constants.push((assignment.name.key(), symbol));
+        }
+        Ok(())
+    }
+
+    fn set(&mut self, line: &Text, name: Name, (start, end): (usize, usize)) -> Result<(), OdeError> {
+        let entries = assignments(line, start, end)?
+            .into_iter()
+            .map(|assignment| {
+                let value = assignment.value(line).into_owned();
+                let span = line.span(assignment.value_start, assignment.value_end);
+                (assignment.name, value, span)
+            })
+            .collect();
+        self.sets.push(SetDefinition { name, entries });
         Ok(())
     }
 

@@ -19,6 +19,7 @@ pub struct OptionEntry {
 ///
 /// XPPAUT recognises an option by the beginning of its name, so `trans` and `transient` are the same.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Options {
     /// Every option in the order of the file, whether or not it has a meaning here.
     pub entries: Vec<OptionEntry>,

@@ -58,7 +58,7 @@ fn seconds(dimension: usize, intervals: usize) -> f64 {
     };
     let resolution = Resolution { tolerance: 1e-2, fewest_intervals: intervals, ..Resolution::default() };
     let run = |steps: usize| {
-        let settings = Settings { most_steps: steps, ..Settings::default() };
+        let settings = Settings::default().most_steps(steps);
         let cycles = Cycles::of(&ring, start.clone()).parameters(&[0.0]).along("rho", 0.0..=1.0);
         let begin = Instant::now();
         let branch = cycles.resolution(resolution).settings(settings).run().expect("exists");

@@ -1,7 +1,6 @@
 //! A nerve cell that fires: the equilibrium of the FitzHugh-Nagumo equations along the current, its Hopf points, and the cycles
 //! that are born at the first of them.
 
-use arclength::cycle::{CycleStart, Cycles};
 use arclength::equilibrium::Equilibria;
 use arclength::{Error, Scalar, VectorField};
 
@@ -32,10 +31,7 @@ fn main() -> Result<(), Error> {
         );
     }
     let Some(hopf) = equilibria.hopf_points().next() else { return Ok(()) };
-    let cycles = Cycles::of(&FitzHughNagumo, CycleStart::from(hopf))
-        .parameters(&hopf.parameters)
-        .along("current", 0.0..=2.0);
-    let branch = cycles.at(&[0.5, 1.0]).run()?;
+    let branch = hopf.cycles(&FitzHughNagumo).along("current", 0.0..=2.0).at(&[0.5, 1.0]).run()?;
     println!("\n current    period  voltage from to    stable");
     for cycle in &branch.points {
         let stable = cycle.stable.map_or("undecided", |stable| if stable { "yes" } else { "no" });

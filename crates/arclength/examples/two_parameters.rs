@@ -2,7 +2,6 @@
 //! meet in a cusp.
 
 use arclength::equilibrium::Equilibria;
-use arclength::locus::EquilibriumLocus;
 use arclength::{Error, Scalar, VectorField};
 
 struct Cusp;
@@ -24,8 +23,7 @@ fn main() -> Result<(), Error> {
     let branch =
         Equilibria::of(&Cusp).start(&[-2.0]).parameters(&[-2.0, 1.0]).along("b1", -2.0..=2.0).run()?;
     let Some(fold) = branch.folds().next() else { return Ok(()) };
-    let locus = EquilibriumLocus::of(&Cusp).from_fold(fold).along("b1", -1.0..=1.0).and("b2", -0.5..=1.5);
-    let folds = locus.run()?;
+    let folds = fold.curve(&Cusp).along("b1", -1.0..=1.0).and("b2", -0.5..=1.5).run()?;
     println!("       b1        b2         x");
     for point in &folds.points {
         let label = point.label.map_or(String::new(), |label| label.to_string());

@@ -4,6 +4,7 @@ use crate::integration::IntegrationError;
 
 /// Why a correction failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CorrectionFailure {
     /// The bordered Jacobian is singular.
     #[error("the Jacobian is singular")]

@@ -62,7 +62,7 @@ impl Classification {
     pub fn settings(&self, wheel: &Wheel) -> Result<ClassificationSettings, Error> {
         match self.duration {
             Some(duration) if duration > 0.0 && duration.is_finite() => {
-                Ok(ClassificationSettings { duration })
+                Ok(ClassificationSettings::with_duration(duration))
             }
             Some(duration) => Err(Error::invalid(
                 &["duration"],

@@ -13,6 +13,7 @@ use std::path::PathBuf;
 
 /// Why an analysis of a wheel gives no result.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// A field of the request makes no sense.
     #[error(transparent)]

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             hopf.value,
             hopf.criticality
         );
-        let options = CycleOptions { at: speeds.clone(), ..CycleOptions::default() };
+        let options = CycleOptions::default().at(&speeds);
         let branch = hopf.cycles(along, &options, |_| ControlFlow::Continue(()))?;
         for cycle in branch.points.iter().filter(|cycle| speeds.contains(&cycle.value)) {
             println!(

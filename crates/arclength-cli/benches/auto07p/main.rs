@@ -23,7 +23,7 @@ mod fortran;
 mod processor_time;
 mod program;
 
-use arclength::cycle::{CycleBranch, CycleStart, Cycles, Resolution};
+use arclength::cycle::{CycleBranch, Resolution};
 use arclength::equilibrium::{Equilibria, HopfPoint, find_equilibrium};
 use arclength_ode::Model;
 use auto::{AUTO, Auto};
@@ -197,10 +197,9 @@ fn tell(name: &str, compared: Result<Compared, String>) {
     );
 }
 
-/// A model with its parameters, and the Hopf point of a case.
+/// A model, and the Hopf point of a case.
 struct Prepared {
     model: Model,
-    parameters: Vec<f64>,
     active: usize,
     hopf: HopfPoint,
     /// An equilibrium a little beside the Hopf point, so that AUTO's run along the equilibria passes it, and its parameters.
@@ -225,11 +224,10 @@ fn prepare(case: &Case) -> Result<Prepared, String> {
         .run()
         .map_err(|error| error.to_string())?;
     let hopf = branch.hopf_points().nth(case.hopf).ok_or("no Hopf point")?.clone();
-    parameters[active] = hopf.value;
-    let mut beside = parameters.clone();
+    let mut beside = hopf.parameters.clone();
     beside[active] -= 5e-3 * (case.equilibria.1 - case.equilibria.0);
     let equilibrium = find_equilibrium(&model, &hopf.state, &beside).map_err(|error| error.to_string())?;
-    Ok(Prepared { model, parameters, active, hopf, equilibrium, beside })
+    Ok(Prepared { model, active, hopf, equilibrium, beside })
 }
 
 fn compare(case: &Case, measure: Measure) -> Result<Compared, String> {
@@ -390,8 +388,9 @@ fn compare_curves(curve: &Curve) -> Result<Compared, String> {
 }
 
 fn follow(case: &Case, prepared: &Prepared, tolerance: f64) -> Result<CycleBranch, String> {
-    Cycles::of(&prepared.model, CycleStart::from(&prepared.hopf))
-        .parameters(&prepared.parameters)
+    prepared
+        .hopf
+        .cycles(&prepared.model)
         .along(case.parameter, case.cycles.0..=case.cycles.1)
         .at(case.values)
         .resolution(Resolution::with_tolerance(tolerance))

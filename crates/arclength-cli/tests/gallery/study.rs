@@ -85,11 +85,8 @@ impl Study {
     ) -> EquilibriumBranch {
         let range: Interval = along.parse().unwrap();
         let point = branch.branch_points().nth(number).expect("a branch point");
-        let branch = Equilibria::of(&self.chosen.model)
-            .from_branch_point(point)
-            .along(&range.key, range.start..=range.end)
-            .run()
-            .unwrap();
+        let branch =
+            point.other(&self.chosen.model).along(&range.key, range.start..=range.end).run().unwrap();
         self.keep(&range, &branch);
         branch
     }
@@ -120,7 +117,7 @@ impl Study {
             .parameters(parameters)
             .along(&range.key, range.start..=range.end)
             .at(at)
-            .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+            .settings(Settings::default().largest_parameter_change(FINE))
             .run()
             .unwrap();
         let report =
@@ -131,12 +128,9 @@ impl Study {
 
     /// The doubled cycles that leave at a period doubling.
     pub(crate) fn doubled_from(&mut self, cycle: &CyclePoint, along: &str, at: &[f64]) -> CycleBranch {
-        let range: Interval = along.parse().unwrap();
-        let mut parameters = self.chosen.parameters.clone();
-        parameters[self.chosen.model.parameter_index(&range.key).expect("a parameter")] = cycle.value;
         let branching = cycle.branching.clone().expect("a bifurcation");
         assert!(branching.doubled);
-        self.cycles(CycleStart::Branching(branching), &parameters, along, at)
+        self.cycles(CycleStart::Branching(branching), &cycle.parameters, along, at)
     }
 
     /// A curve of special cycles in two parameters, from one that was found along the first of them.
@@ -147,14 +141,12 @@ impl Study {
         plane: [&str; 2],
     ) -> CycleLocusBranch {
         let [first, second] = plane.map(|range| range.parse::<Interval>().unwrap());
-        let mut parameters = self.chosen.parameters.clone();
-        parameters[self.chosen.model.parameter_index(&first.key).expect("a parameter")] = cycle.value;
         let run = || {
             CycleLocus::of(&self.chosen.model)
-                .from_cycle(kind, &cycle.orbit, &parameters)
+                .from_cycle(kind, &cycle.orbit, &cycle.parameters)
                 .along(&first.key, first.start..=first.end)
                 .and(&second.key, second.start..=second.end)
-                .settings(Settings { largest_parameter_change: FINE, ..Settings::default() })
+                .settings(Settings::default().largest_parameter_change(FINE))
                 .run()
                 .unwrap()
         };
@@ -184,7 +176,7 @@ impl Study {
         let branch = start(EquilibriumLocus::of(&self.chosen.model))
             .along(&first.key, first.start..=first.end)
             .and(&second.key, second.start..=second.end)
-            .settings(Settings { largest_parameter_change: FINE, ..equilibrium_settings() })
+            .settings(equilibrium_settings().largest_parameter_change(FINE))
             .run()
             .unwrap();
         let report = EquilibriumLocusResult::new(

@@ -56,7 +56,7 @@ fn towed_wheel() {
 
     let speeds = SHOOTING.map(|(v, ..)| v);
     let cycles = study.cycles_from(&branch, 0, "v=0.5:12", &speeds);
-    let options = CycleOptions { at: speeds.to_vec(), ..CycleOptions::default() };
+    let options = CycleOptions::default().at(&speeds);
     let same = rust.cycles(along, &options, |_| ControlFlow::Continue(())).unwrap();
     for (v, period, largest, smallest, multiplier) in SHOOTING {
         let cycle = at(&cycles, v);

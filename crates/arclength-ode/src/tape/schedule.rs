@@ -27,66 +27,17 @@ fn allot_registers(
     states: usize,
     parameters: usize,
 ) -> Option<Tape> {
-    let inputs = states + parameters;
-    if inputs > MAXIMUM_REGISTERS {
-        return None;
-    }
-    let mut last_use: Vec<Option<usize>> = vec![None; operations.len()];
-    for (index, step) in steps.iter().enumerate() {
-        step.reads.iter().for_each(|&node| last_use[node as usize] = Some(index));
-    }
-    results.iter().for_each(|&node| last_use[node as usize] = Some(usize::MAX));
-
-    let mut register_of: Vec<Register> = vec![0; operations.len()];
-    let mut occupied = vec![false; inputs];
-    for (node, operation) in operations.iter().enumerate() {
-        let register = match *operation {
-            _ if last_use[node].is_none() => continue,
-            Operation::State(index) => index as usize,
-            Operation::Parameter(index) => states + index as usize,
-            _ => continue,
-        };
-        register_of[node] = register as Register;
-        occupied[register] = true;
-    }
-    let mut free: Vec<Register> =
-        (0..inputs).filter(|&register| !occupied[register]).map(|register| register as Register).collect();
-    // Constants keep their registers, which every evaluation begins with.
-    let mut constants = Vec::new();
-    for (node, operation) in operations.iter().enumerate() {
-        if let (Operation::Constant(bits), Some(_)) = (*operation, last_use[node]) {
-            register_of[node] = Register::try_from(inputs + constants.len()).ok()?;
-            constants.push(f64::from_bits(bits));
-            last_use[node] = Some(usize::MAX);
-        }
-    }
-    let fixed = inputs + constants.len();
-    let mut registers = fixed;
+    let mut allotment = Allotment::of_inputs(steps, operations, results, states, parameters)?;
+    let constants = allotment.hold_constants(operations)?;
+    let fixed = allotment.count;
     let mut allotted = Vec::with_capacity(steps.len());
     for (index, step) in steps.iter().enumerate() {
-        let reads: Vec<Register> = step.reads.iter().map(|&node| register_of[node as usize]).collect();
-        let mut released: Vec<NodeId> = step.reads.clone();
-        released.sort_unstable();
-        released.dedup();
-        for node in released {
-            if last_use[node as usize] == Some(index) {
-                free.push(register_of[node as usize]);
-            }
-        }
-        for &node in &step.writes {
-            register_of[node as usize] = match free.pop() {
-                Some(register) => register,
-                None if registers == MAXIMUM_REGISTERS => return None,
-                None => {
-                    registers += 1;
-                    (registers - 1) as Register
-                }
-            };
-        }
-        let writes: Vec<Register> = step.writes.iter().map(|&node| register_of[node as usize]).collect();
-        allotted.push((step.kind, reads, writes));
+        let reads = allotment.registers_of(&step.reads);
+        allotment.release(index, step);
+        allotment.allot(step)?;
+        allotted.push((step.kind, reads, allotment.registers_of(&step.writes)));
     }
-    let results = results.iter().map(|&node| register_of[node as usize]);
+    let (registers, results) = (allotment.count, allotment.registers_of(results));
     let program = if registers <= STACK_REGISTERS {
         let short = |registers: Vec<Register>| -> Vec<u8> {
             registers.into_iter().map(|register| register as u8).collect()
@@ -95,13 +46,103 @@ fn allot_registers(
             .into_iter()
             .map(|(kind, reads, writes)| instruction(kind, &short(reads), &short(writes)))
             .collect();
-        Program::OnStack(Code { instructions, results: short(results.collect()) }.check(fixed, registers))
+        Program::OnStack(Code { instructions, results: short(results) }.check(fixed, registers))
     } else {
         let instructions =
             allotted.into_iter().map(|(kind, reads, writes)| instruction(kind, &reads, &writes)).collect();
-        Program::OnHeap(Code { instructions, results: results.collect() }.check(fixed, registers))
+        Program::OnHeap(Code { instructions, results }.check(fixed, registers))
     };
     Some(Tape { program, states, parameters, constants, registers })
+}
+
+/// Which node is where.
+struct Allotment {
+    /// The step that reads a node last, by the node; of results and constants none does.
+    last_use: Vec<Option<usize>>,
+    register_of: Vec<Register>,
+    free: Vec<Register>,
+    /// Number of registers so far.
+    count: usize,
+}
+
+impl Allotment {
+    /// States and parameters have the first registers; those that nothing reads are free.
+    fn of_inputs(
+        steps: &[Step],
+        operations: &[Operation],
+        results: &[NodeId],
+        states: usize,
+        parameters: usize,
+    ) -> Option<Self> {
+        let inputs = states + parameters;
+        if inputs > MAXIMUM_REGISTERS {
+            return None;
+        }
+        let mut last_use: Vec<Option<usize>> = vec![None; operations.len()];
+        for (index, step) in steps.iter().enumerate() {
+            step.reads.iter().for_each(|&node| last_use[node as usize] = Some(index));
+        }
+        results.iter().for_each(|&node| last_use[node as usize] = Some(usize::MAX));
+        let mut register_of: Vec<Register> = vec![0; operations.len()];
+        let mut occupied = vec![false; inputs];
+        for (node, operation) in operations.iter().enumerate() {
+            let register = match *operation {
+                _ if last_use[node].is_none() => continue,
+                Operation::State(index) => index as usize,
+                Operation::Parameter(index) => states + index as usize,
+                _ => continue,
+            };
+            register_of[node] = register as Register;
+            occupied[register] = true;
+        }
+        let free = (0..inputs).filter(|&register| !occupied[register]).map(|register| register as Register);
+        Some(Self { free: free.collect(), last_use, register_of, count: inputs })
+    }
+
+    /// Constants keep their registers, which every evaluation begins with. Their values, in order.
+    fn hold_constants(&mut self, operations: &[Operation]) -> Option<Vec<f64>> {
+        let mut constants = Vec::new();
+        for (node, operation) in operations.iter().enumerate() {
+            if let (Operation::Constant(bits), Some(_)) = (*operation, self.last_use[node]) {
+                self.register_of[node] = Register::try_from(self.count).ok()?;
+                self.count += 1;
+                constants.push(f64::from_bits(bits));
+                self.last_use[node] = Some(usize::MAX);
+            }
+        }
+        Some(constants)
+    }
+
+    fn registers_of(&self, nodes: &[NodeId]) -> Vec<Register> {
+        nodes.iter().map(|&node| self.register_of[node as usize]).collect()
+    }
+
+    /// Frees the registers of what the step of that index reads for the last time.
+    fn release(&mut self, index: usize, step: &Step) {
+        let mut released = step.reads.clone();
+        released.sort_unstable();
+        released.dedup();
+        for node in released {
+            if self.last_use[node as usize] == Some(index) {
+                self.free.push(self.register_of[node as usize]);
+            }
+        }
+    }
+
+    /// Gives registers to what a step writes; `None` where there are no more.
+    fn allot(&mut self, step: &Step) -> Option<()> {
+        for &node in &step.writes {
+            self.register_of[node as usize] = match self.free.pop() {
+                Some(register) => register,
+                None if self.count == MAXIMUM_REGISTERS => return None,
+                None => {
+                    self.count += 1;
+                    (self.count - 1) as Register
+                }
+            };
+        }
+        Some(())
+    }
 }
 
 fn instruction<R: Copy>(kind: Kind, reads: &[R], writes: &[R]) -> Instruction<R> {

@@ -81,67 +81,34 @@ impl GlobalError {
     ) -> Vec<f64> {
         let n = collocation.problem.dimension();
         let degree = collocation.gauss().degree();
-        let (size, intervals, samples) = (collocation.interval_size(), collocation.intervals(), degree + 1);
-        let columns = n + collocation.problem.scalars();
-        let scalars = &unknown[intervals * size..];
+        let (size, intervals) = (collocation.interval_size(), collocation.intervals());
+        let (first_conditions, integral_conditions) =
+            (collocation.boundary_conditions(), collocation.problem.integral_conditions());
         let mut error = vec![0.0; unknown.len()];
         let mut integrals = vec![0.0; intervals * degree * n];
-        let mut smooth = vec![0.0; degree * n];
-        let mut forcing = vec![0.0; degree * n];
-        let mut defect = vec![0.0; samples * n];
-        let mut end = vec![0.0; n];
-        let (mut state, mut slope) = (vec![0.0; n], vec![0.0; n]);
-        let integral_conditions = collocation.problem.integral_conditions();
-        let mut conditions = vec![0.0; collocation.boundary_conditions() + integral_conditions];
-        for interval in 0..intervals {
-            let (left, right) = (collocation.mesh()[interval], collocation.mesh()[interval + 1]);
-            let width = right - left;
-            let values = collocation.interval(unknown, interval);
-            end.fill(0.0);
-            for (sample, target) in defect.chunks_exact_mut(n).enumerate() {
-                combine(values, &self.bases[sample][..=degree], &mut state);
-                combine(values, &self.slopes[sample][..=degree], &mut slope);
-                let time = left + self.fine.points[sample] * width;
-                collocation.problem.field(time, &state, scalars, target);
-                let weight = self.fine.weights[sample];
-                for ((entry, slope), end) in target.iter_mut().zip(&slope).zip(&mut end) {
-                    *entry = width * *entry - slope;
-                    *end += weight * *entry;
-                }
-            }
-            let here = &mut integrals[interval * degree * n..(interval + 1) * degree * n];
-            apply(&self.integrals, n, &defect, here);
-            apply(&self.smooth, n, &defect, &mut smooth);
-            // The matrices A at the Gauss points, applied to the smooth part.
-            for point in 0..degree {
-                let node = interval * degree + point;
-                let derivative = &collocation.derivatives()[node * columns * n..][..n * n];
-                let target = &mut forcing[point * n..(point + 1) * n];
-                combine(derivative, &smooth[point * n..(point + 1) * n], target);
-            }
+        let mut conditions = vec![0.0; first_conditions + integral_conditions];
+        let mut defect = Defect::new(n, degree);
+        for (interval, here) in integrals.chunks_exact_mut(degree * n).enumerate() {
+            self.sample(collocation, unknown, interval, &mut defect);
+            apply(&self.integrals, n, &defect.samples, here);
+            apply(&self.smooth, n, &defect.samples, &mut defect.smooth);
             let row = &mut error[interval * size..(interval + 1) * size];
-            for (point, target) in row[n..].chunks_exact_mut(n).enumerate() {
-                let weights = &collocation.gauss().integration[point * degree..(point + 1) * degree];
-                combine(&forcing, weights, target);
-                target.iter_mut().for_each(|entry| *entry *= width);
-            }
+            defect.write_forcing(collocation, interval, &mut row[n..]);
             let condensation = &collocation.condensation;
             if interval + 1 < intervals {
-                row[..n].copy_from_slice(&end);
+                row[..n].copy_from_slice(&defect.integral);
                 if let Some(jump) = condensation.jumps.iter().find(|jump| jump.interval == interval) {
                     jump.apply(&mut row[..n]);
                 }
             }
-            for integral in 0..integral_conditions {
+            for (integral, condition) in conditions[first_conditions..].iter_mut().enumerate() {
                 let gradient = &condensation.gradients[(integral * intervals + interval) * size + n..];
-                let product: f64 = gradient.iter().zip(&smooth).map(|(a, b)| a * b).sum();
-                conditions[collocation.boundary_conditions() + integral] -= product;
+                *condition -= gradient.iter().zip(&defect.smooth).map(|(a, b)| a * b).sum::<f64>();
             }
         }
-        let boundary_conditions = collocation.boundary_conditions();
-        for (value, column) in
-            end.iter().zip(collocation.condensation.boundary.chunks_exact(boundary_conditions))
-        {
+        // What the defect of the last interval does to the boundary conditions.
+        let columns = collocation.condensation.boundary.chunks_exact(first_conditions);
+        for (value, column) in defect.integral.iter().zip(columns) {
             for (condition, derivative) in conditions.iter_mut().zip(column) {
                 *condition -= derivative * value;
             }
@@ -154,6 +121,87 @@ impl GlobalError {
             row[n..].iter_mut().zip(integral).for_each(|(entry, part)| *entry += part);
         }
         error
+    }
+
+    /// Samples the defect of an interval and integrates it over the interval.
+    fn sample<P: BoundaryValueEquations>(
+        &self,
+        collocation: &Collocation<P>,
+        unknown: &[f64],
+        interval: usize,
+        defect: &mut Defect,
+    ) {
+        let Defect { samples, integral, state, slope, .. } = defect;
+        let n = integral.len();
+        let degree = collocation.gauss().degree();
+        let scalars = &unknown[collocation.intervals() * collocation.interval_size()..];
+        let values = collocation.interval(unknown, interval);
+        let (left, right) = (collocation.mesh()[interval], collocation.mesh()[interval + 1]);
+        let width = right - left;
+        integral.fill(0.0);
+        for (sample, target) in samples.chunks_exact_mut(n).enumerate() {
+            combine(values, &self.bases[sample][..=degree], state);
+            combine(values, &self.slopes[sample][..=degree], slope);
+            let time = left + self.fine.points[sample] * width;
+            collocation.problem.field(time, state, scalars, target);
+            let weight = self.fine.weights[sample];
+            for ((entry, slope), end) in target.iter_mut().zip(&*slope).zip(&mut *integral) {
+                *entry = width * *entry - slope;
+                *end += weight * *entry;
+            }
+        }
+    }
+}
+
+/// The defect of one interval.
+struct Defect {
+    samples: Vec<f64>,
+    /// Its integral over the interval.
+    integral: Vec<f64>,
+    /// The smooth part of the integral up to the Gauss points.
+    smooth: Vec<f64>,
+    /// The matrices `A` at the Gauss points times that.
+    forcing: Vec<f64>,
+    /// Room for state and slope at a sample.
+    state: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+impl Defect {
+    fn new(n: usize, degree: usize) -> Self {
+        let zeros = |count: usize| vec![0.0; count * n];
+        Self {
+            samples: zeros(degree + 1),
+            integral: zeros(1),
+            smooth: zeros(degree),
+            forcing: zeros(degree),
+            state: zeros(1),
+            slope: zeros(1),
+        }
+    }
+
+    /// Writes what the linearised equations make of the smooth part up to the Gauss points.
+    fn write_forcing<P: BoundaryValueEquations>(
+        &mut self,
+        collocation: &Collocation<P>,
+        interval: usize,
+        targets: &mut [f64],
+    ) {
+        let n = self.integral.len();
+        let gauss = collocation.gauss();
+        let degree = gauss.degree();
+        let columns = n + collocation.problem.scalars();
+        for point in 0..degree {
+            let node = interval * degree + point;
+            let derivative = &collocation.derivatives()[node * columns * n..][..n * n];
+            let target = &mut self.forcing[point * n..(point + 1) * n];
+            combine(derivative, &self.smooth[point * n..(point + 1) * n], target);
+        }
+        let width = collocation.mesh()[interval + 1] - collocation.mesh()[interval];
+        for (point, target) in targets.chunks_exact_mut(n).enumerate() {
+            combine(&self.forcing, &gauss.integration[point * degree..(point + 1) * degree], target);
+            target.iter_mut().for_each(|entry| *entry *= width);
+        }
     }
 }
 

@@ -47,7 +47,7 @@ const WIDE: usize = 8;
 
 /// A Gauss point of an interval.
 #[derive(Clone, Copy)]
-struct Place {
+struct GaussPoint {
     interval: usize,
     point: usize,
 }
@@ -92,31 +92,31 @@ impl<P: BoundaryValueEquations> Collocation<P> {
             for point in 0..degree {
                 let state = &here[n * (point + 1)..n * (point + 2)];
                 let value = &mut values[point * n..(point + 1) * n];
-                let place = Place { interval, point };
+                let at = GaussPoint { interval, point };
                 for (chunk, now) in of_field.chunks(most).enumerate() {
                     // The values are the same in all chunks, so that only the first one counts them.
                     let sums = if chunk == 0 { &mut integrals[..] } else { &mut [] };
                     let sums = apart.is_empty().then_some(sums);
                     if now.len() <= NARROW {
                         narrow.seed(now, state, scalars);
-                        self.differentiate_field(place, now, &mut narrow, value);
+                        self.differentiate_field(at, now, &mut narrow, value);
                         if let Some(sums) = sums {
-                            self.differentiate_integrands(place, now, &mut narrow, sums);
+                            self.differentiate_integrands(at, now, &mut narrow, sums);
                         }
                     } else {
                         wide.seed(now, state, scalars);
-                        self.differentiate_field(place, now, &mut wide, value);
+                        self.differentiate_field(at, now, &mut wide, value);
                         if let Some(sums) = sums {
-                            self.differentiate_integrands(place, now, &mut wide, sums);
+                            self.differentiate_integrands(at, now, &mut wide, sums);
                         }
                     }
                 }
                 for (chunk, now) in apart.chunks(WIDE).enumerate() {
                     let sums = if chunk == 0 { &mut integrals[..] } else { &mut [] };
                     wide.seed(now, state, scalars);
-                    self.differentiate_integrands(place, now, &mut wide, sums);
+                    self.differentiate_integrands(at, now, &mut wide, sums);
                 }
-                self.complete(place, &known, state, scalars, value);
+                self.complete(at, &known, state, scalars, value);
             }
             self.interval_residual(interval, states, &values, &mut residual[interval * size..][..size]);
             if self.has_jumps
@@ -197,9 +197,9 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     }
 
     /// Derivatives of the field at one Gauss point that are known without differentiation: in carried components and in some scalars.
-    fn complete(&mut self, place: Place, known: &[usize], state: &[f64], scalars: &[f64], value: &[f64]) {
+    fn complete(&mut self, at: GaussPoint, known: &[usize], state: &[f64], scalars: &[f64], value: &[f64]) {
         let (n, e) = (state.len(), scalars.len());
-        let node = place.interval * self.gauss().degree() + place.point;
+        let node = at.interval * self.gauss().degree() + at.point;
         let block = &mut self.condensation.derivatives[node * n * (n + e)..(node + 1) * n * (n + e)];
         for &scalar in known {
             let target = &mut block[(n + scalar) * n..(n + scalar + 1) * n];
@@ -225,7 +225,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     #[inline(always)]
     fn differentiate_field<const D: usize>(
         &mut self,
-        place: Place,
+        at: GaussPoint,
         directions: &[usize],
         duals: &mut DualWorkspace<D>,
         values: &mut [f64],
@@ -233,8 +233,8 @@ impl<P: BoundaryValueEquations> Collocation<P> {
         Dual<f64, D>: JacobianScalar,
     {
         let (n, columns) = (duals.state.len(), duals.state.len() + duals.scalars.len());
-        let node = place.interval * self.gauss().degree() + place.point;
-        let time = self.time(place.interval, place.point);
+        let node = at.interval * self.gauss().degree() + at.point;
+        let time = self.time(at.interval, at.point);
         self.problem.field(time, &duals.state, &duals.scalars, &mut duals.values);
         for (entry, dual) in values.iter_mut().zip(&duals.values) {
             *entry = dual.value;
@@ -251,7 +251,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     #[inline(always)]
     fn differentiate_integrands<const D: usize>(
         &mut self,
-        place: Place,
+        at: GaussPoint,
         directions: &[usize],
         duals: &mut DualWorkspace<D>,
         integrals: &mut [f64],
@@ -260,11 +260,10 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     {
         let (n, e) = (duals.state.len(), duals.scalars.len());
         let (intervals, size) = (self.intervals(), self.interval_size());
-        let node = place.interval * self.gauss().degree() + place.point;
-        let weight =
-            (self.mesh[place.interval + 1] - self.mesh[place.interval]) * self.gauss().weights[place.point];
+        let node = at.interval * self.gauss().degree() + at.point;
+        let weight = (self.mesh[at.interval + 1] - self.mesh[at.interval]) * self.gauss().weights[at.point];
         let reference = Reference {
-            time: self.time(place.interval, place.point),
+            time: self.time(at.interval, at.point),
             state: &self.reference[node * n..(node + 1) * n],
             slope: &self.reference_slope[node * n..(node + 1) * n],
         };
@@ -276,7 +275,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
             for (row, dual) in duals.integrands.iter().enumerate() {
                 let slope = weight * dual.derivatives[index];
                 if column < n {
-                    let position = (row * intervals + place.interval) * size + (place.point + 1) * n + column;
+                    let position = (row * intervals + at.interval) * size + (at.point + 1) * n + column;
                     self.condensation.gradients[position] = slope;
                 } else {
                     self.condensation.corner[row * e + column - n] += slope;

@@ -41,22 +41,21 @@ impl Polynomials<'_> {
         values.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>() / width
     }
 
-    /// The interval in which a time in `[0, 1]` lies, the position in it as part of its width, and the width.
-    fn place(&self, time: f64) -> (usize, f64, f64) {
+    /// Where a time in `[0, 1]` lies on the mesh.
+    fn place(&self, time: f64) -> MeshPlace {
         let interval = self.mesh[1..self.mesh.len() - 1].partition_point(|&point| point <= time);
         let width = self.mesh[interval + 1] - self.mesh[interval];
-        (interval, (time - self.mesh[interval]) / width, width)
+        MeshPlace { interval, position: (time - self.mesh[interval]) / width, width }
     }
 
     /// Writes the state at a time in `[0, 1]`.
     pub(crate) fn state(&self, time: f64, state: &mut [f64]) {
-        let (interval, _, _) = self.place(time);
-        self.state_by(interval, time, state);
+        self.state_by(self.place(time).interval, time, state);
     }
 
     /// Writes the state at a time by the polynomial of the interval among some that is closest to it.
     pub(crate) fn state_within(&self, intervals: Range<usize>, time: f64, state: &mut [f64]) {
-        let (interval, _, _) = self.place(time);
+        let interval = self.place(time).interval;
         self.state_by(interval.clamp(intervals.start, intervals.end - 1), time, state);
     }
 
@@ -80,7 +79,7 @@ impl Polynomials<'_> {
 
     /// Tells values and slopes of some components at a time in `[0, 1]`.
     pub(crate) fn components(&self, time: f64, wanted: Range<usize>, mut tell: impl FnMut(usize, f64, f64)) {
-        let (interval, position, width) = self.place(time);
+        let MeshPlace { interval, position, width } = self.place(time);
         let nodes = self.gauss.degree() + 1;
         let (mut basis, mut slopes) = ([0.0; MOST_NODES], [0.0; MOST_NODES]);
         self.gauss.basis_with_slopes(position, &mut basis[..nodes], &mut slopes[..nodes]);
@@ -94,6 +93,14 @@ impl Polynomials<'_> {
             tell(component, sum(&basis[..nodes]), sum(&slopes[..nodes]) / width);
         }
     }
+}
+
+/// Where a time lies on a mesh.
+struct MeshPlace {
+    interval: usize,
+    /// Position in the interval, as part of its width.
+    position: f64,
+    width: f64,
 }
 
 /// A function of several components on the unit interval, a polynomial on every interval of a mesh, as plain data.

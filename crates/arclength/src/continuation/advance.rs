@@ -60,68 +60,26 @@ pub(super) fn advance<C: Curve>(
     bounds: &[Bound],
     settings: &Settings,
 ) -> Result<Solution<C::Point>, Stop<C::Reason>> {
-    for bound in bounds {
-        let rate = current.tangent[current.tangent.len() - bound.from_end].abs();
-        let most = settings.largest_parameter_change * bound.width();
-        if *step * rate > most {
-            *step = most / rate;
-        }
-        // The problem need not make sense far outside the range.
-        let slope = current.tangent[current.tangent.len() - bound.from_end];
-        let value = bound.value(&current.unknown);
-        let left = if slope > 0.0 { bound.upper - value } else { value - bound.lower };
-        let to_end = (left + OVERSHOOT * bound.width()) / rate;
-        if to_end > 0.0 && *step > to_end {
-            *step = to_end;
-        }
-    }
+    *step = within_bounds(*step, current, bounds, settings);
     let kept = keep(curve, current, previous);
     loop {
         let length = *step;
-        let mut unknown = predict(current, previous.as_ref(), length);
-        let border = metric_image(curve, &current.tangent);
-        let corrected = correct(curve, &mut unknown, &border, settings);
-        let (failure, slower) = match corrected {
-            Err(cause) => (Some(cause), STEP_REDUCTION),
-            Ok(correction) => {
-                let ratio = settings.predictor_error / correction.distance.max(1e-300);
-                // The predictor's error grows with the square of the step at least.
-                let factor = ratio.sqrt().clamp(STEP_REDUCTION, STEP_GROWTH);
-                let too_far = correction.distance
-                    > FAR_CORRECTION * settings.predictor_error.max(FAR_CORRECTION_PART * length);
-                (too_far.then_some(CorrectionFailure::Diverged), factor)
-            }
-        };
-        if let Some(cause) = failure {
-            *step = length * slower.min(STEP_HALVING);
-            if *step < settings.smallest_step {
-                return Err(Stop::StepTooSmall { cause });
-            }
-            continue;
-        }
-        let mut old_previous = previous.take();
-        let mut unknown_now = std::mem::take(&mut current.unknown);
-        let mut tangent_now = std::mem::take(&mut current.tangent);
-        let mut carried: Vec<&mut Vec<f64>> = vec![&mut unknown_now, &mut tangent_now];
-        if let Some((tangent, _)) = old_previous.as_mut() {
-            carried.push(tangent);
-        }
-        let settled = settle(curve, unknown, &mut carried, settings);
-        current.unknown = unknown_now;
-        current.tangent = tangent_now;
-        curve.carry_over(&mut current.point);
-        // Both ends of a step have one normalisation.
-        let settled = settled.and_then(|(solution, adaptation)| {
-            if adaptation == Adaptation::Renormalised {
-                renormalise(curve, current, settings)?;
-                old_previous = None;
-            }
-            Ok(solution)
-        });
-        let solution = match settled {
+        let Corrected { unknown, growth } =
+            match correct_prediction(curve, current, previous.as_ref(), length, settings) {
+                Ok(corrected) => corrected,
+                Err(Rejected { cause, reduction }) => {
+                    *step = length * reduction.min(STEP_HALVING);
+                    if *step < settings.smallest_step {
+                        return Err(Stop::StepTooSmall { cause });
+                    }
+                    continue;
+                }
+            };
+        let mut before = previous.take();
+        let solution = match settle_both_ends(curve, unknown, (current, &mut before), settings) {
             Ok(solution) => solution,
             Err(Error::NotFound { cause, .. }) => {
-                *previous = old_previous;
+                *previous = before;
                 *step = length * STEP_REDUCTION;
                 if *step < settings.smallest_step {
                     return Err(Stop::StepTooSmall { cause });
@@ -131,26 +89,129 @@ pub(super) fn advance<C: Curve>(
             }
             Err(error) => return Err(Stop::Failed(error)),
         };
-        let image = metric_image(curve, &solution.tangent);
-        let mut scratch = vec![0.0; image.len()];
-        // The metric may have changed with the discretisation: lengths behind are measured anew.
-        let stretch = norm(curve, &current.tangent, &mut scratch);
-        let cosine = inner(&current.tangent, &image) / stretch;
-        let plane_angle = angle_in_plane(current, &solution, bounds);
-        let turns = cosine < TANGENT_COSINE || plane_angle > PLANE_ANGLE;
-        if turns && length > TURNING_LIMIT * settings.smallest_step {
-            *previous = old_previous;
+        let turn = Turn::between(curve, current, &solution, bounds);
+        if turn.is_too_large() && length > TURNING_LIMIT * settings.smallest_step {
+            *previous = before;
             *step = length * STEP_HALVING;
             return_to(curve, (current, previous), kept.as_ref(), settings).map_err(stopped)?;
             continue;
         }
+        let stretch = turn.stretch;
         *previous = Some((current.tangent.iter().map(|entry| entry / stretch).collect(), length * stretch));
-        let angle = cosine.min(1.0).acos();
-        let growth = slower
-            .min(ANGLE_PART * TANGENT_COSINE.acos() / angle.max(f64::MIN_POSITIVE))
-            .min(ANGLE_PART * PLANE_ANGLE / plane_angle.max(f64::MIN_POSITIVE));
-        *step = (length * growth.max(STEP_REDUCTION)).min(settings.largest_step);
+        *step = (length * turn.limit(growth).max(STEP_REDUCTION)).min(settings.largest_step);
         return Ok(solution);
+    }
+}
+
+/// The step, shortened where the parameters would change by more than is allowed or leave their ranges.
+fn within_bounds<P>(mut step: f64, current: &Solution<P>, bounds: &[Bound], settings: &Settings) -> f64 {
+    for bound in bounds {
+        let slope = current.tangent[current.tangent.len() - bound.from_end];
+        let rate = slope.abs();
+        let most = settings.largest_parameter_change * bound.width();
+        if step * rate > most {
+            step = most / rate;
+        }
+        // The problem need not make sense far outside the range.
+        let value = bound.value(&current.unknown);
+        let left = if slope > 0.0 { bound.upper - value } else { value - bound.lower };
+        let to_end = (left + OVERSHOOT * bound.width()) / rate;
+        if to_end > 0.0 && step > to_end {
+            step = to_end;
+        }
+    }
+    step
+}
+
+/// A prediction that was corrected.
+struct Corrected {
+    unknown: Vec<f64>,
+    /// By which factor the next step may be longer, as far as the correction tells.
+    growth: f64,
+}
+
+/// A prediction that could not be corrected, or led elsewhere.
+struct Rejected {
+    cause: CorrectionFailure,
+    /// By which factor the step is to be shortened at least.
+    reduction: f64,
+}
+
+/// The point of the curve next to the one predicted at the distance `length`.
+fn correct_prediction<C: Curve>(
+    curve: &mut C,
+    current: &Solution<C::Point>,
+    previous: Option<&Before>,
+    length: f64,
+    settings: &Settings,
+) -> Result<Corrected, Rejected> {
+    let mut unknown = predict(current, previous, length);
+    let border = metric_image(curve, &current.tangent);
+    let correction = correct(curve, &mut unknown, &border, settings)
+        .map_err(|cause| Rejected { cause, reduction: STEP_REDUCTION })?;
+    let ratio = settings.predictor_error / correction.distance.max(1e-300);
+    // The predictor's error grows with the square of the step at least.
+    let growth = ratio.sqrt().clamp(STEP_REDUCTION, STEP_GROWTH);
+    if correction.distance > FAR_CORRECTION * settings.predictor_error.max(FAR_CORRECTION_PART * length) {
+        return Err(Rejected { cause: CorrectionFailure::Diverged, reduction: growth });
+    }
+    Ok(Corrected { unknown, growth })
+}
+
+/// Settles the end of a step and carries the solution from which it was made over to the discretisation there, with what was before
+/// that: both ends of a step have one normalisation.
+fn settle_both_ends<C: Curve>(
+    curve: &mut C,
+    unknown: Vec<f64>,
+    (current, before): (&mut Solution<C::Point>, &mut Option<Before>),
+    settings: &Settings,
+) -> Result<Solution<C::Point>, Error> {
+    let mut carried = vec![&mut current.unknown, &mut current.tangent];
+    carried.extend(before.as_mut().map(|(tangent, _)| tangent));
+    let settled = settle(curve, unknown, &mut carried, settings);
+    curve.carry_over(&mut current.point);
+    let (solution, adaptation) = settled?;
+    if adaptation == Adaptation::Renormalised {
+        renormalise(curve, current, settings)?;
+        *before = None;
+    }
+    Ok(solution)
+}
+
+/// How much a curve turns over a step.
+struct Turn {
+    cosine: f64,
+    /// Angle in the plane of two parameters.
+    plane_angle: f64,
+    /// Length of the tangent at the beginning, in the metric at the end.
+    stretch: f64,
+}
+
+impl Turn {
+    fn between<C: Curve>(
+        curve: &C,
+        current: &Solution<C::Point>,
+        next: &Solution<C::Point>,
+        bounds: &[Bound],
+    ) -> Self {
+        let image = metric_image(curve, &next.tangent);
+        let mut scratch = vec![0.0; image.len()];
+        // The metric may have changed with the discretisation: lengths behind are measured anew.
+        let stretch = norm(curve, &current.tangent, &mut scratch);
+        let cosine = inner(&current.tangent, &image) / stretch;
+        Self { cosine, plane_angle: angle_in_plane(current, next, bounds), stretch }
+    }
+
+    fn is_too_large(&self) -> bool {
+        self.cosine < TANGENT_COSINE || self.plane_angle > PLANE_ANGLE
+    }
+
+    /// The growth of the step, at most that at which the curve turns in the next as is aimed at.
+    fn limit(&self, growth: f64) -> f64 {
+        let angle = self.cosine.min(1.0).acos();
+        growth
+            .min(ANGLE_PART * TANGENT_COSINE.acos() / angle.max(f64::MIN_POSITIVE))
+            .min(ANGLE_PART * PLANE_ANGLE / self.plane_angle.max(f64::MIN_POSITIVE))
     }
 }
 

@@ -267,6 +267,7 @@ pub type PassageOf<C> = Passage<<C as Curve>::Point, <C as Curve>::Kind, <C as C
 
 /// The end of a curve for a reason special to the problem.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Ending<R> {
     /// The curve ends between the two solutions; the second is not part of it.
     Between(Stop<R>),

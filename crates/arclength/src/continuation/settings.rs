@@ -3,7 +3,14 @@
 /// Settings of [`follow`](super::follow). The defaults suit every problem of this crate; lengths are
 /// measured in the metric of the curve, where states are scaled by their own size and parameters by
 /// the length of their range.
+///
+/// ```
+/// use arclength::continuation::Settings;
+/// let short = Settings::default().largest_step(0.1).most_steps(50);
+/// assert!(short.largest_step == 0.1 && short.most_steps == 50);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Settings {
     /// First step.
     pub initial_step: f64,
@@ -34,6 +41,36 @@ pub struct Settings {
 /// Tolerance of the corrector for solutions between which special points are bracketed. Next to a homoclinic orbit the parameter
 /// changes so little that a test function which is its rate changes its sign elsewhere where solutions are known less well.
 const LOCATING_TOLERANCE: f64 = 1e-13;
+
+/// A method for every field. They may be set directly too, but not listed all: more may come.
+macro_rules! with_methods {
+    ($($field:ident: $type:ty),* $(,)?) => {
+        impl Settings {
+            $(
+                #[doc = concat!("The same with this [`", stringify!($field), "`](field@Self::", stringify!($field), ").")]
+                pub fn $field(mut self, value: $type) -> Self {
+                    self.$field = value;
+                    self
+                }
+            )*
+        }
+    };
+}
+
+with_methods! {
+    initial_step: f64,
+    largest_step: f64,
+    largest_parameter_change: f64,
+    smallest_step: f64,
+    predictor_error: f64,
+    corrector_tolerance: f64,
+    corrector_iterations: usize,
+    most_steps: usize,
+    smallest_part: f64,
+    most_trials: usize,
+    shortest_jump: f64,
+    shortest_bracket: f64,
+}
 
 impl Settings {
     /// The same for solutions between which special points are located.

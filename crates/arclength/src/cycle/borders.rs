@@ -2,8 +2,8 @@
 //! elsewhere before one of them leaves the unit time, and a cycle that is told has them where it passes the borders.
 
 use super::curve::{CycleCurve, Fitted, find_exact_segments};
-use super::extrema::{Range, ranges};
-use super::gate::Place;
+use super::extrema::{Extremes, extremes};
+use super::gate::GateFunction;
 use super::passages::Touch;
 use super::segments::Segments;
 use crate::collocation::mesh::{SAME_TIME, fit_jumps, jump_times, widen_beside_jumps};
@@ -14,7 +14,7 @@ use crate::error::{CorrectionFailure, Error};
 /// A cycle with mesh points at its borders, its extremes, and its errors as [`CycleCurve::errors`] tells them.
 pub(super) struct Refitted {
     pub fitted: Fitted,
-    pub ranges: Vec<Range>,
+    pub extremes: Vec<Extremes>,
     pub errors: [f64; 2],
 }
 
@@ -55,7 +55,7 @@ impl CycleCurve<'_> {
         find_exact_segments(collocation, unknown)?;
         let found = &mut collocation.problem.segments;
         match found.as_ref().and_then(|found| found.touched) {
-            Some(Touch { place: Place::Condition { event }, .. }) if !self.is_clear => {
+            Some(Touch { function: GateFunction::Condition { event }, .. }) if !self.is_clear => {
                 return Err(Error::EventWithoutJump { event: event + 1 });
             }
             touched => self.is_clear |= touched.is_none(),
@@ -201,10 +201,10 @@ impl CycleCurve<'_> {
             return Err(CorrectionFailure::Singular);
         }
         let errors = self.errors(&moved, &direction);
-        let ranges = ranges(&self.collocation, &moved, self.collocation.problem.dimension());
+        let extremes = extremes(&self.collocation, &moved, self.collocation.problem.dimension());
         moved.truncate(moved.len() - 2);
         let fitted = Fitted { mesh: self.collocation.mesh().to_vec(), states: moved };
-        Ok(Some(Refitted { fitted, ranges, errors }))
+        Ok(Some(Refitted { fitted, extremes, errors }))
     }
 
     /// Counts the unit time from a mesh point on.

@@ -14,6 +14,8 @@ use std::borrow::Cow;
 pub struct CyclePoint {
     /// Value of the parameter.
     pub value: f64,
+    /// All parameters.
+    pub parameters: Vec<f64>,
     /// Period.
     pub period: f64,
     /// Largest value of each state, of the interpolating polynomial.
@@ -69,33 +71,48 @@ impl Labelled for CyclePoint {
     }
 }
 
+/// What all cycles of a branch have in common.
+pub(super) struct FollowedParameter<'a> {
+    /// All parameters.
+    pub parameters: &'a [f64],
+    /// Index of the one that is followed.
+    pub active: usize,
+    /// Length of its range.
+    pub range: f64,
+    /// Degree of the polynomials.
+    pub degree: usize,
+}
+
 impl CyclePoint {
-    /// A solution of the curve as plain data; `range` is the length of the parameter's range, `degree` that of the polynomials.
+    /// A solution of the curve as plain data.
     pub(super) fn new(
         solution: &Solution<CycleInspection>,
         label: Option<Label>,
-        (range, degree): (f64, usize),
+        along: &FollowedParameter<'_>,
     ) -> Self {
+        let FollowedParameter { parameters, active, range, degree } = *along;
+        let mut parameters = parameters.to_vec();
         let inspection = &solution.point;
         let (states, scalars) = solution.unknown.split_at(solution.unknown.len() - 2);
         let [period, value] = inspection.place.unwrap_or([scalars[0], scalars[1]]);
+        parameters[active] = value;
         let (mesh, states) = inspection
             .fitted
             .as_ref()
             .map_or((&inspection.mesh[..], states), |fitted| (&fitted.mesh, &fitted.states));
-        let (outside, _) = inspection.floquet.unstable();
         let is_special = label.is_some_and(|label| label.kind != SpecialKind::Requested);
         let turn = solution.tangent.last().map_or(0.0, |rate| rate / range);
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
         Self {
             value,
+            parameters,
             period,
-            max: inspection.ranges.iter().map(|range| range.largest).collect(),
-            min: inspection.ranges.iter().map(|range| range.smallest).collect(),
+            max: inspection.extremes.iter().map(|extremes| extremes.largest).collect(),
+            min: inspection.extremes.iter().map(|extremes| extremes.smallest).collect(),
             multipliers: inspection.floquet.multipliers(),
             multiplier_errors: inspection.multiplier_errors.clone(),
             trivial_multiplier_error: inspection.floquet.trivial_error,
-            unstable_multipliers: outside,
+            unstable_multipliers: inspection.floquet.unstable().count,
             // At a bifurcation a multiplier is on the unit circle by definition.
             stable: if is_special || inspection.is_neutral { None } else { inspection.floquet.is_stable() },
             neutral: inspection.is_neutral,
@@ -108,7 +125,7 @@ impl CyclePoint {
                 test(SpecialKind::FoldOfCycles, turn),
                 test(SpecialKind::BranchPointOfCycles, solution.orientation),
                 test(SpecialKind::PeriodDoubling, inspection.doubling_test()),
-                test(SpecialKind::Torus, inspection.floquet.torus_test().0),
+                test(SpecialKind::Torus, inspection.floquet.torus_test().product),
             ],
             monitors: Vec::new(),
             orbit: Orbit {
@@ -116,7 +133,7 @@ impl CyclePoint {
                 degree,
                 states: states.to_vec(),
                 period,
-                dimension: inspection.ranges.len(),
+                dimension: inspection.extremes.len(),
             },
         }
     }

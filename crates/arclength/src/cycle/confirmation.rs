@@ -200,7 +200,7 @@ impl<'a> Asked<'a> {
         let [fixed, across] = curve.errors(&unknown, &border);
         let estimate = if neutral { across } else { fixed };
         let extremes: Vec<[f64; 2]> =
-            inspection.ranges.iter().map(|range| [range.largest, range.smallest]).collect();
+            inspection.extremes.iter().map(|extremes| [extremes.largest, extremes.smallest]).collect();
         // A state counts as what it is, or as its amplitude where that is more.
         let sizes: Vec<f64> = extremes
             .iter()
@@ -261,8 +261,7 @@ impl Level<'_> {
         point.error_estimate = error;
         point.multipliers = self.floquet.multipliers();
         point.trivial_multiplier_error = self.floquet.trivial_error;
-        let (outside, _) = self.floquet.unstable();
-        point.unstable_multipliers = outside;
+        point.unstable_multipliers = self.floquet.unstable().count;
         let sides = self.told.multipliers.iter().zip(before).zip(errors).map(|((now, then), error)| {
             let [now, then] = [now.log_modulus, then.log_modulus];
             // One that moves away from the circle as the mesh gets finer is on its side of it, and so is one that dies out.

@@ -2,7 +2,7 @@
 
 use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
-use super::extrema::ranges;
+use super::extrema::extremes;
 use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::special;
@@ -148,7 +148,7 @@ impl Curve for CycleCurve<'_> {
             parameter_error: None,
             floquet,
             multiplier_errors,
-            ranges: ranges(&self.collocation, unknown, n),
+            extremes: extremes(&self.collocation, unknown, n),
             mesh: self.collocation.mesh().to_vec(),
             segments: self.collocation.problem.segments.clone(),
             fitted: None,
@@ -164,7 +164,7 @@ impl Curve for CycleCurve<'_> {
         point.error_across = errors[1];
         match self.fitted(&solution.unknown, &solution.tangent) {
             Ok(Some(refitted)) => {
-                (point.fitted, point.ranges) = (Some(refitted.fitted), refitted.ranges);
+                (point.fitted, point.extremes) = (Some(refitted.fitted), refitted.extremes);
                 errors = refitted.errors;
             }
             Ok(None) => {}
@@ -227,8 +227,8 @@ impl Curve for CycleCurve<'_> {
             SpecialKind::BranchPointOfCycles => Reading::exact(solution.orientation),
             SpecialKind::PeriodDoubling => Reading::exact(solution.point.doubling_test()),
             SpecialKind::Torus => {
-                let (value, undecided) = floquet.torus_test();
-                Reading::exact(value).in_class(undecided)
+                let test = floquet.torus_test();
+                Reading::exact(test.product).in_class(test.undecided)
             }
             _ => return None,
         };
@@ -245,8 +245,8 @@ impl Curve for CycleCurve<'_> {
         if self.follows_neutral_family {
             return 0;
         }
-        let (_, certain) = solution.point.floquet.unstable();
-        usize::from(!certain) + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
+        usize::from(!solution.point.floquet.unstable().is_certain)
+            + usize::from(self.turn(&solution.tangent).abs() < NEARLY_FOLD)
     }
 
     fn locate(
@@ -293,7 +293,7 @@ impl Curve for CycleCurve<'_> {
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {
         let n = self.collocation.problem.dimension();
         let mut signature = vec![(unknown[unknown.len() - 2].ln(), 1.0)];
-        signature.extend(self.sizes.signature(&ranges(&self.collocation, unknown, n)));
+        signature.extend(self.sizes.signature(&extremes(&self.collocation, unknown, n)));
         signature
     }
 

@@ -2,7 +2,7 @@
 
 use super::end::CycleEnd;
 use super::exponentials::{may_be_unresolved, multipliers_by_exponentials};
-use super::extrema::Range;
+use super::extrema::Extremes;
 use super::floquet::{DEFECT, Floquet, floquet};
 use super::limit_cycle::LimitCycle;
 use super::segments::Segments;
@@ -53,7 +53,7 @@ pub(crate) struct CycleInspection {
     /// Relative errors of all multipliers, at a special cycle that was found on a second mesh.
     pub(super) multiplier_errors: Vec<f64>,
     /// Largest and smallest value of each state.
-    pub(super) ranges: Vec<Range>,
+    pub(super) extremes: Vec<Extremes>,
     /// Mesh of this solution.
     pub mesh: Vec<f64>,
     /// Segments of this solution.

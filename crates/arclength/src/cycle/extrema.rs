@@ -20,17 +20,17 @@ const JUMP: f64 = 1e-9;
 
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Range {
+pub(crate) struct Extremes {
     pub(crate) largest: f64,
     pub(crate) smallest: f64,
 }
 
-/// Range of every component among the first `count`.
-pub(crate) fn ranges<P: BoundaryValueEquations>(
+/// Extremes of every component among the first `count`.
+pub(crate) fn extremes<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
     unknown: &[f64],
     count: usize,
-) -> Vec<Range> {
+) -> Vec<Extremes> {
     let n = collocation.problem.dimension();
     let cycle = collocation.polynomials(unknown);
     let times = cycle.node_times();
@@ -42,7 +42,7 @@ pub(crate) fn ranges<P: BoundaryValueEquations>(
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
                 *value = state[component];
             }
-            let mut range = range(Curve {
+            let mut extremes = extremes_of(PeriodicFunction {
                 times: &times,
                 values: &values,
                 slope_at_node: &|index| cycle.slope_at_node(index, component),
@@ -50,10 +50,10 @@ pub(crate) fn ranges<P: BoundaryValueEquations>(
             });
             // What is reached before a jump is no node.
             for end in &before_jumps {
-                range.largest = range.largest.max(end[component]);
-                range.smallest = range.smallest.min(end[component]);
+                extremes.largest = extremes.largest.max(end[component]);
+                extremes.smallest = extremes.smallest.min(end[component]);
             }
-            range
+            extremes
         })
         .collect()
 }
@@ -122,7 +122,7 @@ impl Orbit {
         let ends: Vec<[f64; K]> = ends.collect();
         std::array::from_fn(|function| {
             let values = &values[function * times.len()..(function + 1) * times.len()];
-            let Range { smallest, largest } = range(Curve {
+            let Extremes { smallest, largest } = extremes_of(PeriodicFunction {
                 times: &times,
                 values,
                 slope_at_node: &|node| at_node(node, true)[function].derivatives[0],
@@ -140,7 +140,7 @@ impl Orbit {
 }
 
 /// A periodic function of the unit time, by its values at the nodes and its slopes there and anywhere.
-struct Curve<'a> {
+struct PeriodicFunction<'a> {
     times: &'a [f64],
     values: &'a [f64],
     slope_at_node: &'a dyn Fn(usize) -> f64,
@@ -148,7 +148,7 @@ struct Curve<'a> {
     at: &'a dyn Fn(f64) -> (f64, f64),
 }
 
-/// A curve at one time.
+/// A function at one time.
 #[derive(Clone, Copy)]
 struct Sample {
     time: f64,
@@ -156,17 +156,20 @@ struct Sample {
     slope: f64,
 }
 
-/// Range of a curve: of its values at the nodes, and at the zeros of the slope around the extreme ones.
-fn range(curve: Curve) -> Range {
-    let (times, values) = (curve.times, curve.values);
+/// Extremes of a periodic function: of its values at the nodes, and at the zeros of the slope around the extreme ones.
+fn extremes_of(function: PeriodicFunction) -> Extremes {
+    let (times, values) = (function.times, function.values);
     let nodes = times.len();
-    let mut range =
-        values.iter().fold(Range { largest: f64::NEG_INFINITY, smallest: f64::INFINITY }, |range, &value| {
-            Range { largest: range.largest.max(value), smallest: range.smallest.min(value) }
-        });
-    let margin = CANDIDATE_MARGIN * (range.largest - range.smallest);
-    let coarse = range;
-    let size = range.largest.abs().max(range.smallest.abs());
+    let mut extremes = values.iter().fold(
+        Extremes { largest: f64::NEG_INFINITY, smallest: f64::INFINITY },
+        |extremes, &value| Extremes {
+            largest: extremes.largest.max(value),
+            smallest: extremes.smallest.min(value),
+        },
+    );
+    let margin = CANDIDATE_MARGIN * (extremes.largest - extremes.smallest);
+    let coarse = extremes;
+    let size = extremes.largest.abs().max(extremes.smallest.abs());
     for index in 0..nodes {
         let (previous, next) = ((index + nodes - 1) % nodes, (index + 1) % nodes);
         let (before, here, after) = (values[previous], values[index], values[next]);
@@ -178,16 +181,16 @@ fn range(curve: Curve) -> Range {
         let sample = |index: usize| Sample {
             time: times[index],
             value: values[index],
-            slope: (curve.slope_at_node)(index),
+            slope: (function.slope_at_node)(index),
         };
         let (mut left, mut right) = (sample(previous), sample(next));
         left.time -= if index == 0 { 1.0 } else { 0.0 };
         right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
-        let refined = refine(curve.at, [left, sample(index), right], size);
-        range.largest = range.largest.max(refined);
-        range.smallest = range.smallest.min(refined);
+        let refined = refine(function.at, [left, sample(index), right], size);
+        extremes.largest = extremes.largest.max(refined);
+        extremes.smallest = extremes.smallest.min(refined);
     }
-    range
+    extremes
 }
 
 /// Value at the zero of the slope around an extreme node, from its neighbours and itself.

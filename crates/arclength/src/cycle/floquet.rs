@@ -7,12 +7,13 @@
 //! of its square root. The products are never formed (Fairgrieve and Jepson 1991; Lust 2001): the multipliers
 //! come from a periodic Schur decomposition.
 
+use super::deflation::Deflated;
+use super::volume::Volume;
 use crate::collocation::condensation::Jump;
 use crate::collocation::equations::Collocation;
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::events::Spectrum;
 use crate::error::Error;
-use crate::linear::lu;
 use crate::linear::multiplier::Multiplier;
 use crate::linear::periodic_schur::PeriodicSchur;
 use num_complex::Complex64;
@@ -32,9 +33,6 @@ const DEAD: f64 = -30.0;
 pub(super) const DEFECT: f64 = 1e-3;
 /// Difference of the two sides of Liouville's formula above which the multipliers are wrong.
 const CONTRADICTION: f64 = 0.05;
-
-/// A pivot of a jump below this part of the largest one is zero but for rounding: the jump takes a direction to nothing.
-const SINGULAR: f64 = 1e-12;
 
 /// Errors of multipliers over what their product shows of them.
 const CANCELLATION: f64 = 10.0;
@@ -57,6 +55,21 @@ pub(crate) struct Floquet {
     pub measured_error: f64,
 }
 
+/// How many multipliers are outside the unit circle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct UnstableCount {
+    pub count: usize,
+    /// Whether that is certain: none is closer to the circle than the error of the trivial one, and they do not contradict each other.
+    pub is_certain: bool,
+}
+
+/// The test function of torus bifurcations.
+pub(crate) struct TorusTest {
+    pub product: f64,
+    /// Number of pairs that are on the unit circle within the error.
+    pub undecided: usize,
+}
+
 impl Floquet {
     /// All multipliers as complex numbers, the trivial one among them, largest modulus first.
     pub(crate) fn multipliers(&self) -> Vec<Complex64> {
@@ -75,13 +88,12 @@ impl Floquet {
         all
     }
 
-    /// Number of nontrivial multipliers outside the unit circle, and whether the numbers are certain: none is
-    /// closer to the circle than the error of the trivial one, and they do not contradict each other.
-    pub(crate) fn unstable(&self) -> (usize, bool) {
+    /// The nontrivial multipliers outside the unit circle.
+    pub(crate) fn unstable(&self) -> UnstableCount {
         let margin = self.margin();
         let outside = self.nontrivial.iter().filter(|multiplier| multiplier.log_modulus > 0.0).count();
-        let certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
-        (outside, certain && !self.is_contradictory())
+        let is_certain = self.nontrivial.iter().all(|multiplier| multiplier.log_modulus.abs() > margin);
+        UnstableCount { count: outside, is_certain: is_certain && !self.is_contradictory() }
     }
 
     /// Whether the cycle is stable, where that is certain: one multiplier that is outside for certain decides it.
@@ -108,7 +120,7 @@ impl Floquet {
 
     /// What the search for special cycles compares from cycle to cycle: logarithms of the multipliers.
     pub(crate) fn growth(&self) -> Spectrum {
-        let (unstable, decided) = self.unstable();
+        let UnstableCount { count: unstable, is_certain: decided } = self.unstable();
         let exponent = |multiplier: &Multiplier| {
             Complex64::new(multiplier.log_modulus.max(SMALLEST_LOGARITHM), multiplier.argument)
         };
@@ -123,15 +135,15 @@ impl Floquet {
 
     /// Product over all pairs of multipliers that are complex conjugate or real of one sign of the logarithm of their product's
     /// modulus, each saturating at +-1: changes sign where a pair is on the unit circle. Pairs that are so within the error do
-    /// not count; their number is the second result. Two real ones of different signs never have the product one: they count as
+    /// not count. Two real ones of different signs never have the product one: they count as
     /// a product inside the circle, so that the sign of one that is rounding does not matter.
-    pub(crate) fn torus_test(&self) -> (f64, usize) {
-        let (mut product, mut undecided) = (1.0, 0);
+    pub(crate) fn torus_test(&self) -> TorusTest {
+        let mut test = TorusTest { product: 1.0, undecided: 0 };
         for (index, one) in self.nontrivial.iter().enumerate() {
             for other in &self.nontrivial[index + 1..] {
                 let together = if one.is_real() && other.is_real() {
                     if one.argument != other.argument {
-                        product = -product;
+                        test.product = -test.product;
                     }
                     one.argument == other.argument
                 } else {
@@ -147,13 +159,13 @@ impl Floquet {
                     multiplier.argument == 0.0 && multiplier.log_modulus.abs() <= self.margin()
                 };
                 if sum.abs() <= 2.0 * self.margin() || is_one(one) || is_one(other) {
-                    undecided += 1;
+                    test.undecided += 1;
                 } else {
-                    product *= sum / sum.hypot(SATURATION);
+                    test.product *= sum / sum.hypot(SATURATION);
                 }
             }
         }
-        (product, undecided)
+        test
     }
 
     /// The multipliers at a special cycle, one of which is known: of two the integral of the divergence gives the other. `None` of
@@ -255,99 +267,49 @@ pub(crate) fn floquet<P: BoundaryValueEquations>(
 /// As [`floquet`], from the flow direction at the beginning of every part of the period and the block that maps it to the next; with the
 /// integral of the divergence and the jumps.
 pub(super) fn floquet_of(
-    mut flow: Vec<f64>,
+    flow: Vec<f64>,
     transfer: &[f64],
     scales: &[f64],
     (divergence, jumps): (f64, &[Jump]),
     workspace: &mut Option<(usize, PeriodicSchur)>,
 ) -> Result<Floquet, Error> {
-    let n = scales.len();
-    let intervals = flow.len() / n;
-    // Reflections v (I - 2 v v') that map the scaled flow direction at each mesh point to the first axis.
-    let mut signs = vec![1.0; intervals];
-    for (reflector, sign) in flow.chunks_exact_mut(n).zip(&mut signs) {
-        for (entry, scale) in reflector.iter_mut().zip(scales) {
-            *entry /= scale;
+    let intervals = flow.len() / scales.len();
+    let failed = || Error::Eigenvalues { quantity: "Floquet multipliers" };
+    let Deflated { factors, trivial, trivial_error } =
+        Deflated::of(flow, transfer, scales).ok_or_else(failed)?;
+    let volume = Volume::of(divergence, jumps, scales);
+    let nontrivial = match scales.len() {
+        1 => Vec::new(),
+        // Liouville's formula gives the only one, however far from one it is.
+        2 => {
+            let argument = if volume.sign < 0.0 { PI } else { 0.0 };
+            vec![Multiplier { log_modulus: volume.logarithm, argument }]
         }
-        let norm = length(reflector);
-        if !(norm > 0.0 && norm.is_finite()) {
-            return Err(Error::Eigenvalues { quantity: "Floquet multipliers" });
-        }
-        *sign = if reflector[0] > 0.0 { -1.0 } else { 1.0 };
-        reflector[0] -= *sign * norm;
-        let norm = length(reflector);
-        reflector.iter_mut().for_each(|entry| *entry /= norm);
-    }
-    let reflectors = flow;
-    let mut factors = vec![0.0; intervals * (n - 1) * (n - 1)];
-    let mut trivial = 1.0;
-    let mut coupling = 0.0;
-    let mut block = vec![0.0; n * n];
-    for interval in 0..intervals {
-        let transfer = &transfer[interval * n * n..(interval + 1) * n * n];
-        for column in 0..n {
-            for row in 0..n {
-                block[row + n * column] = transfer[row + n * column] * scales[column] / scales[row];
+        n => {
+            let mut multipliers =
+                of_product(&factors, (n - 1, intervals), workspace).ok_or_else(failed)?.to_vec();
+            // What a jump takes to nothing stays there, whatever rounding makes of it.
+            for multiplier in multipliers.iter_mut().rev().take(volume.lost) {
+                *multiplier = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0 };
             }
-        }
-        let right = &reflectors[interval * n..(interval + 1) * n];
-        let next = (interval + 1) % intervals;
-        let left = &reflectors[next * n..(next + 1) * n];
-        for row in 0..n {
-            let sum: f64 = (0..n).map(|column| block[row + n * column] * right[column]).sum();
-            for column in 0..n {
-                block[row + n * column] -= 2.0 * sum * right[column];
-            }
-        }
-        for column in block.chunks_exact_mut(n) {
-            let sum: f64 = column.iter().zip(left).map(|(a, b)| a * b).sum();
-            for (entry, component) in column.iter_mut().zip(left) {
-                *entry -= 2.0 * sum * component;
-            }
-        }
-        trivial *= block[0] * signs[interval] * signs[next];
-        coupling += block[1..n].iter().map(|entry| entry * entry).sum::<f64>().sqrt();
-        // The lengths of the flow vectors cancel in the product of the corner entries up to discretisation.
-        for column in 1..n {
-            for row in 1..n {
-                factors[interval * (n - 1) * (n - 1) + row - 1 + (n - 1) * (column - 1)] =
-                    block[row + n * column];
-            }
-        }
-    }
-    let trivial_error = (trivial - 1.0).abs().max(coupling);
-    let (mut divergence, mut sign, mut zeros) = (divergence, 1.0, 0);
-    for jump in jumps {
-        let (logarithm, factor) = determinant(&jump.derivatives[..n * n], n);
-        divergence += logarithm;
-        sign *= factor;
-        zeros = zeros.max(nullity(&jump.derivatives[..n * n], scales));
-    }
-    if zeros > 0 {
-        (divergence, sign) = (f64::NEG_INFINITY, 1.0);
-    }
-    let nontrivial = if n == 1 {
-        Vec::new()
-    } else if n == 2 {
-        // The formula gives the only one, however far from one it is.
-        vec![Multiplier { log_modulus: divergence, argument: if sign < 0.0 { PI } else { 0.0 } }]
-    } else {
-        if workspace.as_ref().is_none_or(|(count, _)| *count != intervals) {
-            *workspace = Some((intervals, PeriodicSchur::new(n - 1, intervals)));
-        }
-        match workspace.as_mut().map(|(_, schur)| schur.multipliers(&factors)) {
-            Some(Ok(multipliers)) => {
-                let mut multipliers = multipliers.to_vec();
-                // What a jump takes to nothing stays there, whatever rounding makes of it.
-                for multiplier in multipliers.iter_mut().rev().take(zeros) {
-                    *multiplier = Multiplier { log_modulus: f64::NEG_INFINITY, argument: 0.0 };
-                }
-                multipliers
-            }
-            _ => return Err(Error::Eigenvalues { quantity: "Floquet multipliers" }),
+            multipliers
         }
     };
+    let (divergence, sign) = (volume.logarithm, volume.sign);
     Ok(Floquet { nontrivial, trivial, trivial_error, divergence, sign, measured_error: 0.0 })
+}
+
+/// The multipliers of the product of `count` factors of size `n`.
+fn of_product<'w>(
+    factors: &[f64],
+    (n, count): (usize, usize),
+    workspace: &'w mut Option<(usize, PeriodicSchur)>,
+) -> Option<&'w [Multiplier]> {
+    if workspace.as_ref().is_none_or(|(last, _)| *last != count) {
+        *workspace = Some((count, PeriodicSchur::new(n, count)));
+    }
+    let (_, schur) = workspace.as_mut()?;
+    schur.multipliers(factors).ok()
 }
 
 /// The integral of the trace of the Jacobian over one period, from the derivatives of the last factorisation.
@@ -362,47 +324,4 @@ fn divergence<P: BoundaryValueEquations>(collocation: &Collocation<P>, n: usize)
         .zip(places)
         .map(|(block, weight)| weight * (0..n).map(|index| block[index * (n + 1)]).sum::<f64>())
         .sum()
-}
-
-/// Logarithm of the modulus of the determinant of a jump, and its sign; minus infinity where it is singular.
-fn determinant(matrix: &[f64], n: usize) -> (f64, f64) {
-    let mut factors = matrix.to_vec();
-    let mut pivots = vec![0; n];
-    let sign = lu::factorize(&mut factors, n, &mut pivots);
-    if sign == 0.0 {
-        return (f64::NEG_INFINITY, 1.0);
-    }
-    ((0..n).map(|index| factors[index * (n + 1)].abs().ln()).sum(), sign)
-}
-
-/// Number of independent directions that a jump takes to nothing, in units of the sizes of the states: by elimination with the
-/// largest pivots.
-fn nullity(matrix: &[f64], scales: &[f64]) -> usize {
-    let n = scales.len();
-    let scaled = |index: usize| matrix[index] * scales[index / n] / scales[index % n];
-    let mut rest: Vec<f64> = (0..n * n).map(scaled).collect();
-    let mut first = 0.0;
-    for step in 0..n {
-        let places = (step..n).flat_map(|column| (step..n).map(move |row| (row, column)));
-        let largest = places.max_by(|a, b| rest[a.0 + n * a.1].abs().total_cmp(&rest[b.0 + n * b.1].abs()));
-        let Some((row, column)) = largest else { break };
-        let pivot = rest[row + n * column];
-        first = if step == 0 { pivot.abs() } else { first };
-        if pivot.abs() <= SINGULAR * first {
-            return n - step;
-        }
-        (0..n).for_each(|other| rest.swap(step + n * other, row + n * other));
-        (0..n).for_each(|other| rest.swap(other + n * step, other + n * column));
-        for below in step + 1..n {
-            let factor = rest[below + n * step] / pivot;
-            for other in step..n {
-                rest[below + n * other] -= factor * rest[step + n * other];
-            }
-        }
-    }
-    0
-}
-
-fn length(vector: &[f64]) -> f64 {
-    vector.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
 }

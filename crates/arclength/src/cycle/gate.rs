@@ -25,7 +25,7 @@ pub(crate) struct Slide {
 /// What ends a segment.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Gate {
-    pub place: Place,
+    pub function: GateFunction,
     /// Whether the function that is zero here grows.
     pub upwards: bool,
     /// The events that happen here, in their order.
@@ -34,7 +34,7 @@ pub(crate) struct Gate {
 
 /// A function of the state that is zero at a gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Place {
+pub(crate) enum GateFunction {
     /// A switch function less its value at a border.
     Border { switch: usize, value: f64 },
     /// The condition of an event.
@@ -124,29 +124,31 @@ impl Gate {
         switches: usize,
     ) -> T {
         let n = state.len();
-        with_parameters(&course.parameters, replaced.iter().copied(), |parameters: &[T]| match self.place {
-            Place::Border { switch, value } => {
-                let mut results = vec![T::zero(); n + switches];
-                field.evaluate(state, parameters, &mut results);
-                results[n + switch] - value
-            }
-            Place::Condition { event } => {
-                let mut value = [T::zero()];
-                let own = parameters.len() - switches;
-                field.evaluate_event(event, state, &parameters[..own], &mut value);
-                value[0]
-            }
-            Place::Pull { switch, above } => {
-                let mut velocity = vec![T::zero(); n];
-                match &course.slide {
-                    Some(slide) if above => {
-                        with_parameters(&slide.above, replaced.iter().copied(), |above: &[T]| {
-                            field.evaluate(state, above, &mut velocity);
-                        });
-                    }
-                    _ => field.evaluate(state, parameters, &mut velocity),
+        with_parameters(&course.parameters, replaced.iter().copied(), |parameters: &[T]| {
+            match self.function {
+                GateFunction::Border { switch, value } => {
+                    let mut results = vec![T::zero(); n + switches];
+                    field.evaluate(state, parameters, &mut results);
+                    results[n + switch] - value
                 }
-                field.rate_along(switch, state, &velocity, parameters)
+                GateFunction::Condition { event } => {
+                    let mut value = [T::zero()];
+                    let own = parameters.len() - switches;
+                    field.evaluate_event(event, state, &parameters[..own], &mut value);
+                    value[0]
+                }
+                GateFunction::Pull { switch, above } => {
+                    let mut velocity = vec![T::zero(); n];
+                    match &course.slide {
+                        Some(slide) if above => {
+                            with_parameters(&slide.above, replaced.iter().copied(), |above: &[T]| {
+                                field.evaluate(state, above, &mut velocity);
+                            });
+                        }
+                        _ => field.evaluate(state, parameters, &mut velocity),
+                    }
+                    field.rate_along(switch, state, &velocity, parameters)
+                }
             }
         })
     }

@@ -7,8 +7,8 @@
 
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::{CycleEnd, Grazed};
-use super::gate::Place;
-use super::passages::{Along, Touch};
+use super::gate::GateFunction;
+use super::passages::{Along, Reach, Touch};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Solution, locate};
 
@@ -39,7 +39,7 @@ impl CycleCurve<'_> {
     ) -> CycleEnd {
         let settings = self.settings;
         let found = locate(self, before, after, &settings, LOCATION, |curve, solution| {
-            curve.reach(&solution.unknown, touch).map(|(reach, _)| reach)
+            curve.reach(&solution.unknown, touch).map(|reach| reach.beyond)
         });
         let [period, parameter] = match &found {
             Ok(Some(solution)) => last_two(&solution.unknown),
@@ -47,19 +47,19 @@ impl CycleCurve<'_> {
         };
         let located = matches!(found, Ok(Some(_)));
         let turns = match &found {
-            Ok(Some(solution)) => self.reach(&solution.unknown, touch).is_none_or(|(_, turns)| turns),
+            Ok(Some(solution)) => self.reach(&solution.unknown, touch).is_none_or(|reach| reach.turns),
             _ => true,
         };
-        let of = match touch.place {
-            Place::Condition { event } if !turns => Grazed::Together(event + 1),
-            Place::Condition { event } => Grazed::Event(event + 1),
-            Place::Border { .. } | Place::Pull { .. } => Grazed::Border,
+        let of = match touch.function {
+            GateFunction::Condition { event } if !turns => Grazed::Together(event + 1),
+            GateFunction::Condition { event } => Grazed::Event(event + 1),
+            GateFunction::Border { .. } | GateFunction::Pull { .. } => Grazed::Border,
         };
         CycleEnd::Grazing { of, parameter, period, located }
     }
 
-    /// How far the condition of an event gets beyond zero, near where it is touched, and whether it turns there.
-    fn reach(&self, unknown: &[f64], touch: Touch) -> Option<(f64, bool)> {
+    /// How far the condition of an event gets beyond zero, near where it is touched.
+    fn reach(&self, unknown: &[f64], touch: Touch) -> Option<Reach> {
         let problem = &self.collocation.problem;
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = *unknown.last()?;

@@ -4,7 +4,7 @@ use super::borders::MOST_FITS;
 use super::curve::{CycleCurve, CycleInspection, Fitted};
 use super::defining::{Defining, Kind};
 use super::eigenfunctions::{Eigenfunctions, critical};
-use super::extrema::ranges;
+use super::extrema::extremes;
 use super::floquet::{Floquet, floquet};
 use super::limit_cycle::LimitCycle;
 use super::normal_form::CriticalCycle;
@@ -192,7 +192,7 @@ pub(crate) fn converge(
     if has_borders {
         let (cycle, _) = split(&unknown, n, kind);
         let states = cycle[..cycle.len() - 3].to_vec();
-        point.ranges = ranges(&defining_curve.collocation, &unknown, n);
+        point.extremes = extremes(&defining_curve.collocation, &unknown, n);
         point.fitted = Some(Fitted { mesh: defining_curve.collocation.mesh().to_vec(), states });
     }
     Ok(Some(Located { solution, eigenfunctions }))

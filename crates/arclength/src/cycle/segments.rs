@@ -7,7 +7,7 @@
 //! Champneys and Kowalczyk, *Piecewise-smooth Dynamical Systems* (2008), section 2.5) makes the times of crossing unknowns that are
 //! eliminated: its derivative is the saltation matrix, so that multipliers, defining systems and error estimates contain it.
 
-use super::gate::{Course, Gate, Place};
+use super::gate::{Course, Gate, GateFunction};
 use super::passages::{Along, Passage, Touch, Way};
 use crate::collocation::polynomials::Polynomials;
 use crate::differentiation::{Dual, Scalar};
@@ -83,7 +83,7 @@ impl Segments {
         passages.iter().find(|passage| passage.leads_away && !self.gates.contains(&passage.gate)).map(
             |passage| {
                 let side = if passage.gate.upwards { -1.0 } else { 1.0 };
-                Touch { place: passage.gate.place, side, time: passage.time }
+                Touch { function: passage.gate.function, side, time: passage.time }
             },
         )
     }
@@ -96,14 +96,18 @@ impl Segments {
 
     /// The numbers of the gates at which an event is the one that is passed.
     pub(crate) fn jumps_of(&self, event: usize) -> impl Iterator<Item = usize> {
-        let place = Place::Condition { event };
-        self.gates.iter().enumerate().filter(move |(_, gate)| gate.place == place).map(|(index, _)| index)
+        let function = GateFunction::Condition { event };
+        self.gates
+            .iter()
+            .enumerate()
+            .filter(move |(_, gate)| gate.function == function)
+            .map(|(index, _)| index)
     }
 
     /// The event at a gate at which the state jumps.
     pub(crate) fn event_of(&self, index: usize) -> Option<usize> {
-        match self.gates[index].place {
-            Place::Condition { event } => Some(event),
+        match self.gates[index].function {
+            GateFunction::Condition { event } => Some(event),
             _ => None,
         }
     }
@@ -127,7 +131,7 @@ impl Segments {
     ) -> bool {
         let Some(along) = Along::new(field, cycle, parameters) else { return true };
         self.jumps_on(cycle.mesh).into_iter().all(|(point, gate)| {
-            let Place::Condition { event } = gate.place else { return true };
+            let GateFunction::Condition { event } = gate.function else { return true };
             let mut before = vec![0.0; cycle.n];
             cycle.state_within(point - 1..point, cycle.mesh[point], &mut before);
             along.event_at(&before, Some(event)).is_some_and(|now| now.events == gate.events)

@@ -1,7 +1,7 @@
 //! Sizes of the states along a curve of cycles, and what they decide: where the amplitude passes zero, whether two cycles are the
 //! same, whether the period grows without bound.
 
-use super::extrema::Range;
+use super::extrema::Extremes;
 use super::limit_cycle::LimitCycle;
 use crate::algebraic::scales::natural_scales_along;
 use crate::collocation::problem::BoundaryValueEquations;
@@ -34,7 +34,7 @@ pub(crate) struct StateSizes {
     /// Largest amplitudes met.
     largest: Vec<f64>,
     /// Smallest and largest values met.
-    visited: Vec<Range>,
+    visited: Vec<Extremes>,
     /// Sizes below which a state counts as one that rests, from the nonlinearity of the field where the curve starts.
     resting: Vec<f64>,
     /// The period where the curve starts.
@@ -73,7 +73,7 @@ impl StateSizes {
         let natural = natural_scales_along(&problem.field, &state, &parameters, (problem.active, range));
         Self {
             largest: vec![0.0; n],
-            visited: vec![Range { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],
+            visited: vec![Extremes { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],
             resting: natural.iter().map(|size| RESTING_PART * size).collect(),
             first_period: None,
         }
@@ -89,8 +89,10 @@ impl StateSizes {
                 let mean = 0.5 * (largest + smallest).abs();
                 self.largest[component] = self.largest[component].max(amplitude);
                 let visited = &mut self.visited[component];
-                *visited =
-                    Range { smallest: visited.smallest.min(smallest), largest: visited.largest.max(largest) };
+                *visited = Extremes {
+                    smallest: visited.smallest.min(smallest),
+                    largest: visited.largest.max(largest),
+                };
                 let resting = self.resting[component];
                 StateSize {
                     amplitude: amplitude.max(ROUNDING_PART * mean).max(resting),
@@ -156,9 +158,9 @@ impl StateSizes {
 
     /// Extreme values with the sizes of the states, to tell whether two cycles are the same. A state that rests on every cycle
     /// may move along the curve.
-    pub(crate) fn signature(&self, ranges: &[Range]) -> Vec<(f64, f64)> {
+    pub(crate) fn signature(&self, extremes: &[Extremes]) -> Vec<(f64, f64)> {
         let moved = self.visited.iter().map(|visited| 0.5 * (visited.largest - visited.smallest));
-        let sized = ranges.iter().zip(self.met().zip(moved).map(|(met, moved)| met.max(moved)));
+        let sized = extremes.iter().zip(self.met().zip(moved).map(|(met, moved)| met.max(moved)));
         sized.flat_map(|(range, size)| [(range.largest, size), (range.smallest, size)]).collect()
     }
 

@@ -8,7 +8,8 @@ use super::floquet::{Floquet, multiplier_changes};
 use super::locating::{Finer, Located, converge, on_halves, rounded};
 use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
-use super::switching::{doubled, other_branch};
+use super::other_branch::other_branch;
+use super::switching::doubled;
 use crate::branch::SpecialKind;
 use crate::collocation::mesh::halved;
 use crate::collocation::problem::BoundaryValueEquations;
@@ -69,7 +70,7 @@ pub(super) fn locate(
 ) -> Result<Location<CycleInspection>, Error> {
     let Some(defining) = defining(kind) else { return Ok(Location::Nothing) };
     // The pair that changes sides when the multipliers are counted from outside.
-    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
+    let outside = [before, after].map(|node| node.point.floquet.unstable().count);
     let rank = outside[0].min(outside[1]);
     if kind == SpecialKind::Torus && !is_pair_between(before, after, rank) {
         return Ok(Location::Nothing);
@@ -282,7 +283,7 @@ pub(super) fn crossing(
     [before, after]: [&Node; 2],
     change: usize,
 ) -> Result<Vec<Event<SpecialKind, CycleInspection>>, Error> {
-    let outside = [before, after].map(|node| node.point.floquet.unstable().0);
+    let outside = [before, after].map(|node| node.point.floquet.unstable().count);
     let mut found = Vec::new();
     for pair in 0..change / 2 {
         let rank = outside[0].min(outside[1]) + 2 * pair;

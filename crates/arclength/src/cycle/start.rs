@@ -1,9 +1,10 @@
 //! Asking for a branch of limit cycles: where it starts, how it is followed.
 
-use super::branch::{CycleBranch, CyclePoint};
+use super::branch::{CycleBranch, CyclePoint, FollowedParameter};
 use super::curve::{CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::expansion::Expansion;
+use super::floquet::UnstableCount;
 use super::hopf_start::HopfStart;
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
@@ -85,6 +86,59 @@ impl From<&HopfPoint> for CycleStart {
                 .filter(|_| point.criticality != Criticality::Degenerate)
                 .unwrap_or(0.0),
         }
+    }
+}
+
+impl HopfPoint {
+    /// The cycles of the field that are born here.
+    ///
+    /// ```
+    /// use arclength::equilibrium::Equilibria;
+    /// use arclength::{Scalar, VectorField};
+    ///
+    /// /// x' = rho x - y - x (x^2 + y^2), y' = x + rho y - y (x^2 + y^2): circles of radius sqrt(rho).
+    /// struct Circle;
+    /// impl VectorField for Circle {
+    ///     fn state_names(&self) -> Vec<String> { vec!["x".into(), "y".into()] }
+    ///     fn parameter_names(&self) -> Vec<String> { vec!["rho".into()] }
+    ///     fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+    ///         let growth = p[0] - s[0] * s[0] - s[1] * s[1];
+    ///         d[0] = growth * s[0] - s[1];
+    ///         d[1] = s[0] + growth * s[1];
+    ///     }
+    /// }
+    ///
+    /// let equilibria = Equilibria::of(&Circle).parameters(&[-1.0]).along("rho", -1.0..=1.0).run()?;
+    /// let hopf = equilibria.hopf_points().next().expect("a Hopf point");
+    /// let branch = hopf.cycles(&Circle).along("rho", 0.0..=1.0).at(&[0.25]).run()?;
+    /// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).unwrap();
+    /// assert!((quarter.max[0] - 0.5).abs() < 1e-8);
+    /// # Ok::<(), arclength::Error>(())
+    /// ```
+    pub fn cycles<'a, F: VectorField>(&self, field: &'a F) -> Cycles<'a> {
+        Cycles::of(field, CycleStart::from(self)).parameters(&self.parameters)
+    }
+}
+
+impl CyclePoint {
+    /// The branch through this cycle, along any parameter.
+    pub fn cycles<'a, F: VectorField>(&self, field: &'a F) -> Cycles<'a> {
+        Cycles::of(field, CycleStart::Orbit(self.orbit.clone())).parameters(&self.parameters)
+    }
+
+    /// At a period doubling the branch of the doubled cycles; `None` elsewhere.
+    pub fn doubled<'a, F: VectorField>(&self, field: &'a F) -> Option<Cycles<'a>> {
+        self.leaving(field, true)
+    }
+
+    /// At a branch point of cycles the other branch; `None` elsewhere.
+    pub fn other<'a, F: VectorField>(&self, field: &'a F) -> Option<Cycles<'a>> {
+        self.leaving(field, false)
+    }
+
+    fn leaving<'a, F: VectorField>(&self, field: &'a F, doubled: bool) -> Option<Cycles<'a>> {
+        let branching = self.branching.as_ref().filter(|branching| branching.doubled == doubled)?;
+        Some(Cycles::of(field, CycleStart::Branching(branching.clone())).parameters(&self.parameters))
     }
 }
 
@@ -175,10 +229,15 @@ impl<'a> Cycles<'a> {
             CycleStart::Branching(branching) => branching.orbit.degree,
         };
         let Continuation { start, at, monitors, observer: told, settings, .. } = &mut self;
-        let range = asked.bound.width();
-        let bare = |solution: &Solution<CycleInspection>| CyclePoint::new(solution, None, (range, degree));
+        let followed = FollowedParameter {
+            parameters: &asked.parameters,
+            active: asked.active,
+            range: asked.bound.width(),
+            degree,
+        };
+        let bare = |solution: &Solution<CycleInspection>| CyclePoint::new(solution, None, &followed);
         let point = |solution: &Solution<CycleInspection>, label: Option<Label>| {
-            let mut point = CyclePoint::new(solution, label, (range, degree));
+            let mut point = CyclePoint::new(solution, label, &followed);
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
             point
@@ -451,7 +510,7 @@ impl<'a> Asked<'a> {
         let mut curve = self.curve(&start);
         let Ok(found) = exact_start(&mut curve, start.unknown, start.tangent, request) else { return false };
         if let Some(expected) = unstable_at_birth {
-            return found.point.floquet.unstable() == (expected, true);
+            return found.point.floquet.unstable() == UnstableCount { count: expected, is_certain: true };
         }
         let expected = -amplitude * amplitude * hopf.cubic_coefficient / hopf.crossing_speed;
         let ratio = (found.unknown[found.unknown.len() - 1] - place) / expected;

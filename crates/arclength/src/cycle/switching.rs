@@ -1,18 +1,10 @@
 //! Where new branches of cycles start: small cycles next to a Hopf point, doubled cycles, the other branch at a branch point.
-//!
-//! At a branch point the null space of the linearised problem is spanned by `(v, beta, 0)`, with the null function `v`, and
-//! a vector `(y, tau, 1)` in which the parameter varies. The directions `a (v, beta, 0) + (y, tau, 1)` of the branches solve
-//! the algebraic branching equation, the part of the second-order terms along the adjoint null function (Keller, "Numerical
-//! solution of bifurcation and nonlinear eigenvalue problems" (1977); Doedel, Keller and Kernevez (1991), section 2.4).
 
 use super::eigenfunctions::Eigenfunctions;
 use super::expansion::Expansion;
 use super::hopf_start::HopfStart;
-use super::normal_form::CriticalCycle;
 use super::orbit::Orbit;
 use crate::collocation::gauss::Gauss;
-use crate::collocation::linear_problem::{LinearProblem, NodeFunction};
-use crate::equilibrium::multilinear::MultilinearForms;
 use crate::error::Error;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
@@ -20,10 +12,6 @@ use std::f64::consts::PI;
 
 /// Mesh intervals of the first cycle next to a Hopf point.
 const FIRST_INTERVALS: usize = 8;
-/// Part of the derivative in the parameter that no change of the cycle answers, above which the parameter cannot move.
-const UNSOLVED: f64 = 1e-3;
-/// Below this part of the other coefficients of the branching equation a coefficient counts as zero.
-const NEGLIGIBLE: f64 = 1e-6;
 
 /// The start of a branch that leaves another one at a bifurcation: the cycle there, traversed twice at a period doubling, and
 /// the direction of the new branch.
@@ -110,108 +98,6 @@ pub(super) fn doubled(orbit: &Orbit, (functions, _): &Eigenfunctions) -> Option<
         doubled: true,
         known: None,
     })
-}
-
-/// The other branch at a branch point; `tangent` is the direction `(states, T, p)` of the known one, `active` the index of
-/// the parameter that varies, `scale` its size.
-pub(super) fn other_branch(
-    orbit: &Orbit,
-    (functions, _): &Eigenfunctions,
-    critical: &CriticalCycle<'_>,
-    (active, scale): (usize, f64),
-    tangent: &[f64],
-) -> Option<Branching> {
-    let n = orbit.dimension;
-    let CriticalCycle { field, parameters, states, linearization: linear, .. } = critical;
-    let adjoint = functions.first()?;
-    let (null, beta) = linear.null_function()?;
-    let flow_row = linear.dual(&linear.flow);
-    let row = linear.dual(&null);
-    let columns: [&[f64]; 2] = [&linear.flow, &null];
-    let mut problem =
-        LinearProblem::new(linear.nodes, vec![1.0; n], &linear.matrices, &columns, &[&flow_row, &row])?;
-    // The parameter moves by its size, so that both vectors are of order one.
-    let source: NodeFunction = linear.parameter.iter().map(|value| value * scale).collect();
-    let (response, scalars) = problem.solve(&source, &[0.0, 0.0])?;
-    // Where something is conserved the parameter cannot move, and there are two null functions.
-    let size = linear.nodes.product(&source, &linear.dual(&source)).sqrt();
-    let moving = if scalars[1].abs() <= UNSOLVED * size.max(NEGLIGIBLE) {
-        (response, scalars[0], scale)
-    } else {
-        let (second, beta) = linear.null_function_beside(Some(&null))?;
-        (second, beta, 0.0)
-    };
-    let vectors = [(null, beta, 0.0), moving];
-    let second = |one: &(NodeFunction, f64, f64), other: &(NodeFunction, f64, f64)| -> f64 {
-        let derivative = |node: usize, vector: &(NodeFunction, f64, f64)| {
-            let mut direction = vector.0[node * n..(node + 1) * n].to_vec();
-            direction.resize(n + parameters.len(), 0.0);
-            direction[n + active] = vector.2;
-            direction
-        };
-        linear
-            .nodes
-            .gauss_points()
-            .map(|(_, node, weight)| {
-                let forms =
-                    MultilinearForms { field: *field, state: &states[node * n..(node + 1) * n], parameters };
-                let (first, last) = (derivative(node, one), derivative(node, other));
-                let curvature = forms.real(&[&first, &last]);
-                let (slope_first, slope_last) = (forms.real(&[&first]), forms.real(&[&last]));
-                (0..n)
-                    .map(|row| {
-                        let value = orbit.period * curvature[row]
-                            + one.1 * slope_last[row]
-                            + other.1 * slope_first[row];
-                        weight * adjoint[node * n + row] * value
-                    })
-                    .sum::<f64>()
-            })
-            .sum()
-    };
-    let (a, b, c) = (
-        second(&vectors[0], &vectors[0]),
-        second(&vectors[0], &vectors[1]),
-        second(&vectors[1], &vectors[1]),
-    );
-    // a x^2 + 2 b x y + c y^2 = 0 for directions x (null) + y (response).
-    let size = a.abs().max(b.abs()).max(c.abs());
-    let discriminant = b * b - a * c;
-    if !(discriminant > 0.0 && size > 0.0) {
-        return None;
-    }
-    let root = discriminant.sqrt();
-    let larger = -(b + root.copysign(b));
-    let mut directions: Vec<(f64, f64)> = Vec::new();
-    if a.abs() > NEGLIGIBLE * size {
-        directions.push((larger / a, 1.0));
-    } else {
-        directions.push((1.0, 0.0));
-    }
-    directions.push(if larger == 0.0 { (0.0, 1.0) } else { (c / larger, 1.0) });
-    let assemble = |(x, y): (f64, f64)| {
-        let states: NodeFunction =
-            vectors[0].0.iter().zip(&vectors[1].0).map(|(one, other)| x * one + y * other).collect();
-        (states, x * vectors[0].1 + y * vectors[1].1, x * vectors[0].2 + y * vectors[1].2)
-    };
-    // The known branch is the one whose direction is closest to the tangent.
-    let cosine = |direction: &(NodeFunction, f64, f64)| {
-        let product = |a: &(&[f64], f64, f64), b: &(&[f64], f64, f64)| {
-            linear.nodes.product(a.0, &linear.dual(b.0))
-                + a.1 * b.1 / (orbit.period * orbit.period)
-                + a.2 * b.2 / (scale * scale)
-        };
-        let end = tangent.len() - 2;
-        let known = (&tangent[..end], tangent[end], tangent[end + 1]);
-        let own = (&direction.0[..], direction.1, direction.2);
-        product(&known, &own).abs() / (product(&known, &known) * product(&own, &own)).sqrt()
-    };
-    let mut found: Vec<_> = directions.into_iter().map(assemble).collect();
-    found.sort_by(|one, other| cosine(one).total_cmp(&cosine(other)));
-    let mut found = found.into_iter();
-    let (direction, period, parameter) = found.next()?;
-    let known = found.next().map(|(states, period, parameter)| BranchDirection { states, period, parameter });
-    Some(Branching { orbit: orbit.clone(), direction, period, parameter, doubled: false, known })
 }
 
 /// A start on a mesh: unknowns, direction of the branch, mesh and degree.

@@ -1,7 +1,7 @@
 //! Points of a branch of equilibria as plain data.
 
 use super::branch_point::BranchPoint;
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::end::EquilibriumEnd;
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
@@ -80,8 +80,8 @@ impl EquilibriumBranch {
 
 impl EquilibriumPoint {
     /// A solution of the curve as plain data; `range` is the length of the parameter's range.
-    pub(super) fn new(solution: &Solution<Inspection>, label: Option<Label>, range: f64) -> Self {
-        let Inspection { spectrum, determinant, special, .. } = &solution.point;
+    pub(super) fn new(solution: &Solution<EquilibriumInspection>, label: Option<Label>, range: f64) -> Self {
+        let EquilibriumInspection { spectrum, determinant, special, .. } = &solution.point;
         let (&value, state) = solution.unknown.split_last().unwrap_or((&0.0, &[]));
         let test = |kind: SpecialKind, value: f64| (Cow::Borrowed(kind.label()), value);
         Self {

@@ -1,10 +1,9 @@
 //! Branch points of equilibria: the coefficients of the bifurcation equation and the other branch.
 
-use super::coefficient_error::{self, Place};
-use super::fold::null_vectors;
+use super::branching_equation::BranchingEquation;
+use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
-use crate::algebraic::{Differentiator, ScaledLu, length};
 use crate::branch::Criticality;
 use crate::error::Error;
 use serde::{Deserialize, Serialize};
@@ -65,11 +64,6 @@ pub struct BranchPoint {
     pub tangents: [Vec<f64>; 2],
 }
 
-/// A coefficient smaller than this, relative to the others, is zero at a pitchfork.
-const PITCHFORK: f64 = 1e-6;
-/// Part of its range by which the parameter changes along the other branch of a pitchfork below which it is rounding.
-const VERTICAL: f64 = 1e-10;
-
 impl BranchPoint {
     /// Whether the parameter turns on the branch on which the point was found: it is the one that leaves a pitchfork to one side.
     pub(crate) fn turns(&self) -> bool {
@@ -93,8 +87,13 @@ impl BranchPoint {
     /// The same with the errors of its coefficients.
     fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
         let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
-        let place = Place::on_branch(problem, (&self.state, &self.parameters), scales, self.location_error);
-        let errors = coefficient_error::errors(known, place, |state, parameters| {
+        let equilibrium = UncertainEquilibrium::on_branch(
+            problem,
+            (&self.state, &self.parameters),
+            scales,
+            self.location_error,
+        );
+        let errors = coefficient_error::errors(known, equilibrium, |state, parameters| {
             let moved = EquilibriumProblem::new(problem.field, parameters, &problem.active);
             let unknown = [state, &[parameters[self.active]]].concat();
             let near = Self::without_errors(&moved, &unknown, tangent, scales, 0.0).ok()??;
@@ -124,91 +123,17 @@ impl BranchPoint {
         let state = unknown[..n].to_vec();
         let parameters = problem.parameters_at(&unknown[n..]);
         let active = problem.active[0];
-        let (null_vector, left, _) = null_vectors(problem, unknown)?;
         let forms = MultilinearForms { field: problem.field, state: &state, parameters: &parameters };
-        let project = |image: &[f64]| -> f64 { image.iter().zip(&left).map(|(value, p)| value * p).sum() };
-
-        // The Jacobian bordered by the null vectors, to solve with it on their complements.
-        let m = n + 1;
-        let mut jacobian = vec![0.0; n * m];
-        let mut residual = vec![0.0; n];
-        Differentiator::default().jacobian(problem, unknown, &mut residual, &mut jacobian, n);
-        let mut bordered = vec![0.0; m * m];
-        for column in 0..n {
-            bordered[m * column..m * column + n].copy_from_slice(&jacobian[n * column..n * (column + 1)]);
-            bordered[n + m * column] = null_vector[column] / (scales[column] * scales[column]);
-            bordered[column + m * n] = left[column] * scales[column] * scales[column];
-        }
-        let mut columns = scales[..n].to_vec();
-        columns.push(1.0);
-        let mut lu = ScaledLu::default();
-        if lu.factorize(m, &bordered, &columns) == 0.0 {
+        let Some(equation) = BranchingEquation::at(problem, unknown, forms, scales)? else {
             return Ok(None);
-        }
-        let solve = |right_hand_side: &[f64]| {
-            let mut vector = right_hand_side.to_vec();
-            vector.push(0.0);
-            lu.solve(&mut vector);
-            vector.truncate(n);
-            vector
         };
-        let slope: Vec<f64> = jacobian[n * n..].iter().map(|entry| -entry).collect();
-        let mut across = solve(&slope);
-        across.resize(n + parameters.len(), 0.0);
-        across[n + active] = 1.0;
-        let square = forms.real(&[&null_vector, &null_vector]);
-        let quadratic = project(&square);
-        let mixed = project(&forms.real(&[&null_vector, &across]));
-        let parametric = project(&forms.real(&[&across, &across]));
-
-        // In the scaled metric, so that the two directions compare.
-        let direction = |alpha: f64, beta: f64| {
-            let mut vector: Vec<f64> = (0..n).map(|i| alpha * null_vector[i] + beta * across[i]).collect();
-            vector.push(beta);
-            let size = length(&vector, scales);
-            vector.iter_mut().for_each(|entry| *entry /= size);
-            vector
-        };
-        let null_size = length(&null_vector, &scales[..n]);
-        let range = scales[n];
-        let (a, b, c) =
-            (quadratic / (null_size * null_size), mixed * range / null_size, parametric * range * range);
-        let discriminant = b * b - a * c;
-        if !(discriminant > 0.0 && discriminant.is_finite()) {
-            return Ok(None);
-        }
-        // Roots (alpha : beta) of a alpha^2 + 2 b alpha beta + c beta^2 without cancellation.
-        let stable = -(b + discriminant.sqrt().copysign(b));
-        let roots =
-            [(stable, a), (c, stable)].map(|(alpha, beta)| direction(alpha / null_size, beta * range));
-        let along = |vector: &[f64]| {
-            vector.iter().zip(tangent).zip(scales).map(|((x, y), s)| x / s * (y / s)).sum::<f64>()
-        };
-        let [mut own, mut other] = roots;
-        if along(&own).abs() < along(&other).abs() {
-            std::mem::swap(&mut own, &mut other);
-        }
-        if along(&own) < 0.0 {
-            own.iter_mut().for_each(|entry| *entry = -*entry);
-        }
-        let crossing =
-            if a.abs() < PITCHFORK * b.abs() { Crossing::Pitchfork } else { Crossing::Transcritical };
-        let cubic = (crossing == Crossing::Pitchfork).then(|| {
-            let correction = solve(&square.iter().map(|entry| -entry).collect::<Vec<_>>());
-            let cubes = forms.real(&[&null_vector, &null_vector, &null_vector]);
-            (project(&cubes) + 3.0 * project(&forms.real(&[&null_vector, &correction]))) / 6.0
-        });
-        let criticality = cubic.map(|cubic| {
-            // Along the other branch the parameter changes by this part of its range while the state changes by its size.
-            let curvature = cubic / null_size.powi(3) / b;
-            match cubic {
-                _ if curvature.abs() < VERTICAL || curvature.is_nan() => Criticality::Degenerate,
-                _ if cubic < 0.0 => Criticality::Supercritical,
-                _ => Criticality::Subcritical,
-            }
-        });
+        let Some(directions) = equation.directions(scales) else { return Ok(None) };
+        let scaled = equation.scaled(scales);
+        let crossing = if scaled.is_pitchfork() { Crossing::Pitchfork } else { Crossing::Transcritical };
+        let cubic = (crossing == Crossing::Pitchfork).then(|| equation.cubic());
+        let BranchingEquation { null_vector, quadratic, mixed, parametric, .. } = equation;
         Ok(Some(Self {
-            criticality,
+            criticality: cubic.map(|cubic| scaled.criticality(cubic)),
             quadratic_errors: None,
             cubic_error: None,
             value: parameters[active],
@@ -222,7 +147,21 @@ impl BranchPoint {
             parametric,
             cubic,
             crossing,
-            tangents: [own, other],
+            tangents: known_first(directions, tangent, scales),
         }))
     }
+}
+
+/// The directions of two branches, first that of the one with the direction `tangent`, in the sense of that.
+fn known_first([mut own, mut other]: [Vec<f64>; 2], tangent: &[f64], scales: &[f64]) -> [Vec<f64>; 2] {
+    let along = |vector: &[f64]| {
+        vector.iter().zip(tangent).zip(scales).map(|((x, y), s)| x / s * (y / s)).sum::<f64>()
+    };
+    if along(&own).abs() < along(&other).abs() {
+        std::mem::swap(&mut own, &mut other);
+    }
+    if along(&own) < 0.0 {
+        own.iter_mut().for_each(|entry| *entry = -*entry);
+    }
+    [own, other]
 }

@@ -15,7 +15,7 @@ const MARGIN: f64 = 3.0;
 
 /// An equilibrium at which coefficients are computed, and how well it is known.
 #[derive(Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct UncertainEquilibrium<'a> {
     pub state: &'a [f64],
     pub parameters: &'a [f64],
     /// Indices of the parameters that were solved for with the state.
@@ -26,8 +26,8 @@ pub(crate) struct Place<'a> {
     pub location_error: f64,
 }
 
-impl<'a> Place<'a> {
-    /// A place on a branch along the first active parameter of `problem`, of which `location_error` is the error.
+impl<'a> UncertainEquilibrium<'a> {
+    /// One on a branch along the first active parameter of `problem`, of which `location_error` is the error.
     pub(crate) fn on_branch(
         problem: &'a EquilibriumProblem<'_>,
         (state, parameters): (&'a [f64], &'a [f64]),
@@ -55,17 +55,17 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Errors of the coefficients `known` at a place, which `coefficients` computes from state and parameters. `None` where there are
+/// Errors of the coefficients `known` at an equilibrium, which `coefficients` computes from state and parameters. `None` where there are
 /// none nearby.
 pub(crate) fn errors<const N: usize>(
     known: [f64; N],
-    place: Place<'_>,
+    equilibrium: UncertainEquilibrium<'_>,
     coefficients: impl Fn(&[f64], &[f64]) -> Option<[f64; N]>,
 ) -> Option<[f64; N]> {
     let mut random = Random::new(1);
     let mut errors = [0.0_f64; N];
     for _ in 0..TRIALS {
-        let (state, parameters) = place.moved(&mut random);
+        let (state, parameters) = equilibrium.moved(&mut random);
         for ((error, there), here) in errors.iter_mut().zip(coefficients(&state, &parameters)?).zip(known) {
             // What is not a number has no error.
             *error = if there.is_finite() { error.max(MARGIN * (there - here).abs()) } else { f64::NAN };

@@ -1,6 +1,6 @@
 //! What continuation asks of a curve of equilibria: residuals, test functions, where special points lie, where the curve ends.
 
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::end::EquilibriumEnd;
 use super::locating;
 use super::problem::EquilibriumProblem;
@@ -55,7 +55,7 @@ impl<'f> Discretised for EquilibriumCurve<'f> {
 }
 
 impl Curve for EquilibriumCurve<'_> {
-    type Point = Inspection;
+    type Point = EquilibriumInspection;
     type Kind = SpecialKind;
     type Reason = EquilibriumEnd;
 
@@ -69,7 +69,12 @@ impl Curve for EquilibriumCurve<'_> {
         Ok(Adaptation::Unchanged)
     }
 
-    fn inspect(&mut self, unknown: &[f64], tangent: &[f64], orientation: f64) -> Result<Inspection, Error> {
+    fn inspect(
+        &mut self,
+        unknown: &[f64],
+        tangent: &[f64],
+        orientation: f64,
+    ) -> Result<EquilibriumInspection, Error> {
         let n = self.dimension();
         let determinant = self.system.determinant_size();
         let spectrum = self.spectrum()?;
@@ -86,14 +91,14 @@ impl Curve for EquilibriumCurve<'_> {
             Err(_) => vec![Complex64::ZERO; n],
         };
         let cells = self.system.problem.cells().to_vec();
-        Ok(Inspection { spectrum, rates, orientation, determinant, cells, special: None })
+        Ok(EquilibriumInspection { spectrum, rates, orientation, determinant, cells, special: None })
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
         Cow::Borrowed(TEST_FUNCTIONS)
     }
 
-    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+    fn test(&self, kind: SpecialKind, solution: &Solution<EquilibriumInspection>) -> Option<Reading> {
         let point = &solution.point;
         match kind {
             SpecialKind::Fold => {
@@ -107,16 +112,16 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
-    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+    fn spectrum(&self, solution: &Solution<EquilibriumInspection>) -> events::Spectrum {
         solution.point.spectrum.growth()
     }
 
-    fn exponent_rates(&self, solution: &Solution<Inspection>) -> Option<Vec<Complex64>> {
+    fn exponent_rates(&self, solution: &Solution<EquilibriumInspection>) -> Option<Vec<Complex64>> {
         let direction = solution.orientation * solution.point.orientation;
         Some(solution.point.rates.iter().map(|rate| rate * direction).collect())
     }
 
-    fn undecided(&self, solution: &Solution<Inspection>) -> usize {
+    fn undecided(&self, solution: &Solution<EquilibriumInspection>) -> usize {
         let spectrum = &solution.point.spectrum;
         spectrum.hopf_undecided
             + usize::from(!spectrum.stability.is_decided())
@@ -126,8 +131,8 @@ impl Curve for EquilibriumCurve<'_> {
     fn locate(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
-    ) -> Result<Location<Inspection>, Error> {
+        [before, after]: [&Solution<EquilibriumInspection>; 2],
+    ) -> Result<Location<EquilibriumInspection>, Error> {
         let located = match kind {
             SpecialKind::Fold => locating::fold(self, before, after)?,
             SpecialKind::BranchPoint => locating::branch_point(self, before, after)?,
@@ -141,15 +146,15 @@ impl Curve for EquilibriumCurve<'_> {
 
     fn locate_crossing(
         &mut self,
-        [before, _]: [&Solution<Inspection>; 2],
-        near: Solution<Inspection>,
+        [before, _]: [&Solution<EquilibriumInspection>; 2],
+        near: Solution<EquilibriumInspection>,
         change: usize,
         half: f64,
-    ) -> Result<Vec<Event<SpecialKind, Inspection>>, Error> {
+    ) -> Result<Vec<Event<SpecialKind, EquilibriumInspection>>, Error> {
         locating::crossing(self, before, near, change, half)
     }
 
-    fn are_distinct(&self, one: &Inspection, other: &Inspection) -> bool {
+    fn are_distinct(&self, one: &EquilibriumInspection, other: &EquilibriumInspection) -> bool {
         match (one.special.as_deref(), other.special.as_deref()) {
             (Some(SpecialPoint::Hopf(one)), Some(SpecialPoint::Hopf(other))) => {
                 locating::are_distinct(one.frequency, other.frequency)
@@ -158,11 +163,11 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
-    fn kind_at(&self, point: &Inspection) -> Option<SpecialKind> {
+    fn kind_at(&self, point: &EquilibriumInspection) -> Option<SpecialKind> {
         point.special.as_ref().map(|special| special.kind())
     }
 
-    fn changes_at(&self, point: &Inspection) -> Option<&'static [usize]> {
+    fn changes_at(&self, point: &EquilibriumInspection) -> Option<&'static [usize]> {
         match point.special.as_deref()? {
             SpecialPoint::Hopf(_) => Some(&[2]),
             SpecialPoint::NeutralSaddle(_) => Some(&[0]),
@@ -170,7 +175,7 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
-    fn turns_at(&self, point: &Inspection) -> Option<bool> {
+    fn turns_at(&self, point: &EquilibriumInspection) -> Option<bool> {
         match point.special.as_deref()? {
             SpecialPoint::BranchPoint(point) => Some(point.turns()),
             _ => None,
@@ -179,13 +184,13 @@ impl Curve for EquilibriumCurve<'_> {
 
     fn passage(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
+        before: &Solution<EquilibriumInspection>,
+        after: &Solution<EquilibriumInspection>,
     ) -> Result<Option<PassageOf<Self>>, Error> {
         self.corner_between(before, after)
     }
 
-    fn enter(&mut self, solution: &Solution<Inspection>) {
+    fn enter(&mut self, solution: &Solution<EquilibriumInspection>) {
         self.enter_piece_of(solution);
     }
 
@@ -195,8 +200,8 @@ impl Curve for EquilibriumCurve<'_> {
 
     fn ending(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
+        before: &Solution<EquilibriumInspection>,
+        after: &Solution<EquilibriumInspection>,
     ) -> Option<Ending<EquilibriumEnd>> {
         let n = self.dimension();
         let range = self.system.scales[n];

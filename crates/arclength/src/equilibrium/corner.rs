@@ -7,7 +7,7 @@
 //! nothing happens where the eigenvalues are on the same sides. Source: di Bernardo, Budd, Champneys and Kowalczyk, *Piecewise-smooth
 //! Dynamical Systems* (2008), section 5.2; Leine and Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems* (2004).
 
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::end::EquilibriumEnd;
 use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
@@ -40,7 +40,7 @@ const ASIDE: f64 = 1.5;
 /// Rate of change of the parameter, as part of its range, whose sign may be rounding.
 const NO_TURN: f64 = 1e-9;
 
-type Node = Solution<Inspection>;
+type Node = Solution<EquilibriumInspection>;
 
 /// The field and its switch functions.
 struct WithSwitches<'p, 'a> {
@@ -106,6 +106,20 @@ pub(super) struct HalfBranch {
     pub tangent: Vec<f64>,
 }
 
+/// A piece of the field around a solution.
+pub(super) struct Piece {
+    pub cells: Vec<f64>,
+    /// Whether the solution is on one of its borders.
+    pub is_on_border: bool,
+}
+
+/// A border of the cell of a switch function.
+#[derive(Clone, Copy)]
+struct CellBorder {
+    switch: usize,
+    is_upper: bool,
+}
+
 impl EquilibriumCurve<'_> {
     /// The switch functions by the piece that the curve is in.
     fn switches(&self, unknown: &[f64]) -> Vec<Switch> {
@@ -130,8 +144,8 @@ impl EquilibriumCurve<'_> {
         thresholds.iter().zip(self.system.problem.cells()).map(|(one, &cell)| one.borders(cell)).collect()
     }
 
-    /// The cells of the piece in which a solution lies, and whether it is on one of its borders.
-    pub(super) fn piece_at(&mut self, unknown: &[f64]) -> Option<(Vec<f64>, bool)> {
+    /// The piece in which a solution lies.
+    pub(super) fn piece_at(&mut self, unknown: &[f64]) -> Option<Piece> {
         let (state, values) = unknown.split_at(self.dimension());
         let parameters = self.system.problem.parameters_at(values);
         let cells = self.pieces.as_ref()?.region_at(state, &parameters);
@@ -139,7 +153,7 @@ impl EquilibriumCurve<'_> {
         self.system.problem.enter(&cells);
         let is_on_border = !self.on_borders(unknown).is_empty();
         self.system.problem.enter(&kept);
-        Some((cells, is_on_border))
+        Some(Piece { cells, is_on_border })
     }
 
     /// As [`Curve::enter`](crate::continuation::Curve::enter).
@@ -147,7 +161,7 @@ impl EquilibriumCurve<'_> {
         if !solution.point.cells.is_empty() {
             self.given_up.clear();
             self.system.problem.enter(&solution.point.cells);
-        } else if let Some((cells, false)) = self.piece_at(&solution.unknown)
+        } else if let Some(Piece { cells, is_on_border: false }) = self.piece_at(&solution.unknown)
             && cells != self.given_up
         {
             self.given_up.clear();
@@ -155,13 +169,13 @@ impl EquilibriumCurve<'_> {
         }
     }
 
-    /// The switch functions whose borders a solution is on, each with whether that is the upper border of its cell.
-    fn on_borders(&self, unknown: &[f64]) -> Vec<(usize, bool)> {
+    /// The borders that a solution is on.
+    fn on_borders(&self, unknown: &[f64]) -> Vec<CellBorder> {
         let switches = self.switches(unknown).into_iter().zip(self.borders()).enumerate();
         let on = |(index, (switch, [lower, upper])): (usize, (Switch, [f64; 2]))| {
             let margin = ON_BORDER * switch.size;
             let at = |border: f64| (switch.value - border).abs() <= margin;
-            (at(lower) || at(upper)).then(|| (index, at(upper)))
+            (at(lower) || at(upper)).then(|| CellBorder { switch: index, is_upper: at(upper) })
         };
         switches.filter_map(on).collect()
     }
@@ -194,23 +208,18 @@ impl EquilibriumCurve<'_> {
     }
 
     /// The cells beyond some borders; others change only where what they depend on has jumped.
-    fn piece_beyond(
-        &mut self,
-        unknown: &[f64],
-        cells: &[f64],
-        flipped: &[(usize, bool)],
-    ) -> Option<Vec<f64>> {
+    fn piece_beyond(&mut self, unknown: &[f64], cells: &[f64], flipped: &[CellBorder]) -> Option<Vec<f64>> {
         let thresholds = self.pieces.as_ref()?.thresholds().to_vec();
         let mut next = cells.to_vec();
-        for &(index, upwards) in flipped {
-            next[index] = thresholds[index].next(cells[index], upwards);
+        for &CellBorder { switch, is_upper } in flipped {
+            next[switch] = thresholds[switch].next(cells[switch], is_upper);
         }
         // Those behind may depend on those before.
         for _ in 0..next.len() {
             self.system.problem.enter(&next);
             let outside = self.outside(unknown);
             let Some(&index) = outside.first() else { return Some(next) };
-            if flipped.iter().any(|(known, _)| *known == index) {
+            if flipped.iter().any(|border| border.switch == index) {
                 return None;
             }
             next[index] = thresholds[index].cell(self.switches(unknown)[index].value);

@@ -13,7 +13,7 @@ use num_complex::Complex64;
 
 /// What is known about an equilibrium on a curve.
 #[derive(Clone, Debug)]
-pub(crate) struct Inspection {
+pub(crate) struct EquilibriumInspection {
     pub spectrum: Spectrum,
     /// Rates of change of the eigenvalues in the direction of travel in which the orientation was this.
     pub rates: Vec<Complex64>,
@@ -76,7 +76,11 @@ impl<'a> EquilibriumCurve<'a> {
     }
 
     /// The value to which the parameter tends where its rate dies out along the curve: from the rates at two solutions.
-    pub(super) fn limit(&self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> f64 {
+    pub(super) fn limit(
+        &self,
+        before: &Solution<EquilibriumInspection>,
+        after: &Solution<EquilibriumInspection>,
+    ) -> f64 {
         let n = self.dimension();
         let parameter = after.unknown[n];
         let [one, other] = [before, after].map(|solution| solution.tangent[n]);
@@ -107,14 +111,15 @@ impl<'a> EquilibriumCurve<'a> {
         &mut self,
         unknown: Vec<f64>,
         point: BranchPoint,
-    ) -> Result<Solution<Inspection>, Error> {
+    ) -> Result<Solution<EquilibriumInspection>, Error> {
         let matrix = self.jacobian(&unknown);
         let spectrum = Spectrum::of(&matrix, &mut self.workspace)?;
         let tangent = point.tangents[0].clone();
         let special = Some(Box::new(SpecialPoint::BranchPoint(point)));
         let rates = vec![Complex64::ZERO; spectrum.eigenvalues.len()];
         let cells = self.system.problem.cells().to_vec();
-        let point = Inspection { spectrum, rates, orientation: 0.0, determinant: 0.0, cells, special };
+        let point =
+            EquilibriumInspection { spectrum, rates, orientation: 0.0, determinant: 0.0, cells, special };
         Ok(Solution { unknown, tangent, orientation: 0.0, point })
     }
 

@@ -1,6 +1,6 @@
 //! Folds of equilibria and their quadratic coefficient.
 
-use super::coefficient_error::{self, Place};
+use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{AlgebraicEquations, Differentiator};
@@ -38,12 +38,18 @@ pub struct FoldPoint {
 /// Product of unit null vectors below which zero counts as a double eigenvalue.
 const DOUBLE: f64 = 1e-9;
 
-/// Null vectors `q`, `p` of the Jacobian at an equilibrium, `<q, q> = 1` and `<p, q> = 1` if that is possible, and
-/// whether it is.
-pub(crate) fn null_vectors(
-    problem: &EquilibriumProblem<'_>,
-    unknown: &[f64],
-) -> Result<(Vec<f64>, Vec<f64>, bool), Error> {
+/// Null vectors of the Jacobian at an equilibrium.
+pub(crate) struct NullVectors {
+    /// `q`, with `<q, q> = 1`.
+    pub right: Vec<f64>,
+    /// `p`, with `<p, q> = 1` if that is possible.
+    pub left: Vec<f64>,
+    /// Whether it is: zero is a simple eigenvalue.
+    pub is_simple: bool,
+}
+
+/// The null vectors at an equilibrium.
+pub(crate) fn null_vectors(problem: &EquilibriumProblem<'_>, unknown: &[f64]) -> Result<NullVectors, Error> {
     let n = problem.dimension;
     let mut matrix = vec![0.0; n * unknown.len()];
     let mut residual = vec![0.0; n];
@@ -55,11 +61,11 @@ pub(crate) fn null_vectors(
     let product: f64 = left.iter().zip(&right).map(|(p, q)| p * q).sum();
     // The size of the terms of the product does not depend on units, the vectors' norms do.
     let size: f64 = left.iter().zip(&right).map(|(p, q)| (p * q).abs()).sum();
-    let simple = product.abs() > DOUBLE * size;
-    if simple {
+    let is_simple = product.abs() > DOUBLE * size;
+    if is_simple {
         left.iter_mut().for_each(|entry| *entry /= product);
     }
-    Ok((right, left, simple))
+    Ok(NullVectors { right, left, is_simple })
 }
 
 impl FoldPoint {
@@ -75,24 +81,25 @@ impl FoldPoint {
         let state = unknown[..n].to_vec();
         let parameters = problem.parameters_at(&unknown[n..]);
         let active = problem.active[0];
-        let (null_vector, left, simple) = null_vectors(problem, unknown)?;
+        let NullVectors { right: null_vector, left, is_simple } = null_vectors(problem, unknown)?;
         let forms = MultilinearForms { field: problem.field, state: &state, parameters: &parameters };
         let project = |image: Vec<f64>| -> f64 { image.iter().zip(&left).map(|(value, p)| value * p).sum() };
         let mut along = vec![0.0; n + parameters.len()];
         along[n + active] = 1.0;
-        let quadratic = simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
-        let unfolding = simple.then(|| project(forms.real(&[&along])));
+        let quadratic = is_simple.then(|| 0.5 * project(forms.real(&[&null_vector, &null_vector])));
+        let unfolding = is_simple.then(|| project(forms.real(&[&along])));
         let quadratic_error = quadratic.and_then(|value| {
-            let place = Place::on_branch(problem, (&state, &parameters), scales, location_error);
-            let [error] = coefficient_error::errors([value], place, |state, parameters| {
+            let equilibrium =
+                UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
+            let [error] = coefficient_error::errors([value], equilibrium, |state, parameters| {
                 let moved = EquilibriumProblem::new(problem.field, parameters, &[]);
-                let (right, left, simple) = null_vectors(&moved, state).ok()?;
+                let NullVectors { right, left, is_simple } = null_vectors(&moved, state).ok()?;
                 let square =
                     MultilinearForms { field: problem.field, state, parameters }.real(&[&right, &right]);
                 let product: f64 = square.iter().zip(&left).map(|(value, p)| value * p).sum();
                 // A null vector may have either sign.
                 let sign = right.iter().zip(&null_vector).map(|(a, b)| a * b).sum::<f64>().signum();
-                simple.then_some([0.5 * sign * product])
+                is_simple.then_some([0.5 * sign * product])
             })?;
             Some(error)
         });

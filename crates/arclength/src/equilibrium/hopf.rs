@@ -1,6 +1,6 @@
 //! Hopf points: frequency, speed of crossing and first Lyapunov coefficient.
 
-use super::coefficient_error::{self, Place};
+use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::{Differentiator, ScaledLu};
@@ -63,8 +63,9 @@ impl HopfPoint {
         let local = CriticalPair::at(problem.field, &state, &parameters, frequency, scales)?;
         let first = local.first_lyapunov();
         let first_lyapunov_error = first.and_then(|(value, _)| {
-            let place = Place::on_branch(problem, (&state, &parameters), scales, location_error);
-            let [error] = coefficient_error::errors([value], place, |state, parameters| {
+            let equilibrium =
+                UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
+            let [error] = coefficient_error::errors([value], equilibrium, |state, parameters| {
                 let near = CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()?;
                 near.first_lyapunov().map(|(value, _)| [value])
             })?;

@@ -1,7 +1,7 @@
 //! Newton's method on the defining system of a special point that was bracketed on a curve of equilibria.
 
 use super::branch_point::BranchPoint;
-use super::curve::{EquilibriumCurve, Inspection};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
@@ -37,7 +37,7 @@ const AGREEMENT: f64 = 1e-6;
 /// Relative difference of the frequencies of two pairs.
 const DISTINCT: f64 = 1e-6;
 
-type Node = Solution<Inspection>;
+type Node = Solution<EquilibriumInspection>;
 
 /// A function whose zero is sought.
 type Test = fn(&EquilibriumCurve<'_>, &Node) -> f64;
@@ -394,7 +394,7 @@ pub(super) fn crossing(
     mut near: Node,
     change: usize,
     half: f64,
-) -> Result<Vec<Event<SpecialKind, Inspection>>, Error> {
+) -> Result<Vec<Event<SpecialKind, EquilibriumInspection>>, Error> {
     let eigenvalues = &near.point.spectrum.eigenvalues;
     let closest = eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
     let oscillates = closest.is_some_and(|value| value.im != 0.0);

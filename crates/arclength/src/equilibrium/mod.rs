@@ -4,8 +4,10 @@
 //! Newton's method on their defining systems. Source: Kuznetsov, *Elements of Applied Bifurcation Theory*, 3rd edition
 //! (2004), chapters 5 and 10; Govaerts, *Numerical Methods for Bifurcations of Dynamical Equilibria* (2000).
 
+pub(crate) mod bordered_jacobian;
 mod branch;
 mod branch_point;
+mod branching_equation;
 pub(crate) mod coefficient_error;
 mod conservation;
 mod contract;

@@ -2,8 +2,8 @@
 
 use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
-use super::corner::HalfBranch;
-use super::curve::{EquilibriumCurve, Inspection};
+use super::corner::{HalfBranch, Piece};
+use super::curve::{EquilibriumCurve, EquilibriumInspection};
 use super::departure::{branch_point_along, is_branching};
 use super::end::EquilibriumEnd;
 use super::first::{FoundBy, FoundEquilibrium, seek_erased};
@@ -86,6 +86,13 @@ impl crate::branch::Problem for EquilibriumStart {
 /// ```
 pub type Equilibria<'a> = Continuation<'a, EquilibriumStart>;
 
+impl BranchPoint {
+    /// The other branch through this point.
+    pub fn other<'a, F: VectorField>(&self, field: &'a F) -> Equilibria<'a> {
+        Equilibria::of(field).from_branch_point(self)
+    }
+}
+
 /// A start in the space of the states and the parameter, with the directions in which the branch leaves it.
 struct Departure {
     unknown: Vec<f64>,
@@ -166,8 +173,9 @@ impl<'a> Equilibria<'a> {
         let departure = departure.directed(&mut curve)?;
 
         let Continuation { field, at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| EquilibriumPoint::new(solution, None, bound.width());
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare =
+            |solution: &Solution<EquilibriumInspection>| EquilibriumPoint::new(solution, None, bound.width());
+        let point = |solution: &Solution<EquilibriumInspection>, label: Option<Label>| {
             let mut point = EquilibriumPoint::new(solution, label, bound.width());
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -179,7 +187,7 @@ impl<'a> Equilibria<'a> {
         drop(observe);
         let mut followed = departure.join(&mut curve, directions, (bound, settings))?;
         followed.mark_requested(at, |solution| solution.unknown[n]);
-        let point = |solution: Solution<Inspection>, label| point(&solution, label);
+        let point = |solution: Solution<EquilibriumInspection>, label| point(&solution, label);
         Ok(Branch::assemble(field, (&parameters, &active), followed, point))
     }
 
@@ -304,8 +312,8 @@ impl Departure {
         &self,
         curve: &mut EquilibriumCurve<'_>,
         sign: f64,
-        request: &Request<'_, Inspection>,
-        observer: &mut crate::continuation::Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumInspection>,
+        observer: &mut crate::continuation::Observer<'_, EquilibriumInspection, SpecialKind>,
     ) -> Result<FollowedCurve<EquilibriumCurve<'static>>, Error> {
         let bound = request.bounds[0];
         let value = bound.value(&self.unknown);
@@ -326,7 +334,7 @@ impl Departure {
         let start: Vec<f64> = start.collect();
         curve.restart();
         if cells.is_empty() {
-            cells = curve.piece_at(&start).map_or(Vec::new(), |(cells, _)| cells);
+            cells = curve.piece_at(&start).map_or(Vec::new(), |piece| piece.cells);
         }
         curve.system.problem.enter(&cells);
         follow(curve, start, tangent, request, observer)
@@ -375,7 +383,7 @@ impl Departure {
 
 /// How a branch leaves a start on a border between two pieces of the field, backward and forward; `None` where the start is on none.
 fn leaving_border(curve: &mut EquilibriumCurve<'_>, start: &[f64]) -> Option<[Option<HalfBranch>; 2]> {
-    let (cells, true) = curve.piece_at(start)? else { return None };
+    let Piece { cells, is_on_border: true } = curve.piece_at(start)? else { return None };
     let mut halves = curve.half_branches(start, &cells);
     let rate = |half: &HalfBranch| half.tangent.last().copied().unwrap_or(0.0);
     halves.sort_by(|one, other| rate(one).total_cmp(&rate(other)));
@@ -388,8 +396,8 @@ fn leaving_border(curve: &mut EquilibriumCurve<'_>, start: &[f64]) -> Option<[Op
 /// Has a closed branch end at the branch point from which it started, which it finds again, and not the distance of the
 /// departure behind it.
 fn end_at(
-    branch_point: &Solution<Inspection>,
-    solutions: &mut Vec<(Solution<Inspection>, Origin<SpecialKind>)>,
+    branch_point: &Solution<EquilibriumInspection>,
+    solutions: &mut Vec<(Solution<EquilibriumInspection>, Origin<SpecialKind>)>,
     reach: f64,
     scales: &[f64],
 ) {

@@ -110,7 +110,7 @@ fn visit_pieces_of(
 ) -> bool {
     let middle = 0.5 * (left + right);
     let half = 0.5 * (right - left);
-    let (value, slope, bend) = expansion(coefficients, middle);
+    let Taylor { value, slope, bend } = expansion(coefficients, middle);
     // Taylor's theorem about the middle with bounds on the next derivative.
     let bounds = derivative_bounds(coefficients);
     let no_zero = value.abs() >= slope.abs() * half + bounds[0] * half * half / 2.0;
@@ -135,24 +135,33 @@ fn derivative_bounds(coefficients: &[f64; DEGREE + 1]) -> [f64; 2] {
 
 /// Value of the interpolant (Clenshaw).
 fn evaluate(coefficients: &[f64; DEGREE + 1], x: f64) -> f64 {
-    expansion(coefficients, x).0
+    expansion(coefficients, x).value
 }
 
-/// Value, first and second derivative of the interpolant.
-fn expansion(coefficients: &[f64; DEGREE + 1], x: f64) -> (f64, f64, f64) {
+/// A value with its first and second derivative.
+#[derive(Clone, Copy)]
+struct Taylor {
+    value: f64,
+    slope: f64,
+    bend: f64,
+}
+
+/// The interpolant at `x`.
+fn expansion(coefficients: &[f64; DEGREE + 1], x: f64) -> Taylor {
     // Recurrences of T_k and of its derivatives.
-    let mut polynomials = [(1.0, 0.0, 0.0), (x, 1.0, 0.0)];
-    let mut sum = (coefficients[0] + coefficients[1] * x, coefficients[1], 0.0);
+    let mut polynomials =
+        [Taylor { value: 1.0, slope: 0.0, bend: 0.0 }, Taylor { value: x, slope: 1.0, bend: 0.0 }];
+    let mut sum = Taylor { value: coefficients[0] + coefficients[1] * x, slope: coefficients[1], bend: 0.0 };
     for &coefficient in &coefficients[2..] {
         let [before, last] = polynomials;
-        let next = (
-            2.0 * x * last.0 - before.0,
-            2.0 * (last.0 + x * last.1) - before.1,
-            2.0 * (2.0 * last.1 + x * last.2) - before.2,
-        );
-        sum.0 += coefficient * next.0;
-        sum.1 += coefficient * next.1;
-        sum.2 += coefficient * next.2;
+        let next = Taylor {
+            value: 2.0 * x * last.value - before.value,
+            slope: 2.0 * (last.value + x * last.slope) - before.slope,
+            bend: 2.0 * (2.0 * last.slope + x * last.bend) - before.bend,
+        };
+        sum.value += coefficient * next.value;
+        sum.slope += coefficient * next.slope;
+        sum.bend += coefficient * next.bend;
         polynomials = [last, next];
     }
     sum

@@ -331,53 +331,17 @@ fn francis(
 
 /// One double-shift sweep over rows `first..=last`, at least three of them.
 fn sweep(h: &mut [f64], n: usize, first: usize, last: usize, count: usize) {
-    let at = |h: &[f64], row: usize, column: usize| h[row + n * column];
-    let exceptional = |corner: f64, size: f64| {
-        let diagonal = 0.75 * size + corner;
-        Shifts::of(diagonal, -0.4375 * size, size, diagonal)
-    };
-    let shifts = if count.is_multiple_of(2 * EXCEPTIONAL_SHIFT_INTERVAL) {
-        exceptional(at(h, last, last), at(h, last, last - 1).abs() + at(h, last - 1, last - 2).abs())
-    } else if count.is_multiple_of(EXCEPTIONAL_SHIFT_INTERVAL) {
-        exceptional(at(h, first, first), at(h, first + 1, first).abs() + at(h, first + 2, first + 1).abs())
-    } else {
-        let (a, b) = (at(h, last - 1, last - 1), at(h, last - 1, last));
-        Shifts::of(a, b, at(h, last, last - 1), at(h, last, last))
-    };
-    // Start at two consecutive small subdiagonal entries, if there are any.
-    let mut start = last - 2;
-    let mut vector;
-    loop {
-        let (a, d) = (at(h, start, start), at(h, start + 1, start + 1));
-        let below = at(h, start + 1, start);
-        let size = (a - shifts.re[1]).abs() + shifts.im.abs() + below.abs();
-        let ratio = below / size;
-        let x = ratio * at(h, start, start + 1)
-            + (a - shifts.re[0]) * ((a - shifts.re[1]) / size)
-            + shifts.im * (shifts.im / size);
-        let y = ratio * (a + d - shifts.re[0] - shifts.re[1]);
-        let z = ratio * at(h, start + 2, start + 1);
-        let size = x.abs() + y.abs() + z.abs();
-        vector = (x / size, y / size, z / size);
-        if start == first {
-            break;
-        }
-        let neighbours = at(h, start - 1, start - 1).abs() + a.abs() + d.abs();
-        let coupling = at(h, start, start - 1).abs() * (vector.1.abs() + vector.2.abs());
-        if coupling <= f64::EPSILON * vector.0.abs() * neighbours {
-            break;
-        }
-        start -= 1;
-    }
+    let shifts = shifts(h, n, first, last, count);
+    let Bulge { row: start, mut vector } = bulge(h, n, first, last, &shifts);
     for k in start..last {
         let three = k + 2 <= last;
         if k > start {
             let below = n * (k - 1) + k;
-            vector = (h[below], h[below + 1], if three { h[below + 2] } else { 0.0 });
+            vector = [h[below], h[below + 1], if three { h[below + 2] } else { 0.0 }];
         } else if !three {
-            vector.2 = 0.0;
+            vector[2] = 0.0;
         }
-        let reflector = SmallReflector::annihilating(vector.0, vector.1, vector.2);
+        let reflector = SmallReflector::annihilating(vector);
         if k > start {
             let below = n * (k - 1) + k;
             h[below] = reflector.beta;
@@ -389,27 +353,93 @@ fn sweep(h: &mut [f64], n: usize, first: usize, last: usize, count: usize) {
             h[n * (k - 1) + k] *= 1.0 - reflector.tau;
         }
         if three {
-            for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
-                let rows = &mut column[k..k + 3];
-                (rows[0], rows[1], rows[2]) = reflector.apply(rows[0], rows[1], rows[2]);
-            }
-            let rows = first..(k + 3).min(last) + 1;
-            let (a, rest) = h[n * k..n * (k + 3)].split_at_mut(n);
-            let (b, c) = rest.split_at_mut(n);
-            let (a, b, c) = (&mut a[rows.clone()], &mut b[rows.clone()], &mut c[rows]);
-            for ((x, y), z) in a.iter_mut().zip(b).zip(c) {
-                (*x, *y, *z) = reflector.apply(*x, *y, *z);
-            }
+            reflect_three(h, n, k, first, last, &reflector);
         } else {
-            for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
-                let rows = &mut column[k..k + 2];
-                (rows[0], rows[1]) = reflector.apply_to_pair(rows[0], rows[1]);
-            }
-            let (a, b) = h[n * k..n * (k + 2)].split_at_mut(n);
-            for (x, y) in a[first..=last].iter_mut().zip(&mut b[first..=last]) {
-                (*x, *y) = reflector.apply_to_pair(*x, *y);
-            }
+            reflect_two(h, n, k, first, last, &reflector);
         }
+    }
+}
+
+/// The shifts of the sweep of that number over rows `first..=last`: eigenvalues of the last two rows, now and then others.
+#[inline]
+fn shifts(h: &[f64], n: usize, first: usize, last: usize, count: usize) -> Shifts {
+    let at = |row: usize, column: usize| h[row + n * column];
+    let exceptional = |corner: f64, size: f64| {
+        let diagonal = 0.75 * size + corner;
+        Shifts::of(diagonal, -0.4375 * size, size, diagonal)
+    };
+    if count.is_multiple_of(2 * EXCEPTIONAL_SHIFT_INTERVAL) {
+        exceptional(at(last, last), at(last, last - 1).abs() + at(last - 1, last - 2).abs())
+    } else if count.is_multiple_of(EXCEPTIONAL_SHIFT_INTERVAL) {
+        exceptional(at(first, first), at(first + 1, first).abs() + at(first + 2, first + 1).abs())
+    } else {
+        let (a, b) = (at(last - 1, last - 1), at(last - 1, last));
+        Shifts::of(a, b, at(last, last - 1), at(last, last))
+    }
+}
+
+/// Where a sweep starts.
+struct Bulge {
+    row: usize,
+    /// The first column of the shifted square there, up to a factor.
+    vector: [f64; 3],
+}
+
+/// Starts a sweep below two consecutive small subdiagonal entries, if there are any.
+#[inline]
+fn bulge(h: &[f64], n: usize, first: usize, last: usize, shifts: &Shifts) -> Bulge {
+    let at = |row: usize, column: usize| h[row + n * column];
+    let mut start = last - 2;
+    loop {
+        let (a, d) = (at(start, start), at(start + 1, start + 1));
+        let below = at(start + 1, start);
+        let size = (a - shifts.re[1]).abs() + shifts.im.abs() + below.abs();
+        let ratio = below / size;
+        let x = ratio * at(start, start + 1)
+            + (a - shifts.re[0]) * ((a - shifts.re[1]) / size)
+            + shifts.im * (shifts.im / size);
+        let y = ratio * (a + d - shifts.re[0] - shifts.re[1]);
+        let z = ratio * at(start + 2, start + 1);
+        let size = x.abs() + y.abs() + z.abs();
+        let vector = [x / size, y / size, z / size];
+        if start == first {
+            return Bulge { row: start, vector };
+        }
+        let neighbours = at(start - 1, start - 1).abs() + a.abs() + d.abs();
+        let coupling = at(start, start - 1).abs() * (vector[1].abs() + vector[2].abs());
+        if coupling <= f64::EPSILON * vector[0].abs() * neighbours {
+            return Bulge { row: start, vector };
+        }
+        start -= 1;
+    }
+}
+
+/// Applies a reflector from both sides to rows and columns `k..k + 3` of the rows `first..=last`.
+#[inline]
+fn reflect_three(h: &mut [f64], n: usize, k: usize, first: usize, last: usize, reflector: &SmallReflector) {
+    for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
+        let rows = &mut column[k..k + 3];
+        [rows[0], rows[1], rows[2]] = reflector.apply([rows[0], rows[1], rows[2]]);
+    }
+    let rows = first..(k + 3).min(last) + 1;
+    let (a, rest) = h[n * k..n * (k + 3)].split_at_mut(n);
+    let (b, c) = rest.split_at_mut(n);
+    let (a, b, c) = (&mut a[rows.clone()], &mut b[rows.clone()], &mut c[rows]);
+    for ((x, y), z) in a.iter_mut().zip(b).zip(c) {
+        [*x, *y, *z] = reflector.apply([*x, *y, *z]);
+    }
+}
+
+/// The same for the last two rows and columns.
+#[inline]
+fn reflect_two(h: &mut [f64], n: usize, k: usize, first: usize, last: usize, reflector: &SmallReflector) {
+    for column in h.chunks_exact_mut(n).take(last + 1).skip(k) {
+        let rows = &mut column[k..k + 2];
+        [rows[0], rows[1]] = reflector.apply_to_pair([rows[0], rows[1]]);
+    }
+    let (a, b) = h[n * k..n * (k + 2)].split_at_mut(n);
+    for (x, y) in a[first..=last].iter_mut().zip(&mut b[first..=last]) {
+        [*x, *y] = reflector.apply_to_pair([*x, *y]);
     }
 }
 

@@ -39,7 +39,7 @@ fn triangular_product(factors: &[f64], n: usize, start: usize) -> [[Wide; 3]; 3]
 }
 
 /// The first column of `(P - a I)(P - b I)` up to a factor, where `a`, `b` are the shifts of the product `P`.
-fn first_column(factors: &[f64], n: usize, first: usize, last: usize, sweeps: usize) -> (f64, f64, f64) {
+fn first_column(factors: &[f64], n: usize, first: usize, last: usize, sweeps: usize) -> [f64; 3] {
     let h = |row: usize, column: usize| factors[row + n * column];
     let top = triangular_product(factors, n, first);
     let bottom = triangular_product(factors, n, last - 2);
@@ -71,7 +71,7 @@ fn first_column(factors: &[f64], n: usize, first: usize, last: usize, sweeps: us
         let size = x.abs() + y.abs() + z.abs();
         let turning = y.abs() + z.abs() > HOPELESS_SHIFT * size;
         if turning || (trace.is_zero() && determinant.is_zero()) {
-            return (x / size, y / size, z / size);
+            return [x / size, y / size, z / size];
         }
         (trace, determinant) = (Wide::new(0.0), Wide::new(0.0));
     }
@@ -86,9 +86,9 @@ pub(super) fn double_shift_sweep(factors: &mut [f64], n: usize, first: usize, la
         if k > first {
             let below = n * (k - 1) + k;
             vector =
-                (hessenberg[below], hessenberg[below + 1], if three { hessenberg[below + 2] } else { 0.0 });
+                [hessenberg[below], hessenberg[below + 1], if three { hessenberg[below + 2] } else { 0.0 }];
         }
-        let start = SmallReflector::annihilating(vector.0, vector.1, vector.2);
+        let start = SmallReflector::annihilating(vector);
         if k > first {
             let below = n * (k - 1) + k;
             hessenberg[below] = start.beta;
@@ -100,7 +100,7 @@ pub(super) fn double_shift_sweep(factors: &mut [f64], n: usize, first: usize, la
         if three {
             for column in hessenberg.chunks_exact_mut(n).take(last + 1).skip(k) {
                 let rows = &mut column[k..k + 3];
-                (rows[0], rows[1], rows[2]) = start.apply(rows[0], rows[1], rows[2]);
+                [rows[0], rows[1], rows[2]] = start.apply([rows[0], rows[1], rows[2]]);
             }
             let nothing = SmallReflector { beta: 0.0, tau: 0.0, first: 0.0, second: 0.0 };
             let mut carried = Carried { first: start, second: nothing };
@@ -111,16 +111,16 @@ pub(super) fn double_shift_sweep(factors: &mut [f64], n: usize, first: usize, la
             apply_to_columns(hessenberg, n, k, first, (k + 3).min(last), carried);
         } else {
             for column in hessenberg.chunks_exact_mut(n).take(last + 1).skip(k) {
-                (column[k], column[k + 1]) = start.apply_to_pair(column[k], column[k + 1]);
+                [column[k], column[k + 1]] = start.apply_to_pair([column[k], column[k + 1]]);
             }
             let mut carried = start;
             for factor in triangular.chunks_exact_mut(n * n).rev() {
                 apply_to_two_columns(factor, n, k, first, last, carried);
-                carried = SmallReflector::annihilating(factor[k + n * k], factor[k + 1 + n * k], 0.0);
+                carried = SmallReflector::annihilating([factor[k + n * k], factor[k + 1 + n * k], 0.0]);
                 factor[k + n * k] = carried.beta;
                 factor[k + 1 + n * k] = 0.0;
                 for column in factor.chunks_exact_mut(n).take(last + 1).skip(k + 1) {
-                    (column[k], column[k + 1]) = carried.apply_to_pair(column[k], column[k + 1]);
+                    [column[k], column[k + 1]] = carried.apply_to_pair([column[k], column[k + 1]]);
                 }
             }
             apply_to_two_columns(hessenberg, n, k, first, last, carried);
@@ -136,9 +136,9 @@ fn apply_to_columns(matrix: &mut [f64], n: usize, k: usize, first: usize, last_r
     let rows = first..last_row + 1;
     let (a, b, c) = (&mut a[rows.clone()], &mut b[rows.clone()], &mut c[rows]);
     for ((x, y), z) in a.iter_mut().zip(b).zip(c) {
-        let (p, q, r) = carried.first.apply(*x, *y, *z);
+        let [p, q, r] = carried.first.apply([*x, *y, *z]);
         *x = p;
-        (*y, *z) = carried.second.apply_to_pair(q, r);
+        [*y, *z] = carried.second.apply_to_pair([q, r]);
     }
 }
 
@@ -154,7 +154,7 @@ fn apply_to_two_columns(
 ) {
     let (a, b) = matrix[n * k..n * (k + 2)].split_at_mut(n);
     for (x, y) in a[first..=last].iter_mut().zip(&mut b[first..=last]) {
-        (*x, *y) = carried.apply_to_pair(*x, *y);
+        [*x, *y] = carried.apply_to_pair([*x, *y]);
     }
 }
 
@@ -164,17 +164,17 @@ fn restore(factor: &mut [f64], n: usize, k: usize, last: usize) -> Carried {
     let (left, right) = factor[..n * (last + 1)].split_at_mut(n * (k + 2));
     let (column, next) = left[n * k..].split_at_mut(n);
     let rows = &mut column[k..k + 3];
-    let first = SmallReflector::annihilating(rows[0], rows[1], rows[2]);
+    let first = SmallReflector::annihilating([rows[0], rows[1], rows[2]]);
     (rows[0], rows[1], rows[2]) = (first.beta, 0.0, 0.0);
     let rows = &mut next[k..k + 3];
-    (rows[0], rows[1], rows[2]) = first.apply(rows[0], rows[1], rows[2]);
-    let second = SmallReflector::annihilating(rows[1], rows[2], 0.0);
+    [rows[0], rows[1], rows[2]] = first.apply([rows[0], rows[1], rows[2]]);
+    let second = SmallReflector::annihilating([rows[1], rows[2], 0.0]);
     (rows[1], rows[2]) = (second.beta, 0.0);
     for column in right.chunks_exact_mut(n) {
         let rows = &mut column[k..k + 3];
-        let (x, y, z) = first.apply(rows[0], rows[1], rows[2]);
+        let [x, y, z] = first.apply([rows[0], rows[1], rows[2]]);
         rows[0] = x;
-        (rows[1], rows[2]) = second.apply_to_pair(y, z);
+        [rows[1], rows[2]] = second.apply_to_pair([y, z]);
     }
     Carried { first, second }
 }

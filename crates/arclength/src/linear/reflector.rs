@@ -23,7 +23,7 @@ pub(super) struct SmallReflector {
 impl SmallReflector {
     /// The reflector that maps `(x, y, z)` onto `(beta, 0, 0)`. Components must not exceed about 1e150.
     #[inline]
-    pub(super) fn annihilating(x: f64, y: f64, z: f64) -> Self {
+    pub(super) fn annihilating([x, y, z]: [f64; 3]) -> Self {
         let tail = y * y + z * z;
         let square = x * x + tail;
         if square < TINY_SQUARE {
@@ -55,16 +55,16 @@ impl SmallReflector {
 
     /// Applies the reflector to `(x, y, z)`.
     #[inline(always)]
-    pub(super) fn apply(&self, x: f64, y: f64, z: f64) -> (f64, f64, f64) {
+    pub(super) fn apply(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let sum = self.tau * (x + self.first * y + self.second * z);
-        (x - sum, y - sum * self.first, z - sum * self.second)
+        [x - sum, y - sum * self.first, z - sum * self.second]
     }
 
     /// Applies the reflector to `(x, y)`; `second` must be zero.
     #[inline(always)]
-    pub(super) fn apply_to_pair(&self, x: f64, y: f64) -> (f64, f64) {
+    pub(super) fn apply_to_pair(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let sum = self.tau * (x + self.first * y);
-        (x - sum, y - sum * self.first)
+        [x - sum, y - sum * self.first]
     }
 }
 
@@ -99,15 +99,15 @@ mod tests {
     #[test]
     fn reflector_of_tiny_vector_is_orthogonal() {
         for scale in [1.0, 1e-150, 1e-170, 1e-250, 1e-300] {
-            let (x, y, z) = (0.3 * scale, -0.8 * scale, 0.1 * scale);
-            let reflector = SmallReflector::annihilating(x, y, z);
-            let image = reflector.apply(x, y, z);
-            assert!((image.0 - reflector.beta).abs() < 1e-15 * scale);
-            assert!(image.1.abs() < 1e-15 * scale && image.2.abs() < 1e-15 * scale);
+            let given = [0.3 * scale, -0.8 * scale, 0.1 * scale];
+            let reflector = SmallReflector::annihilating(given);
+            let image = reflector.apply(given);
+            assert!((image[0] - reflector.beta).abs() < 1e-15 * scale);
+            assert!(image[1].abs() < 1e-15 * scale && image[2].abs() < 1e-15 * scale);
             let square = 1.0 + reflector.first * reflector.first + reflector.second * reflector.second;
             assert!((reflector.tau * square - 2.0).abs() < 1e-14, "I - tau v v^T is orthogonal");
 
-            let mut vector = [x, y, z];
+            let mut vector = given;
             let tau = householder(&mut vector);
             assert!((vector[0] - reflector.beta).abs() < 1e-15 * scale);
             assert!((tau - reflector.tau).abs() < 1e-15);

@@ -1,7 +1,7 @@
 //! Curves of special equilibria as plain data.
 
 use super::codimension_two::CodimensionTwoPoint;
-use super::curve::Inspection;
+use super::curve::EquilibriumLocusInspection;
 use crate::branch::{Branch, Label, Labelled};
 use crate::continuation::Solution;
 use num_complex::Complex64;
@@ -57,11 +57,11 @@ impl LocusPoint {
     /// A solution of a curve in a field of `dimension` states. `swapped` says that the unknowns hold the second parameter that
     /// was asked for first.
     pub(super) fn new(
-        solution: &Solution<Inspection>,
+        solution: &Solution<EquilibriumLocusInspection>,
         label: Option<Label>,
         (dimension, swapped): (usize, bool),
     ) -> Self {
-        let Inspection { spectrum, monitor, special } = &solution.point;
+        let EquilibriumLocusInspection { spectrum, monitor, special } = &solution.point;
         let end = solution.unknown.len() - 2;
         let mut values = [solution.unknown[end], solution.unknown[end + 1]];
         let mut special = special.clone();

@@ -1,6 +1,6 @@
 //! What continuation asks of a curve of special equilibria: residuals, test functions, where points of codimension two lie.
 
-use super::curve::{Inspection, LocusCurve};
+use super::curve::{EquilibriumLocusInspection, LocusCurve};
 use super::kind::Linearized;
 use super::locating;
 use super::system::LocusSystem;
@@ -34,7 +34,7 @@ impl<'a> Discretised for LocusCurve<'a> {
 }
 
 impl Curve for LocusCurve<'_> {
-    type Point = Inspection;
+    type Point = EquilibriumLocusInspection;
     type Kind = SpecialKind;
     type Reason = Infallible;
 
@@ -47,7 +47,12 @@ impl Curve for LocusCurve<'_> {
         Ok(Adaptation::Unchanged)
     }
 
-    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+    fn inspect(
+        &mut self,
+        unknown: &[f64],
+        _tangent: &[f64],
+        _orientation: f64,
+    ) -> Result<EquilibriumLocusInspection, Error> {
         let n = self.states.len();
         let spectrum = self.spectrum(unknown)?;
         let point = Linearized {
@@ -57,18 +62,18 @@ impl Curve for LocusCurve<'_> {
             scales: &self.states,
         };
         let monitor = self.system.problem.monitor(&point)?;
-        Ok(Inspection { spectrum, monitor, special: None })
+        Ok(EquilibriumLocusInspection { spectrum, monitor, special: None })
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
         Cow::Borrowed(self.system.problem.test_functions())
     }
 
-    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+    fn test(&self, kind: SpecialKind, solution: &Solution<EquilibriumLocusInspection>) -> Option<Reading> {
         solution.point.monitor.test(kind).map(Reading::exact)
     }
 
-    fn spectrum(&self, solution: &Solution<Inspection>) -> events::Spectrum {
+    fn spectrum(&self, solution: &Solution<EquilibriumLocusInspection>) -> events::Spectrum {
         let all = &solution.point.spectrum.eigenvalues;
         let rest = without(all, &self.system.problem.critical_eigenvalues(&solution.unknown));
         let noise = UNDECIDED * all.iter().map(|value| value.norm()).fold(0.0, f64::max);
@@ -84,14 +89,14 @@ impl Curve for LocusCurve<'_> {
     fn locate(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
-    ) -> Result<Location<Inspection>, Error> {
+        [before, after]: [&Solution<EquilibriumLocusInspection>; 2],
+    ) -> Result<Location<EquilibriumLocusInspection>, Error> {
         let distance = distance(self, &before.unknown, &after.unknown);
         let found = locating::codimension_two(self, before, after, distance, kind)?;
         Ok(found.map_or(Location::Nothing, Location::At))
     }
 
-    fn are_same(&self, one: &Inspection, other: &Inspection) -> bool {
+    fn are_same(&self, one: &EquilibriumLocusInspection, other: &EquilibriumLocusInspection) -> bool {
         let (Some(one), Some(other)) = (&one.special, &other.special) else { return false };
         let values = one.values.iter().zip(&other.values).zip(self.ranges);
         let states = one.state.iter().zip(&other.state).zip(self.states.iter().copied());
@@ -106,8 +111,8 @@ impl Curve for LocusCurve<'_> {
 
     fn ending(
         &mut self,
-        _before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
+        _before: &Solution<EquilibriumLocusInspection>,
+        after: &Solution<EquilibriumLocusInspection>,
     ) -> Option<Ending<Infallible>> {
         if self.system.problem.kind() != Some(SpecialKind::BranchPoint) {
             return None;

@@ -11,7 +11,7 @@ use crate::linear::eigenvalues::EigenvalueWorkspace;
 
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
-pub(super) struct Inspection {
+pub(super) struct EquilibriumLocusInspection {
     pub spectrum: Spectrum,
     pub monitor: Monitor,
     pub special: Option<Box<CodimensionTwoPoint>>,

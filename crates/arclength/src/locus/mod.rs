@@ -18,6 +18,7 @@ mod held;
 mod held_equilibria;
 mod kind;
 mod locating;
+mod newton;
 mod normal_form;
 mod request;
 mod run;

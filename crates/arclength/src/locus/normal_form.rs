@@ -5,7 +5,7 @@
 
 use crate::algebraic::{Differentiator, ScaledLu};
 use crate::branch::SpecialKind;
-use crate::equilibrium::coefficient_error::{self, Place};
+use crate::equilibrium::coefficient_error::{self, UncertainEquilibrium};
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::multilinear::MultilinearForms;
 use crate::equilibrium::problem::EquilibriumProblem;
@@ -17,14 +17,14 @@ use std::borrow::Cow;
 /// Coefficients by name at a state with all parameters, behind each its error under its name with `_error`: how much it changes
 /// where the equilibrium moves by its own error.
 pub(super) fn with_errors(
-    place: Place<'_>,
+    equilibrium: UncertainEquilibrium<'_>,
     coefficients: impl Fn(&[f64], &[f64]) -> Vec<(Cow<'static, str>, f64)>,
 ) -> Vec<(Cow<'static, str>, f64)> {
-    let known = coefficients(place.state, place.parameters);
+    let known = coefficients(equilibrium.state, equilibrium.parameters);
     let with_error = |index: usize| {
         let (name, value) = known[index].clone();
         let there = |state: &[f64], parameters: &[f64]| Some([coefficients(state, parameters).get(index)?.1]);
-        let error = coefficient_error::errors([value], place, there);
+        let error = coefficient_error::errors([value], equilibrium, there);
         let error = error.map(|[error]| (format!("{name}_error").into(), error));
         [Some((name, value)), error].into_iter().flatten()
     };

@@ -1,7 +1,7 @@
 //! Asking for a curve of special equilibria.
 
 use super::branch::{EquilibriumLocusBranch, LocusPoint};
-use super::curve::{Inspection, LocusCurve};
+use super::curve::{EquilibriumLocusInspection, LocusCurve};
 use super::held::Held;
 use super::held_equilibria::HeldSystem;
 use super::request::{TwoParameters, point_forward};
@@ -54,7 +54,7 @@ impl Problem for Option<EquilibriumLocusStart> {
 /// vary over ranges.
 ///
 /// ```
-/// use arclength::{Scalar, VectorField, equilibrium::Equilibria, locus::EquilibriumLocus};
+/// use arclength::{Scalar, VectorField, equilibrium::Equilibria};
 /// struct Cusp;
 /// impl VectorField for Cusp {
 ///     fn state_names(&self) -> Vec<String> { vec!["x".into()] }
@@ -65,14 +65,36 @@ impl Problem for Option<EquilibriumLocusStart> {
 /// }
 /// let branch = Equilibria::of(&Cusp).start(&[-2.0]).parameters(&[-2.0, 1.0]).along("a", -2.0..=2.0).run()?;
 /// let fold = branch.folds().next().expect("a fold");
-/// let folds = EquilibriumLocus::of(&Cusp).from_fold(fold).along("a", -2.0..=2.0).and("b", -1.0..=2.0).run()?;
+/// let folds = fold.curve(&Cusp).along("a", -2.0..=2.0).and("b", -1.0..=2.0).run()?;
 /// let cusp = folds.special_points().next().expect("a cusp");
 /// assert!(cusp.values.iter().all(|value| value.abs() < 1e-12));
 /// # Ok::<(), arclength::Error>(())
 /// ```
 pub type EquilibriumLocus<'a> = Continuation<'a, Option<EquilibriumLocusStart>>;
 
-type FollowedLocus = BothWays<Inspection, SpecialKind, Infallible>;
+impl FoldPoint {
+    /// The curve of folds through this one, in two parameters.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_fold(self)
+    }
+}
+
+impl HopfPoint {
+    /// The curve of Hopf points through this one, in two parameters.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_hopf(self)
+    }
+}
+
+impl BranchPoint {
+    /// The curve of branch points through this one, in two parameters. There is one only if branch points persist, by symmetry or because
+    /// a state stays zero.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> EquilibriumLocus<'a> {
+        EquilibriumLocus::of(field).from_branch_point(self)
+    }
+}
+
+type FollowedLocus = BothWays<EquilibriumLocusInspection, SpecialKind, Infallible>;
 
 impl<'a> EquilibriumLocus<'a> {
     /// A curve of special equilibria of `field`.
@@ -141,8 +163,10 @@ impl<'a> EquilibriumLocus<'a> {
         let run = Run { field: self.field, parameters: parameters.clone(), ordered, settings: self.settings };
 
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| LocusPoint::new(solution, None, (n, ordered.swapped));
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare = |solution: &Solution<EquilibriumLocusInspection>| {
+            LocusPoint::new(solution, None, (n, ordered.swapped))
+        };
+        let point = |solution: &Solution<EquilibriumLocusInspection>, label: Option<Label>| {
             let mut point = LocusPoint::new(solution, label, (n, ordered.swapped));
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -172,8 +196,8 @@ impl<'a> Run<'a> {
         &self,
         start: &EquilibriumLocusStart,
         state: &[f64],
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumLocusInspection>,
+        observer: &mut Observer<'_, EquilibriumLocusInspection, SpecialKind>,
     ) -> Result<FollowedLocus, Error> {
         let n = state.len();
         let ranges = self.ordered.ranges();
@@ -275,8 +299,8 @@ impl<'a> Run<'a> {
         kind: LocusSystem<'a>,
         mut unknown: Vec<f64>,
         scales: Vec<f64>,
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
+        request: &Request<'_, EquilibriumLocusInspection>,
+        observer: &mut Observer<'_, EquilibriumLocusInspection, SpecialKind>,
     ) -> Result<FollowedLocus, Error> {
         let ranges = self.ordered.ranges();
         let mut curve = LocusCurve::new(kind, scales, ranges, self.settings);

@@ -96,11 +96,10 @@ impl CyclesRequest {
             Some(CycleSource::Point(reference)) => self.start(reference, along)?,
             Some(CycleSource::Samples { samples }) => self.start_at_samples(samples, along)?,
         };
-        let options = CycleOptions {
-            at: self.at.clone(),
-            resolution: self.mesh.resolution(),
-            settings: self.steps.settings(Settings::default()),
-        };
+        let options = CycleOptions::default()
+            .at(&self.at)
+            .resolution(self.mesh.resolution())
+            .settings(self.steps.settings(Settings::default()));
         Ok(CyclesAnalysis { wheel, along, start, stay: self.stay, steps: self.steps, options })
     }
 

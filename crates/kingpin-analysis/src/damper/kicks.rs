@@ -120,7 +120,7 @@ pub(super) fn kick(
 fn fates_at(wheel: &Wheel, control: &Control<'_>) -> Result<Vec<Fate>, Error> {
     let model = Classification::default().contact_by_load(wheel).model();
     let duration = PERIODS * natural_period(wheel);
-    let destinations = Destinations::new(wheel, model, ClassificationSettings { duration })?;
+    let destinations = Destinations::new(wheel, model, ClassificationSettings::with_duration(duration))?;
     let blow = wheel.get(Key::V) * wheel.mass();
     let [_, turn] = wheel.velocity_change(blow, ContactModel::Rolling)?.map(f64::abs);
     let yaw = wheel.towing_yaw_rate();

@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         let search = damped.hopf_points(speeds, self.control).map_err(Error::from);
         let Some(search) = self.followed(search)? else { return Ok(()) };
         let at = SPEEDS.map(|part| part * up_to).to_vec();
-        let options = CycleOptions { at, settings: settings(), ..CycleOptions::default() };
+        let options = CycleOptions::default().at(&at).settings(settings());
         for index in 0..search.points.len() {
             let branches =
                 from_hopf_points(&search.points, Some(index), speeds, &options, |_| self.observer());
@@ -242,7 +242,7 @@ impl<'a> Search<'a> {
     fn along_damping(&mut self, wheel: &Wheel, cycle: &LastCycle) -> Result<(), Error> {
         let wheel = wheel.with(Key::V, cycle.speed)?;
         let along = self.plane[1];
-        let options = CycleOptions { settings: settings(), ..CycleOptions::default() };
+        let options = CycleOptions::default().settings(settings());
         let branch =
             wheel.cycles_through(&cycle.orbit, along, &options, |_| self.observer()).map_err(Error::from);
         let Some(branch) = self.followed(branch)? else { return Ok(()) };
@@ -332,7 +332,7 @@ impl<'a> Search<'a> {
         at: &[f64],
     ) -> Result<Option<Vec<CycleLocusPoint>>, Error> {
         let plane = [along, self.plane[1]];
-        let options = CurveOptions { at: at.to_vec(), settings: Some(settings()), ..CurveOptions::default() };
+        let options = CurveOptions::default().at(at).settings(settings());
         let kind = SpecialKind::FoldOfCycles;
         let curve = wheel.cycle_curve(kind, orbit, plane, &options, |_| self.observer());
         Ok(self.followed(curve.map_err(Error::from))?.map(|curve| curve.points))
@@ -355,7 +355,7 @@ impl<'a> Search<'a> {
 }
 
 fn settings() -> Settings {
-    Settings { most_steps: MOST_STEPS, ..Settings::default() }
+    Settings::default().most_steps(MOST_STEPS)
 }
 
 /// Whether a fold is one of a curve, or between two of them.

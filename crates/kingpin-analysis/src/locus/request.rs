@@ -120,10 +120,11 @@ impl LocusAnalysis {
     /// # Errors
     /// [`Error::Wheel`]; [`Error::NothingFound`] where the point is no Hopf point.
     pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
-        let options = |settings: Settings| CurveOptions {
-            at: self.at.clone(),
-            resolution: self.mesh.resolution(),
-            settings: Some(self.steps.settings(settings)),
+        let options = |settings: Settings| {
+            CurveOptions::default()
+                .at(&self.at)
+                .resolution(self.mesh.resolution())
+                .settings(self.steps.settings(settings))
         };
         let observer = |values: [f64; 2]| self.tell(control, values);
         let origin = |how: &str| Origin::labelled(&self.label, how);

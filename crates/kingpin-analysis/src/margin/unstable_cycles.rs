@@ -67,7 +67,7 @@ pub(super) fn unstable_cycles(
             readable(high)
         ));
     }
-    let options = CycleOptions { at: values.to_vec(), ..CycleOptions::default() };
+    let options = CycleOptions::default().at(values);
     for hopf in hopf_points.iter().take_while(|_| !control.is_stopped()) {
         let born = format!("the limit cycles from the Hopf point at {key} = {}", readable(hopf.value));
         // Only as far down as it is needed: slow cycles take long.

@@ -160,15 +160,10 @@ pub(super) fn hopf_point(caster_length: f64, radius: f64) -> Result<HopfPoint, E
 
 /// How cycles are followed along an interval of the speed.
 fn options(along: Along) -> CycleOptions {
-    CycleOptions {
-        at: COMPARED_SPEEDS.into_iter().filter(|speed| along.contains(*speed)).collect(),
-        settings: Settings {
-            largest_parameter_change: LARGEST_CHANGE,
-            predictor_error: PREDICTOR_ERROR,
-            ..Settings::default()
-        },
-        ..CycleOptions::default()
-    }
+    let speeds: Vec<f64> = COMPARED_SPEEDS.into_iter().filter(|speed| along.contains(*speed)).collect();
+    CycleOptions::default().at(&speeds).settings(
+        Settings::default().largest_parameter_change(LARGEST_CHANGE).predictor_error(PREDICTOR_ERROR),
+    )
 }
 
 fn from_hopf_point(caster_length: f64, radius: f64) -> Result<Branch, Error> {
@@ -201,7 +196,7 @@ fn straight(branch: &Branch) -> Result<Branch, Error> {
         |radius: f64| Error::not_found("limit cycle", &format!("v = {speed} m/s, r = {radius} m"));
     let (cycle, _) = branch.cycle_at(speed).ok_or_else(|| not_found(radius))?;
     let along = Along::new(Key::TurningRadius, radius, f64::INFINITY)?;
-    let goal = CycleOptions { at: vec![f64::INFINITY], ..CycleOptions::default() };
+    let goal = CycleOptions::default().at(&[f64::INFINITY]);
     let reached =
         branch.wheel(speed)?.cycles_through(&cycle.orbit, along, &goal, |_| ControlFlow::Continue(()))?;
     let last = reached

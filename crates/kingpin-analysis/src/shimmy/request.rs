@@ -65,11 +65,7 @@ impl ShimmyRequest {
         }
         let wheel = self.wheel.read()?;
         wheel.check_shimmy()?;
-        let mut options = SlidingBranchOptions {
-            at: self.at.clone(),
-            through_grazings: true,
-            ..SlidingBranchOptions::default()
-        };
+        let mut options = SlidingBranchOptions::default().at(&self.at).through_grazings(true);
         options.settings.smallest_step = SMALLEST_STEP;
         options.settings.most_steps = self.steps as usize;
         Ok(ShimmyAnalysis { wheel, along, options })

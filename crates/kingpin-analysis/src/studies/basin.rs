@@ -33,7 +33,7 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
     let mut findings = Vec::new();
     let axes = [Range::new("psi", -ANGLE, ANGLE)?, Range::new("Omega", -YAW_RATE, YAW_RATE)?];
     for (index, speed) in SPEEDS.into_iter().enumerate() {
-        let settings = ClassificationSettings { duration: DURATION };
+        let settings = ClassificationSettings::with_duration(DURATION);
         let destinations = Destinations::new(&wheel(&[(Key::V, speed)])?, ContactModel::Rolling, settings)?;
         let map = BasinMap::grid(&destinations, &axes, [POINTS, POINTS])?;
         let tiles = map.run(&control.quiet(), |_| false, |_| {})?;

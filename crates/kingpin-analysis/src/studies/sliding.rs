@@ -137,14 +137,13 @@ impl Motions {
             )),
         })?;
         let along = Along::new(Key::V, subject.speeds.0, subject.speeds.1)?;
-        let mut options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
+        let mut options = SlidingBranchOptions::default().through_grazings(true);
         options.settings.smallest_step = SMALLEST_STEP;
         let shimmy = at_start.along(along, &options, &control.quiet(), |_, _| control.flow())?;
         let slower = subject.at(subject.speeds.0)?;
         let hopf = slower.hopf_points(along, &control.quiet())?.points.into_iter().next();
-        let settings =
-            Settings { largest_parameter_change: 0.02, predictor_error: 0.005, ..Settings::default() };
-        let options = CycleOptions { settings, ..CycleOptions::default() };
+        let settings = Settings::default().largest_parameter_change(0.02).predictor_error(0.005);
+        let options = CycleOptions::default().settings(settings);
         let mut cycles = match &hopf {
             Some(hopf) => hopf.cycles(along, &options, |_| control.flow())?.points,
             None => Vec::new(),

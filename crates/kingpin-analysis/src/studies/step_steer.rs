@@ -118,7 +118,11 @@ impl Map {
         let (speeds, radii) = (values(SPEEDS, points[0]), values(RADII, points[1]));
         let outcome = |index: usize| -> Result<Outcome, Error> {
             let (speed, radius) = (speeds[index % points[0]], radii[index / points[0]]);
-            let found = outcome(&curve(model, speed, radius)?, model, ClassificationSettings { duration })?;
+            let found = outcome(
+                &curve(model, speed, radius)?,
+                model,
+                ClassificationSettings::with_duration(duration),
+            )?;
             step()?;
             Ok(found)
         };
@@ -250,7 +254,7 @@ mod tests {
     #[test]
     fn curves_on_which_the_wheel_slides_are_a_class_of_their_own() {
         let of = |model, speed, radius| {
-            let settings = ClassificationSettings { duration: 1.0 };
+            let settings = ClassificationSettings::with_duration(1.0);
             outcome(&curve(model, speed, radius).unwrap(), model, settings).unwrap()
         };
         // The uniform motion takes 124.95 N of friction, the ground can supply 104.1 N.

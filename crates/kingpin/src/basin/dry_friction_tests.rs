@@ -10,7 +10,7 @@ fn short_caster(moment: f64) -> Wheel {
 }
 
 fn safe_blow(wheel: &Wheel, model: ContactModel, largest: f64) -> SafeKick {
-    let settings = ClassificationSettings { duration: 2.0 };
+    let settings = ClassificationSettings::with_duration(2.0);
     SafeKick::find(wheel, model, settings, Disturbance::Impulse, largest, &Control::none()).unwrap().unwrap()
 }
 
@@ -33,7 +33,7 @@ fn the_safe_blow_is_as_large_as_the_friction_allows() {
 #[test]
 fn where_swings_grow_no_blow_is_safe_at_any_friction() {
     let critical = short_caster(1.0).critical_speed_with_friction().unwrap();
-    let settings = ClassificationSettings { duration: 2.0 };
+    let settings = ClassificationSettings::with_duration(2.0);
     for (part, returns) in [(0.99, true), (1.01, false)] {
         for moment in [1e-4, 1e-2, 1.0] {
             let wheel = short_caster(moment).with(Key::V, part * critical).unwrap();

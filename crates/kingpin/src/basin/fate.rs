@@ -88,6 +88,7 @@ impl Fate {
 
 /// How motions are classified.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ClassificationSettings {
     /// Time in s for which motions are followed. One that swings to and fro at its end, without having settled, is
     /// followed for up to ten times as long.
@@ -102,6 +103,11 @@ impl Default for ClassificationSettings {
 }
 
 impl ClassificationSettings {
+    /// With a time in s for which motions are followed.
+    pub fn with_duration(duration: f64) -> Self {
+        Self { duration }
+    }
+
     /// As long as slow motions of this wheel take to show where they go: twelve times the time in which a small
     /// disturbance of the uniform motion falls to a 1/e, but at least thirty seconds and at most three hundred.
     ///

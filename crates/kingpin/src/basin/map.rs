@@ -112,7 +112,7 @@ pub struct Fraction {
 /// use kingpin::Wheel;
 /// use kingpin::basin::{Axis, BasinMap, ClassificationSettings, ContactModel, Destinations, Fate};
 ///
-/// let settings = ClassificationSettings { duration: 20.0 };
+/// let settings = ClassificationSettings::with_duration(20.0);
 /// let destinations = Destinations::new(&Wheel::default(), ContactModel::Rolling, settings)?;
 /// let axes = [Axis::new("psi", -0.2, 0.2)?, Axis::new("Omega", -5.0, 5.0)?];
 /// let map = BasinMap::grid(&destinations, &axes, [6, 4])?;

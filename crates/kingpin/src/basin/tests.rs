@@ -11,7 +11,7 @@ const UNSTABLE_CYCLE: [f64; 5] =
     [0.006_788_672_435_187_8, -0.063_185_309_027_484_7, 0.513_078_505_728_634_6, 6.416_290_737_262_749, 6.0];
 
 fn destinations(wheel: &Wheel, model: ContactModel, duration: f64) -> Destinations {
-    Destinations::new(wheel, model, ClassificationSettings { duration }).unwrap()
+    Destinations::new(wheel, model, ClassificationSettings::with_duration(duration)).unwrap()
 }
 
 #[test]
@@ -255,7 +255,7 @@ fn smallest_kick_lies_between_return_and_failure() {
     let inertia = 3.48e-6 + 2.38e-5 + 0.0668 * 0.068f64.powi(2);
     assert!((turned - 0.04 * kick.fails / inertia).abs() < 1e-9);
     // Near the edge the motion lingers for longer than 20 s: what looks like the edge then is none.
-    let hasty = ClassificationSettings { duration: 2.0 };
+    let hasty = ClassificationSettings::with_duration(2.0);
     let hasty =
         SafeKick::find(&wheel, ContactModel::Rolling, hasty, Disturbance::Impulse, 1.0, &Control::none())
             .unwrap()

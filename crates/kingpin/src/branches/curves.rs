@@ -6,12 +6,13 @@ use arclength::branch::{Monitor, SpecialKind, Unlocated, WithParameters};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{Orbit, Resolution};
 use arclength::equilibrium::equilibrium_settings;
-use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, EquilibriumLocus, LocusPoint};
+use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, LocusPoint};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
 /// How a curve in two parameters is computed.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct CurveOptions {
     /// Values of the first parameter at which points are wanted exactly.
     pub at: Vec<f64>,
@@ -19,6 +20,26 @@ pub struct CurveOptions {
     pub resolution: Resolution,
     /// Settings of the continuation; those of the engine where there are none.
     pub settings: Option<Settings>,
+}
+
+impl CurveOptions {
+    /// The same with values of the first parameter at which points are wanted exactly.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.at = values.to_vec();
+        self
+    }
+
+    /// The same with another resolution of the cycles.
+    pub fn resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// The same with settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = Some(settings);
+        self
+    }
 }
 
 /// A curve of Hopf points of the uniform motion.
@@ -87,8 +108,8 @@ impl HopfPoint {
     ) -> Result<HopfCurve, KingpinError> {
         let (model, values) = self.wheel.in_plane(plane)?;
         let start = arclength::equilibrium::HopfPoint { parameters: values.to_vec(), ..self.detail.clone() };
-        let branch = EquilibriumLocus::of(&model)
-            .from_hopf(&start)
+        let branch = start
+            .curve(&model)
             .along(plane[0].followed().name(), plane[0].range())
             .and(plane[1].followed().name(), plane[1].range())
             .at(&options.at.iter().map(|value| plane[0].convert(*value)).collect::<Vec<_>>())

@@ -16,6 +16,7 @@ const TAKEN: f64 = 0.5;
 
 /// How a branch of cycles is computed.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct CycleOptions {
     /// Parameter values at which cycles are wanted exactly.
     pub at: Vec<f64>,
@@ -25,6 +26,26 @@ pub struct CycleOptions {
     pub settings: Settings,
 }
 
+impl CycleOptions {
+    /// The same with parameter values at which cycles are wanted exactly.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.at = values.to_vec();
+        self
+    }
+
+    /// The same with another resolution of the cycles.
+    pub fn resolution(mut self, resolution: Resolution) -> Self {
+        self.resolution = resolution;
+        self
+    }
+
+    /// The same with other settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
+    }
+}
+
 /// A branch of limit cycles of the wheel.
 #[derive(Debug)]
 pub struct WheelCycles {
@@ -32,7 +53,7 @@ pub struct WheelCycles {
     pub wheel: Wheel,
     /// The parameter and its interval.
     pub along: Along,
-    /// The cycles, with `value` a value of the key; extrema are those of [all states](Wheel::states), the states of the orbits are the
+    /// The cycles, with `value` a value of the key, which alone is in `parameters`; extrema are those of [all states](Wheel::states), the states of the orbits are the
     /// [free ones](Wheel::free_states). With lateral elasticity only the extrema of `V` are those along the orbit, not a
     /// number where it comes within 0.01 rad of `psi = pi/2`; their error is up to `1/cos psi` times that of the others.
     pub points: Vec<CyclePoint>,
@@ -107,7 +128,7 @@ impl HopfPoint {
     /// use std::ops::ControlFlow;
     /// let along = Along::new(Key::V, 1.0, 12.0)?;
     /// let hopf = Wheel::default().hopf_points(along, &Control::none())?.points.remove(0);
-    /// let options = CycleOptions { at: vec![4.0], ..CycleOptions::default() };
+    /// let options = CycleOptions::default().at(&[4.0]);
     /// let branch = hopf.cycles(along, &options, |_| ControlFlow::Continue(()))?;
     /// let cycle = branch.points.iter().find(|cycle| cycle.value == 4.0).unwrap();
     /// assert!((cycle.period - 0.15274192836).abs() < 1e-9);
@@ -215,6 +236,7 @@ impl Wheel {
         let complete = |point: &mut CyclePoint| {
             model.complete_extrema(&point.orbit, &mut point.max, &mut point.min, &[point.value]);
             point.value = along.convert(point.value);
+            point.parameters = vec![point.value];
         };
         if let CycleStart::Orbit(orbit) = &start {
             model.check_forwards(orbit, &[along.convert(value)])?;

@@ -15,6 +15,7 @@ const MOST_SEGMENTS: usize = 1000;
 
 /// How a branch is followed.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SlidingBranchOptions {
     /// Parameter values at which motions are wanted exactly.
     pub at: Vec<f64>,
@@ -29,15 +30,33 @@ pub struct SlidingBranchOptions {
 impl Default for SlidingBranchOptions {
     /// Steps as for other branches, corrections to what the integration resolves, an end at the first grazing.
     fn default() -> Self {
-        let settings = Settings {
-            corrector_tolerance: 1e-8,
-            smallest_step: 1e-8,
-            predictor_error: 0.02,
-            largest_step: 0.5,
-            most_steps: 500,
-            ..Settings::default()
-        };
+        let settings = Settings::default()
+            .corrector_tolerance(1e-8)
+            .smallest_step(1e-8)
+            .predictor_error(0.02)
+            .largest_step(0.5)
+            .most_steps(500);
         Self { at: Vec::new(), through_grazings: false, settings }
+    }
+}
+
+impl SlidingBranchOptions {
+    /// The same with parameter values at which motions are wanted exactly.
+    pub fn at(mut self, values: &[f64]) -> Self {
+        self.at = values.to_vec();
+        self
+    }
+
+    /// The same with going on beyond grazings, or not.
+    pub fn through_grazings(mut self, goes_on: bool) -> Self {
+        self.through_grazings = goes_on;
+        self
+    }
+
+    /// The same with other settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
     }
 }
 

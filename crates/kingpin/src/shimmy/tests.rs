@@ -228,7 +228,7 @@ fn converges_with_the_tolerance_and_the_estimate_holds() {
 #[test]
 fn branch_meets_motions_found_otherwise() {
     let along = Along::new(Key::V, 0.45, 0.5).unwrap();
-    let options = SlidingBranchOptions { at: vec![0.47], ..SlidingBranchOptions::default() };
+    let options = SlidingBranchOptions::default().at(&[0.47]);
     let branch = short_caster_motion()
         .along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(()))
         .unwrap();
@@ -254,7 +254,7 @@ fn shimmy_with_dry_friction_is_smaller_and_its_branch_meets_motions_found_otherw
     let search = SlidingMotionSearch { settling_time: 6.0, ..SlidingMotionSearch::default() };
     for (key, ends, value) in [(Key::V, [0.49, 0.5], 0.495), (Key::MF, [5e-4, 5.2e-4], 5.1e-4)] {
         let along = Along::new(key, ends[0], ends[1]).unwrap();
-        let options = SlidingBranchOptions { at: vec![value], ..SlidingBranchOptions::default() };
+        let options = SlidingBranchOptions::default().at(&[value]);
         let branch =
             motion.along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(())).unwrap();
         let asked = branch.points.iter().find(|point| point.role == SlidingRole::Requested).unwrap();
@@ -310,7 +310,7 @@ fn grazing_ends_the_branch_where_simulation_changes() {
 #[test]
 fn branch_goes_on_beyond_grazings() {
     let along = Along::new(Key::V, 7.0, 7.02).unwrap();
-    let options = SlidingBranchOptions { through_grazings: true, ..quick() };
+    let options = quick().through_grazings(true);
     let branch =
         loaded_motion().along(along, &options, &Control::none(), |_, _| ControlFlow::Continue(())).unwrap();
     let grazings = branch.points.iter().filter(|point| matches!(point.role, SlidingRole::Grazing(_)));
@@ -503,7 +503,7 @@ fn no_fold_is_told_that_its_multipliers_refute() {
     let office = Wheel::from_toml(include_str!("../../examples/wheels/office.toml")).unwrap();
     let wheel = office.with(Key::V, 2.75).unwrap();
     let motion = settled(&wheel, 1.2, &wheel.settling_search());
-    let mut options = SlidingBranchOptions { through_grazings: true, ..SlidingBranchOptions::default() };
+    let mut options = SlidingBranchOptions::default().through_grazings(true);
     options.settings.smallest_step = 3e-5;
     let along = Along::new(Key::V, 0.5, 5.0).unwrap();
     let go_on = |_: f64, _: &PeriodicSliding| ControlFlow::Continue(());

@@ -115,7 +115,7 @@ fn slip_vanishes_where_that_of_the_ground_frame_does() {
 fn no_blow_outwards_is_safe_between_the_limits() {
     let (wheel, _) = between_the_limits(4.63e-5, [0.0, 0.0]);
     assert_eq!(wheel.uniform_motion().unwrap().is_stable(), Some(true));
-    let settings = ClassificationSettings { duration: 3.0 };
+    let settings = ClassificationSettings::with_duration(3.0);
     let edge = |largest: f64| {
         let kind = Disturbance::Impulse;
         SafeKick::find(&wheel, ContactModel::Sliding, settings, kind, largest, &Control::none()).unwrap()

@@ -78,7 +78,7 @@ fn basins_are_interrupted_inside_a_tile() {
         (tumbling(&[(Key::CU, 1e-9)]), ContactModel::Rolling),
         (tumbling(&[(Key::FAz, -1e4)]), ContactModel::Sliding),
     ] {
-        let settings = ClassificationSettings { duration: 1e5 };
+        let settings = ClassificationSettings::with_duration(1e5);
         let destinations = Destinations::new(&wheel, model, settings).unwrap();
         let axes = [StateAxis::new("psi", 0.3, 0.5).unwrap(), StateAxis::new("Omega", 1.0, 9.0).unwrap()];
         let map = BasinMap::grid(&destinations, &axes, [2, 2]).unwrap();
@@ -95,7 +95,7 @@ fn basins_are_interrupted_inside_a_tile() {
 
 #[test]
 fn the_search_for_a_safe_kick_is_interrupted() {
-    let settings = ClassificationSettings { duration: 1e5 };
+    let settings = ClassificationSettings::with_duration(1e5);
     let search = |control: &Control<'_>| {
         SafeKick::find(
             &tumbling(&[]),

@@ -14,11 +14,11 @@ fn branch(wheel: &Wheel, tolerance: f64, degree: usize) -> Option<(WheelCycles, 
     let along = Along::new(Key::V, 0.5, 12.0 * radius).ok()?;
     let hopf = wheel.hopf_points(along, &Control::none()).ok()?.points.into_iter().next()?;
     let half = 0.5 * (0.5 + hopf.value);
-    let options = CycleOptions {
-        at: vec![half],
-        resolution: Resolution { tolerance, degree, ..Resolution::default() },
-        ..CycleOptions::default()
-    };
+    let options = CycleOptions::default().at(&[half]).resolution(Resolution {
+        tolerance,
+        degree,
+        ..Resolution::default()
+    });
     Some((hopf.cycles(along, &options, |_| ControlFlow::Continue(())).ok()?, half))
 }
 

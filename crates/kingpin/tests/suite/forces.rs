@@ -21,7 +21,7 @@ fn hopf_points(wheel: &Wheel, speeds: (f64, f64)) -> Vec<HopfPoint> {
 /// The cycles from the first Hopf point.
 fn cycles(wheel: &Wheel, speeds: (f64, f64), at: &[f64]) -> Vec<CyclePoint> {
     let along = Along::new(Key::V, speeds.0, speeds.1).unwrap();
-    let options = CycleOptions { at: at.to_vec(), ..CycleOptions::default() };
+    let options = CycleOptions::default().at(at);
     let points = hopf_points(wheel, speeds);
     assert!(!points.is_empty(), "{wheel:?}");
     points[0].cycles(along, &options, |_| ControlFlow::Continue(())).unwrap().points

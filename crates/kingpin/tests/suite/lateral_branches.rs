@@ -30,7 +30,7 @@ fn along(key: Key, start: f64, end: f64) -> Along {
 
 fn cycles(wheel: &Wheel, along: Along, at: &[f64]) -> WheelCycles {
     let hopf = wheel.hopf_points(along, &Control::none()).unwrap().points.pop().unwrap();
-    let options = CycleOptions { at: at.to_vec(), ..CycleOptions::default() };
+    let options = CycleOptions::default().at(at);
     hopf.cycles(along, &options, |_| Continue(())).unwrap()
 }
 
@@ -73,7 +73,7 @@ fn hopf_points_of_the_short_caster() {
 fn the_isola() {
     let from_hopf = cycles(&short_caster(0.05), along(Key::V, 0.015, 60.0), &[10.0]);
     let large = requested(&from_hopf).into_iter().max_by(|a, b| a.max[2].total_cmp(&b.max[2])).unwrap();
-    let options = CycleOptions { at: vec![0.1], ..CycleOptions::default() };
+    let options = CycleOptions::default().at(&[0.1]);
     let bridge = short_caster(0.05)
         .with(Key::V, 10.0)
         .unwrap()

@@ -223,7 +223,7 @@ fn straight_brushes_have_a_slope_in_place_of_a_first_lyapunov_coefficient() {
             let slope = hopf.psi_max_slope.unwrap();
             // Cycles on the side on which the slope says they are.
             let near = [5e-3, 1e-2].map(|part| hopf.value * (1.0 + part * slope.signum()));
-            let options = CycleOptions { at: near.to_vec(), ..CycleOptions::default() };
+            let options = CycleOptions::default().at(&near);
             let cycles = hopf.cycles(along, &options, |_| ControlFlow::Continue(())).unwrap();
             let amplitude = |value: f64| {
                 let cycle = cycles.points.iter().find(|cycle| (cycle.value - value).abs() < 1e-12 * value);

@@ -17,7 +17,7 @@ const CASTER: &str =
     "l = 0.1\nv = 3.0\nsigma = 0.05\na = 0.03\nC_alpha = 500.0\nk = 2000.0\nc_u = 1.0\nc_q = 2.0\n";
 
 fn fate(wheel: &Wheel, change: &[(&str, f64)]) -> Fate {
-    let settings = ClassificationSettings { duration: 5.0 };
+    let settings = ClassificationSettings::with_duration(5.0);
     let destinations = Destinations::new(wheel, ContactModel::Rolling, settings).unwrap();
     destinations.of_disturbed(&disturbed(wheel, change), &Control::none()).unwrap()
 }
@@ -117,14 +117,14 @@ fn the_inside_of_the_interval_of_rests_is_safe() {
     let held = unstable(0.3);
     let [_, high] = held.resting_angles().unwrap().unwrap();
     let destinations =
-        Destinations::new(&held, ContactModel::Rolling, ClassificationSettings { duration: 5.0 }).unwrap();
+        Destinations::new(&held, ContactModel::Rolling, ClassificationSettings::with_duration(5.0)).unwrap();
     assert_eq!(destinations.attracts(), Some(true));
     for part in [-0.9, 0.5, 0.9] {
         assert_eq!(fate(&held, &[("psi", part * high)]), Fate::UniformMotion, "{part}");
     }
     // Small motions and small moments are to scale.
     let safe = |moment: f64| {
-        let settings = ClassificationSettings { duration: 5.0 };
+        let settings = ClassificationSettings::with_duration(5.0);
         let kind = Disturbance::Impulse;
         let largest = 2.0 * moment;
         SafeKick::find(&unstable(moment), ContactModel::Rolling, settings, kind, largest, &Control::none())
@@ -144,7 +144,7 @@ fn shimmy_of_a_brush_is_its_cycle() {
          k_psi = 1e5\nc_psi = 10.0\nF_Az = -8980.0\nsigma = 0.3\na = 0.1\nC_alpha = 180000.0\nt_p = 0.1\nkappa = 270.0",
     );
     assert_eq!(gear.uniform_motion().unwrap().is_stable(), Some(false));
-    let settings = ClassificationSettings { duration: 10.0 };
+    let settings = ClassificationSettings::with_duration(10.0);
     let destinations = Destinations::new(&gear, ContactModel::Rolling, settings).unwrap();
     let axes = [
         Axis::of_wheel(&gear, "psi", -0.2, 0.2).unwrap(),
@@ -256,7 +256,7 @@ fn lateral_elasticity_only_is_a_stiff_longitudinal_spring() {
 fn with_lateral_elasticity_only_large_cycles_catch_strong_kicks() {
     let at = |v: f64| wheel(&format!("l = 0.04\nr = inf\nc_q = 0.1\nk_u = inf\nv = {v:?}"));
     let end = |v: f64, psi: f64| {
-        let settings = ClassificationSettings { duration: 30.0 };
+        let settings = ClassificationSettings::with_duration(30.0);
         let destinations = Destinations::new(&at(v), ContactModel::Rolling, settings).unwrap();
         destinations.of_disturbed(&disturbed(&at(v), &[("psi", psi)]), &Control::none()).unwrap()
     };

@@ -93,63 +93,17 @@ impl Bidiagonal {
     #[inline(always)]
     fn factorize_kernel(&mut self, blocks: Blocks<'_>, n: usize) -> f64 {
         let Sizes { scalars, intervals, .. } = self.sizes;
-        let dense_rows = self.sizes.dense_rows();
-        let eliminated = intervals - 1;
         let width = 2 * n + scalars;
-        self.reflectors.resize(eliminated * 2 * n * n, 0.0);
-        self.factors.resize(eliminated * n, 0.0);
-        self.top.resize(eliminated * n * width, 0.0);
-        self.multipliers.resize(eliminated * dense_rows * n, 0.0);
-        self.work.resize(2 * n * width, 0.0);
-        self.right.resize(2 * n, 0.0);
-        let row_length = (intervals + 1) * n;
-        self.rows.clear();
-        for row in blocks.rows.chunks_exact(intervals * n) {
-            self.rows.extend_from_slice(row);
-            self.rows.extend(std::iter::repeat_n(0.0, n));
-        }
+        self.make_room(n);
+        self.load_dense_rows(blocks.rows, n);
         let mut corner = blocks.corner.to_vec();
-
-        // The pending block row: A u_0 + B u_j + C s, columns in that order, n rows.
-        let mut pending = vec![0.0; n * width];
-        for column in 0..n {
-            for row in 0..n {
-                pending[row + n * column] = -blocks.transfer[row + n * column];
-            }
-            pending[column + n * (n + column)] = 1.0;
-        }
-        for (target, source) in pending[2 * n * n..].iter_mut().zip(&blocks.scalar_columns[..n * scalars]) {
-            *target = -source;
-        }
+        let mut pending = first_block_row(&blocks, n, scalars);
         // Sign of det B, tracked because B itself may underflow: complementary minors of the orthogonal
         // matrix H of the reflections give det B_next = det H det B / det U, and det H = (-1)^n.
         let mut coefficient_sign = 1.0;
-        for block in 0..eliminated {
-            let j = block + 1;
-            let transfer = &blocks.transfer[j * n * n..(j + 1) * n * n];
-            let scalar_columns = &blocks.scalar_columns[j * n * scalars..(j + 1) * n * scalars];
+        for block in 0..intervals - 1 {
+            self.load_two_rows(&blocks, block, &pending, n);
             let reflectors = &mut self.reflectors[block * 2 * n * n..(block + 1) * 2 * n * n];
-            for column in 0..n {
-                let target = &mut reflectors[column * 2 * n..(column + 1) * 2 * n];
-                target[..n].copy_from_slice(&pending[n * (n + column)..n * (n + column + 1)]);
-                for row in 0..n {
-                    target[n + row] = -transfer[row + n * column];
-                }
-            }
-            // Columns u_0, u_(j+1), s of the two block rows.
-            self.work.fill(0.0);
-            for column in 0..n {
-                self.work[2 * n * column..2 * n * column + n]
-                    .copy_from_slice(&pending[n * column..n * (column + 1)]);
-                self.work[2 * n * (n + column) + n + column] = 1.0;
-            }
-            for column in 0..scalars {
-                let target = &mut self.work[2 * n * (2 * n + column)..2 * n * (2 * n + column + 1)];
-                target[..n].copy_from_slice(&pending[n * (2 * n + column)..n * (2 * n + column + 1)]);
-                for row in 0..n {
-                    target[n + row] = -scalar_columns[row + n * column];
-                }
-            }
             let factors = &mut self.factors[block * n..(block + 1) * n];
             if !triangularize(reflectors, factors, n) {
                 return 0.0;
@@ -164,25 +118,91 @@ impl Bidiagonal {
                 top[n * column..n * (column + 1)].copy_from_slice(&source[..n]);
                 pending[n * column..n * (column + 1)].copy_from_slice(&source[n..]);
             }
-            // Dense rows: y = g_j U^-1, then subtract y times the top rows.
-            for row in 0..dense_rows {
-                let multiplier = &mut self.multipliers[(block * dense_rows + row) * n..][..n];
-                let entries = &mut self.rows[row * row_length..(row + 1) * row_length];
-                multiplier.copy_from_slice(&entries[j * n..(j + 1) * n]);
-                solve_triangle_from_left(reflectors, n, multiplier);
-                for column in 0..n {
-                    entries[column] -= dot(multiplier, &top[n * column..n * (column + 1)]);
-                    entries[(j + 1) * n + column] -=
-                        dot(multiplier, &top[n * (n + column)..n * (n + column + 1)]);
-                }
-                for column in 0..scalars {
-                    corner[row * scalars + column] -=
-                        dot(multiplier, &top[n * (2 * n + column)..n * (2 * n + column + 1)]);
-                }
-            }
+            self.eliminate_from_dense_rows(block, &mut corner, n);
         }
         self.assemble_last(blocks.boundary, &pending, &corner);
         lu::factorize(&mut self.last, width, &mut self.pivots) * coefficient_sign
+    }
+
+    #[inline(always)]
+    fn make_room(&mut self, n: usize) {
+        let Sizes { scalars, intervals, .. } = self.sizes;
+        let eliminated = intervals - 1;
+        let width = 2 * n + scalars;
+        self.reflectors.resize(eliminated * 2 * n * n, 0.0);
+        self.factors.resize(eliminated * n, 0.0);
+        self.top.resize(eliminated * n * width, 0.0);
+        self.multipliers.resize(eliminated * self.sizes.dense_rows() * n, 0.0);
+        self.work.resize(2 * n * width, 0.0);
+        self.right.resize(2 * n, 0.0);
+    }
+
+    /// Copies the dense rows, with room for their entries in `u_N`.
+    #[inline(always)]
+    fn load_dense_rows(&mut self, rows: &[f64], n: usize) {
+        self.rows.clear();
+        for row in rows.chunks_exact(self.sizes.intervals * n) {
+            self.rows.extend_from_slice(row);
+            self.rows.extend(std::iter::repeat_n(0.0, n));
+        }
+    }
+
+    /// Writes the pending block row and the next one: their columns of the unknown between them to where its reflectors will be, those of
+    /// `u_0`, `u_(j+1)` and `s` to the work.
+    #[inline(always)]
+    fn load_two_rows(&mut self, blocks: &Blocks<'_>, block: usize, pending: &[f64], n: usize) {
+        let scalars = self.sizes.scalars;
+        let j = block + 1;
+        let transfer = &blocks.transfer[j * n * n..(j + 1) * n * n];
+        let scalar_columns = &blocks.scalar_columns[j * n * scalars..(j + 1) * n * scalars];
+        let reflectors = &mut self.reflectors[block * 2 * n * n..(block + 1) * 2 * n * n];
+        for column in 0..n {
+            let target = &mut reflectors[column * 2 * n..(column + 1) * 2 * n];
+            target[..n].copy_from_slice(&pending[n * (n + column)..n * (n + column + 1)]);
+            for row in 0..n {
+                target[n + row] = -transfer[row + n * column];
+            }
+        }
+        self.work.fill(0.0);
+        for column in 0..n {
+            self.work[2 * n * column..2 * n * column + n]
+                .copy_from_slice(&pending[n * column..n * (column + 1)]);
+            self.work[2 * n * (n + column) + n + column] = 1.0;
+        }
+        for column in 0..scalars {
+            let target = &mut self.work[2 * n * (2 * n + column)..2 * n * (2 * n + column + 1)];
+            target[..n].copy_from_slice(&pending[n * (2 * n + column)..n * (2 * n + column + 1)]);
+            for row in 0..n {
+                target[n + row] = -scalar_columns[row + n * column];
+            }
+        }
+    }
+
+    /// Dense rows: y = g_j U^-1, then subtract y times the top rows.
+    #[inline(always)]
+    fn eliminate_from_dense_rows(&mut self, block: usize, corner: &mut [f64], n: usize) {
+        let Sizes { scalars, intervals, .. } = self.sizes;
+        let dense_rows = self.sizes.dense_rows();
+        let width = 2 * n + scalars;
+        let row_length = (intervals + 1) * n;
+        let j = block + 1;
+        let reflectors = &self.reflectors[block * 2 * n * n..(block + 1) * 2 * n * n];
+        let top = &self.top[block * n * width..(block + 1) * n * width];
+        for row in 0..dense_rows {
+            let multiplier = &mut self.multipliers[(block * dense_rows + row) * n..][..n];
+            let entries = &mut self.rows[row * row_length..(row + 1) * row_length];
+            multiplier.copy_from_slice(&entries[j * n..(j + 1) * n]);
+            solve_triangle_from_left(reflectors, n, multiplier);
+            for column in 0..n {
+                entries[column] -= dot(multiplier, &top[n * column..n * (column + 1)]);
+                entries[(j + 1) * n + column] -=
+                    dot(multiplier, &top[n * (n + column)..n * (n + column + 1)]);
+            }
+            for column in 0..scalars {
+                corner[row * scalars + column] -=
+                    dot(multiplier, &top[n * (2 * n + column)..n * (2 * n + column + 1)]);
+            }
+        }
     }
 
     /// Writes the system that is left: boundary conditions, the pending block row, dense rows, in the columns `u_N`, `u_0`,
@@ -299,6 +319,22 @@ impl Bidiagonal {
             next.copy_from_slice(here);
         }
     }
+}
+
+/// The first pending block row: A u_0 + B u_j + C s, columns in that order, n rows.
+#[inline(always)]
+fn first_block_row(blocks: &Blocks<'_>, n: usize, scalars: usize) -> Vec<f64> {
+    let mut pending = vec![0.0; n * (2 * n + scalars)];
+    for column in 0..n {
+        for row in 0..n {
+            pending[row + n * column] = -blocks.transfer[row + n * column];
+        }
+        pending[column + n * (n + column)] = 1.0;
+    }
+    for (target, source) in pending[2 * n * n..].iter_mut().zip(&blocks.scalar_columns[..n * scalars]) {
+        *target = -source;
+    }
+    pending
 }
 
 /// [`Bidiagonal::factorize`] with the vector instructions of the processor; no operation is fused.

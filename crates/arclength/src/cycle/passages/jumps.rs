@@ -1,7 +1,7 @@
 //! Where a cycle jumps: the events at whose conditions its state is another behind a mesh point, and what happens there together.
 
 use super::{ABOUT_JUMP, ABOUT_ZERO, Along, GAP, NEAR};
-use crate::cycle::gate::{Course, Gate, Place};
+use crate::cycle::gate::{Course, Gate, GateFunction};
 use crate::differentiation::{Dual, Scalar};
 
 impl Along<'_> {
@@ -85,8 +85,8 @@ impl Along<'_> {
                 })
                 .collect();
         }
-        let place = Place::Condition { event: primary };
-        Some(Gate { place, upwards: rates[primary] > 0.0, events })
+        let function = GateFunction::Condition { event: primary };
+        Some(Gate { function, upwards: rates[primary] > 0.0, events })
     }
 
     /// Rates of the conditions of the events along the field of a course.

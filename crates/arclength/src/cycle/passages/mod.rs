@@ -9,7 +9,7 @@ mod jumps;
 mod slides;
 mod walk;
 
-use super::gate::{Course, Gate, Place};
+use super::gate::{Course, Gate, GateFunction};
 use crate::collocation::polynomials::Polynomials;
 use crate::direction::Direction;
 use crate::erased::ErasedField;
@@ -56,7 +56,7 @@ pub(super) struct Passage {
 /// A condition of an event that a cycle passes, in unit time, without the jump, or a border without changing over to the field beyond.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Touch {
-    pub place: Place,
+    pub function: GateFunction,
     /// Sign before it of the function that is zero there.
     pub side: f64,
     pub time: f64,
@@ -265,13 +265,21 @@ impl<'a> Along<'a> {
     }
 }
 
+/// How far the function of a gate that is touched gets.
+pub(super) struct Reach {
+    /// Its largest value beyond zero; not a number where it is not known.
+    pub beyond: f64,
+    /// Whether it turns there; otherwise it is largest where the course changes.
+    pub turns: bool,
+}
+
 impl Along<'_> {
-    /// How far the function at a place gets beyond zero next to where it is touched, between two of the times at which the course
-    /// changes, and whether it turns there: otherwise it is largest at one of these times.
-    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> (f64, bool) {
+    /// How far the function of a gate gets beyond zero next to where it is touched, between two of the times at which the course
+    /// changes.
+    pub(super) fn reach(&self, touch: Touch, course: &Course, jumps: &[f64]) -> Reach {
         let from = jumps.iter().copied().filter(|time| *time <= touch.time).fold(0.0, f64::max);
         let until = jumps.iter().copied().filter(|time| *time > touch.time).fold(1.0, f64::min);
-        let gate = Gate { place: touch.place, upwards: touch.side < 0.0, events: Vec::new() };
+        let gate = Gate { function: touch.function, upwards: touch.side < 0.0, events: Vec::new() };
         let switches = self.pieces.thresholds().len();
         // The course may be one of other values of the parameters.
         let now: Vec<(usize, f64)> = self.parameters.iter().copied().enumerate().collect();
@@ -293,10 +301,10 @@ impl Along<'_> {
         {
             top = higher;
         }
-        let Some(middle) = times.get(top) else { return (f64::NAN, false) };
+        let Some(middle) = times.get(top) else { return Reach { beyond: f64::NAN, turns: false } };
         let is_first = top == 0 && from > 0.0;
         if is_first || end.is_some_and(|(until, _)| until == *middle) {
-            return (values[top], false);
+            return Reach { beyond: values[top], turns: false };
         }
         let mut low = if top == 0 { *middle } else { times[top - 1] };
         let mut high = times.get(top + 1).copied().unwrap_or(*middle);
@@ -308,7 +316,7 @@ impl Along<'_> {
                 high = other;
             }
         }
-        (value(0.5 * (low + high)), true)
+        Reach { beyond: value(0.5 * (low + high)), turns: true }
     }
 }
 

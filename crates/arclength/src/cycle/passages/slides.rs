@@ -5,7 +5,7 @@ use super::{
     Along, FLIGHT_STEPS, HALVINGS, LONGEST_FLIGHT, NEAR, PUSH, Passage, RATE_JUMP, ROUNDING, SHORTEST_VISIT,
     Stretch, end_of,
 };
-use crate::cycle::gate::{Course, Gate, Place, Slide};
+use crate::cycle::gate::{Course, Gate, GateFunction, Slide};
 use crate::pieces::Border;
 use crate::threshold::Threshold;
 
@@ -35,16 +35,16 @@ impl Along<'_> {
     pub(super) fn behind(
         &self,
         course: &Course,
-        place: Place,
+        function: GateFunction,
         upwards: bool,
         state: &[f64],
     ) -> (Course, Option<usize>) {
         let [below, above] = course.cells(self.pieces.thresholds().len());
-        match place {
-            Place::Pull { switch, above: is_above } => {
+        match function {
+            GateFunction::Pull { switch, above: is_above } => {
                 (Course::within(self.parameters, if is_above { above } else { below }), Some(switch))
             }
-            Place::Border { switch, value } => {
+            GateFunction::Border { switch, value } => {
                 let border = Border { switch, value, upwards };
                 let beyond = |cells: &[f64]| self.pieces.beyond(cells, border, state, self.parameters);
                 match &course.slide {
@@ -60,24 +60,30 @@ impl Along<'_> {
                     }
                 }
             }
-            Place::Condition { .. } => (course.clone(), None),
+            GateFunction::Condition { .. } => (course.clone(), None),
         }
     }
 
-    /// Whether the polynomials stay on the switch of a place for a while, `spacing` being that of the times at which they are looked at:
+    /// Whether the polynomials stay on the switch of a gate for a while, `spacing` being that of the times at which they are looked at:
     /// they are those of a cycle that slides there.
-    pub(super) fn stays_on(&self, place: Place, time: f64, spacing: f64, stretch: &Stretch) -> bool {
-        let (switch, border) = match place {
-            Place::Border { switch, value } => (switch, value),
-            Place::Pull { switch, .. } => (switch, 0.0),
-            Place::Condition { .. } => return false,
+    pub(super) fn stays_on(
+        &self,
+        function: GateFunction,
+        time: f64,
+        spacing: f64,
+        stretch: &Stretch,
+    ) -> bool {
+        let (switch, border) = match function {
+            GateFunction::Border { switch, value } => (switch, value),
+            GateFunction::Pull { switch, .. } => (switch, 0.0),
+            GateFunction::Condition { .. } => return false,
         };
         let last = stretch.times.last().copied().unwrap_or(time);
         let state = self.state((time + spacing).min(last), end_of(stretch));
         let cells = self.pieces.region_at(&state, self.parameters);
         let value = self.functions(&Course::within(self.parameters, &cells), &state)[switch];
-        let distance = match (place, self.pieces.thresholds()[switch]) {
-            (Place::Pull { .. }, Threshold::Whole) => value - value.round(),
+        let distance = match (function, self.pieces.thresholds()[switch]) {
+            (GateFunction::Pull { .. }, Threshold::Whole) => value - value.round(),
             _ => value - border,
         };
         distance.abs() < NEAR * self.sizes[switch]
@@ -88,17 +94,17 @@ impl Along<'_> {
         &self,
         from: &Course,
         course: &Course,
-        place: Place,
+        function: GateFunction,
         state: &[f64],
     ) -> Option<(f64, Passage)> {
         let switches = self.pieces.thresholds().len();
-        let (switch, is_above) = match place {
-            Place::Border { switch, .. } => {
+        let (switch, is_above) = match function {
+            GateFunction::Border { switch, .. } => {
                 let [before, behind] = [from, course].map(|course| course.cells(switches)[0][switch]);
                 (switch, behind > before)
             }
-            Place::Pull { switch, above } => (switch, above),
-            Place::Condition { .. } => return None,
+            GateFunction::Pull { switch, above } => (switch, above),
+            GateFunction::Condition { .. } => return None,
         };
         let cell = course.cells(switches)[0][switch];
         let value = self.pieces.thresholds()[switch].borders(cell)[usize::from(!is_above)];
@@ -138,15 +144,21 @@ impl Along<'_> {
             return None;
         }
         let there = height(now).1;
-        let back = Place::Border { switch, value };
+        let back = GateFunction::Border { switch, value };
         let (next, _) = self.behind(course, back, !is_above, &there);
-        let gate = Gate { place: back, upwards: !is_above, events: Vec::new() };
+        let gate = Gate { function: back, upwards: !is_above, events: Vec::new() };
         Some((now / period, Passage { time: 0.0, gate, course: next, leads_away: false }))
     }
 
     /// Whether the rate of the switch function at a border jumps from one course to another.
-    pub(super) fn rate_jumps(&self, one: &Course, other: &Course, place: Place, state: &[f64]) -> bool {
-        let Place::Border { switch, .. } = place else { return false };
+    pub(super) fn rate_jumps(
+        &self,
+        one: &Course,
+        other: &Course,
+        function: GateFunction,
+        state: &[f64],
+    ) -> bool {
+        let GateFunction::Border { switch, .. } = function else { return false };
         let [here, there] = self.pulls(switch, state, [&one.parameters, &other.parameters]);
         (here - there).abs() > RATE_JUMP * self.sizes[switch] / self.period()
     }

@@ -1,7 +1,7 @@
 //! The walk along a stretch on which the state does not jump: which border, condition or end of a slide comes next, and what is behind it.
 
 use super::{AWAY, Along, MOST_BORDERS, NEAR, Passage, ROUNDING, Stretch, Touch, crossing, end_of};
-use crate::cycle::gate::{Course, Gate, Place};
+use crate::cycle::gate::{Course, Gate, GateFunction};
 use crate::error::Error;
 
 /// Where the walk is.
@@ -12,6 +12,23 @@ pub(super) struct Standing {
     pub sides: Vec<f64>,
     /// The switch whose slide has just been left.
     pub left: Option<usize>,
+}
+
+/// Where a course ends.
+struct Exit {
+    time: f64,
+    function: GateFunction,
+    /// Whether the function that is zero there grows.
+    upwards: bool,
+}
+
+/// A function at whose value a course would end.
+struct PossibleGate {
+    /// Its index among all functions of the course.
+    index: usize,
+    value: f64,
+    upwards: bool,
+    function: GateFunction,
 }
 
 impl Along<'_> {
@@ -66,14 +83,14 @@ impl Along<'_> {
         let (first, known) = (standing.course.clone(), found.len());
         for (index, pair) in stretch.times.windows(2).enumerate() {
             let [mut from, until] = [pair[0], pair[1]];
-            while let Some((time, place, upwards)) = self.exit(standing, from, until, end) {
+            while let Some(Exit { time, function, upwards }) = self.exit(standing, from, until, end) {
                 let state = self.state(time, end);
                 from = time;
-                if let Place::Condition { event } = place {
+                if let GateFunction::Condition { event } = function {
                     let side = standing.sides[event];
                     let counts = self.directions[event].counts(side, -side);
                     let ends_here = stretch.end.as_ref().is_some_and(|(_, gate)| {
-                        gate.events.contains(&event) || gate.place == Place::Condition { event }
+                        gate.events.contains(&event) || gate.function == GateFunction::Condition { event }
                     });
                     let stays = || {
                         stretch.times[index + 1..].iter().all(|time| {
@@ -86,14 +103,14 @@ impl Along<'_> {
                         standing.sides[event] = 0.0;
                     } else {
                         if counts && touched.is_none() {
-                            *touched = Some(Touch { place, side, time: time - time.floor() });
+                            *touched = Some(Touch { function, side, time: time - time.floor() });
                         }
                         standing.sides[event] = -side;
                     }
                     continue;
                 }
                 let turns_back = |last: &mut Passage| {
-                    last.time == time && last.gate.place == place && last.gate.upwards != upwards
+                    last.time == time && last.gate.function == function && last.gate.upwards != upwards
                 };
                 if found.len() > known && found.pop_if(turns_back).is_some() {
                     // A visit of no length is rounding, and there might be no end of them.
@@ -102,15 +119,15 @@ impl Along<'_> {
                     from = 0.5 * (time + until);
                     continue;
                 }
-                let (next, left) = self.behind(&standing.course, place, upwards, &state);
-                let jumps = self.rate_jumps(&standing.course, &next, place, &state);
-                let gate = Gate { place, upwards, events: Vec::new() };
-                let ends_slide = matches!(place, Place::Pull { .. });
+                let (next, left) = self.behind(&standing.course, function, upwards, &state);
+                let jumps = self.rate_jumps(&standing.course, &next, function, &state);
+                let gate = Gate { function, upwards, events: Vec::new() };
+                let ends_slide = matches!(function, GateFunction::Pull { .. });
                 let flies = next.slide.is_none()
                     && (jumps || ends_slide)
-                    && self.stays_on(place, time, until - pair[0], stretch);
+                    && self.stays_on(function, time, until - pair[0], stretch);
                 let leads_away = jumps && next.slide.is_none() && !flies;
-                let back = if flies { self.flight(&standing.course, &next, place, &state) } else { None };
+                let back = if flies { self.flight(&standing.course, &next, function, &state) } else { None };
                 found.push(Passage { time, gate, course: next.clone(), leads_away });
                 (standing.course, standing.left) = (next, left);
                 if let Some((duration, passage)) = back {
@@ -137,13 +154,7 @@ impl Along<'_> {
 
     /// The first function that passes its border between two times, and when: between them it is taken for a parabola, whose turn
     /// is looked at too.
-    fn exit(
-        &self,
-        standing: &Standing,
-        from: f64,
-        until: f64,
-        end: Option<(f64, usize)>,
-    ) -> Option<(f64, Place, bool)> {
+    fn exit(&self, standing: &Standing, from: f64, until: f64, end: Option<(f64, usize)>) -> Option<Exit> {
         let course = &standing.course;
         let switches = self.pieces.thresholds().len();
         let functions = |time: f64| self.functions(course, &self.state(time, end));
@@ -151,41 +162,51 @@ impl Along<'_> {
         let [start, half, last] = [from, middle, until].map(functions);
         let [below, _] = course.cells(switches);
         let slide = course.slide.as_ref().map(|slide| slide.switch);
-        let mut exits: Vec<(usize, f64, bool, Place)> = Vec::new();
+        let mut gates: Vec<PossibleGate> = Vec::new();
         for (switch, threshold) in self.pieces.thresholds().iter().enumerate() {
             let [lower, upper] = threshold.borders(below[switch]);
             for (value, upwards) in [(lower, false), (upper, true)] {
                 if value.is_finite() && slide != Some(switch) {
-                    exits.push((switch, value, upwards, Place::Border { switch, value }));
+                    let function = GateFunction::Border { switch, value };
+                    gates.push(PossibleGate { index: switch, value, upwards, function });
                 }
             }
         }
         for (event, side) in standing.sides.iter().enumerate() {
             if *side != 0.0 {
-                exits.push((switches + event, 0.0, *side < 0.0, Place::Condition { event }));
+                let function = GateFunction::Condition { event };
+                gates.push(PossibleGate {
+                    index: switches + event,
+                    value: 0.0,
+                    upwards: *side < 0.0,
+                    function,
+                });
             }
         }
         if let Some(switch) = slide {
             let first = switches + self.directions.len();
-            exits.push((first, 0.0, false, Place::Pull { switch, above: false }));
-            exits.push((first + 1, 0.0, true, Place::Pull { switch, above: true }));
+            for (index, above) in [(first, false), (first + 1, true)] {
+                let function = GateFunction::Pull { switch, above };
+                gates.push(PossibleGate { index, value: 0.0, upwards: above, function });
+            }
         }
-        let mut first: Option<(f64, Place, bool)> = None;
-        for (index, value, upwards, place) in exits {
+        let mut first: Option<Exit> = None;
+        for PossibleGate { index, value, upwards, function } in gates {
             let sign = if upwards { 1.0 } else { -1.0 };
             let beyond = |values: &[f64]| sign * (values[index] - value);
-            let is_left = matches!(place, Place::Border { switch, .. } if standing.left == Some(switch));
+            let is_left =
+                matches!(function, GateFunction::Border { switch, .. } if standing.left == Some(switch));
             let margin = ROUNDING * start[index].abs().max(last[index].abs());
             let margin = if is_left { margin.max(NEAR * self.sizes[index]) } else { margin };
             let [a, b, c] = [&start, &half, &last].map(|values| beyond(values));
             // What comes to a switch and stays there slides, whatever rounding makes of its side.
             let lands = |value: f64| value.abs() < NEAR * self.sizes[index];
-            if matches!(place, Place::Border { .. })
+            if matches!(function, GateFunction::Border { .. })
                 && !is_left
                 && lands(b)
                 && lands(c)
-                && first.is_none_or(|(time, ..)| from < time)
-                && self.behind(course, place, upwards, &self.state(until, end)).0.slide.is_some()
+                && first.as_ref().is_none_or(|first| from < first.time)
+                && self.behind(course, function, upwards, &self.state(until, end)).0.slide.is_some()
             {
                 let near = -NEAR * self.sizes[index];
                 let landing = if a > near {
@@ -193,7 +214,7 @@ impl Along<'_> {
                 } else {
                     crossing((from, middle), |time| beyond(&functions(time)) - near)
                 };
-                first = Some((landing, place, upwards));
+                first = Some(Exit { time: landing, function, upwards });
                 continue;
             }
             let place_of_turn = 0.5 - 0.25 * (c - a) / (a - 2.0 * b + c);
@@ -207,8 +228,8 @@ impl Along<'_> {
             let Some(far) = candidates.into_iter().find(is_beyond) else { continue };
             let crossing =
                 if a > 0.0 { from } else { crossing((from, far), |time| beyond(&functions(time))) };
-            if first.is_none_or(|(time, ..)| crossing < time) {
-                first = Some((crossing, place, upwards));
+            if first.as_ref().is_none_or(|first| crossing < first.time) {
+                first = Some(Exit { time: crossing, function, upwards });
             }
         }
         first

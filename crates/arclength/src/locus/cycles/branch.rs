@@ -1,6 +1,6 @@
 //! Curves of special cycles as plain data.
 
-use super::curve::Inspection;
+use super::curve::CycleLocusInspection;
 use super::end::CycleLocusEnd;
 use crate::branch::{Branch, Label, LabelCounter, Labelled};
 use crate::continuation::Solution;
@@ -78,11 +78,15 @@ impl CycleLocusBranch {
 
 impl CycleLocusPoint {
     /// A solution of the curve as plain data; `degree` is that of the polynomials.
-    pub(super) fn new(solution: &Solution<Inspection>, label: Option<Label>, degree: usize) -> Self {
-        let Inspection {
+    pub(super) fn new(
+        solution: &Solution<CycleLocusInspection>,
+        label: Option<Label>,
+        degree: usize,
+    ) -> Self {
+        let CycleLocusInspection {
             error_estimate,
             floquet,
-            ranges,
+            extremes,
             mesh,
             tests,
             coefficient,
@@ -90,7 +94,7 @@ impl CycleLocusPoint {
             location_error,
             ..
         } = &solution.point;
-        let n = ranges.len();
+        let n = extremes.len();
         let nodes = (mesh.len() - 1) * (degree + 1);
         let length = solution.unknown.len();
         // Every node holds the state and behind it the eigenfunctions.
@@ -105,8 +109,8 @@ impl CycleLocusPoint {
         Self {
             values: [solution.unknown[length - 2], solution.unknown[length - 1]],
             period,
-            max: ranges.iter().map(|range| range.largest).collect(),
-            min: ranges.iter().map(|range| range.smallest).collect(),
+            max: extremes.iter().map(|extremes| extremes.largest).collect(),
+            min: extremes.iter().map(|extremes| extremes.smallest).collect(),
             multipliers: floquet.multipliers(),
             trivial_multiplier_error: floquet.trivial_error,
             error_estimate: *error_estimate,

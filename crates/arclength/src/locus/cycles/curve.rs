@@ -13,7 +13,7 @@ use crate::continuation::events::{Location, Reading, Spectrum, TestFunction};
 use crate::continuation::{Adaptation, Curve, Ending, Equations, Settings, Solution, Stop};
 use crate::cycle::defining::Kind;
 use crate::cycle::eigenfunctions::Eigenfunctions;
-use crate::cycle::extrema::{Range, ranges};
+use crate::cycle::extrema::{Extremes, extremes};
 use crate::cycle::floquet::{Floquet, floquet};
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, component_scales, split};
@@ -43,11 +43,11 @@ const HALF_SAMPLES: usize = 64;
 
 /// What is known about a point of the curve.
 #[derive(Clone, Debug)]
-pub(super) struct Inspection {
+pub(super) struct CycleLocusInspection {
     /// Error of cycle and eigenfunctions relative to their sizes; as long as it is not measured, the local estimate.
     pub error_estimate: f64,
     pub floquet: Floquet,
-    pub ranges: Vec<Range>,
+    pub extremes: Vec<Extremes>,
     pub mesh: Vec<f64>,
     pub tests: Vec<(SpecialKind, f64)>,
     /// Coefficient of the normal form.
@@ -210,7 +210,7 @@ impl<'a> CycleLocusCurve<'a> {
     }
 
     /// Speeds of the two parameters over their ranges.
-    pub(super) fn parameter_speeds(&self, solution: &Solution<Inspection>) -> [f64; 2] {
+    pub(super) fn parameter_speeds(&self, solution: &Solution<CycleLocusInspection>) -> [f64; 2] {
         let last = solution.tangent.len() - 2;
         [0, 1].map(|index| solution.tangent[last + index] / self.system.parameter_scales[index])
     }
@@ -234,7 +234,11 @@ impl<'a> CycleLocusCurve<'a> {
     }
 
     /// Whether the curve turns back between two solutions.
-    fn turns_back(&self, before: &Solution<Inspection>, after: &Solution<Inspection>) -> bool {
+    fn turns_back(
+        &self,
+        before: &Solution<CycleLocusInspection>,
+        after: &Solution<CycleLocusInspection>,
+    ) -> bool {
         let [one, other] = [before, after].map(|solution| self.parameter_speeds(solution));
         one[0] * other[0] + one[1] * other[1] < 0.0
     }
@@ -245,7 +249,7 @@ impl<'a> CycleLocusCurve<'a> {
     }
 
     /// The angle of a torus bifurcation as the curve counts it: past 0 and pi it goes on.
-    pub(super) fn angle(&self, solution: &Solution<Inspection>) -> Option<f64> {
+    pub(super) fn angle(&self, solution: &Solution<CycleLocusInspection>) -> Option<f64> {
         let place = solution.unknown.len() - self.angle_from_end();
         (self.kind() == Kind::Torus).then(|| solution.unknown[place])
     }
@@ -254,11 +258,11 @@ impl<'a> CycleLocusCurve<'a> {
     /// to the same cycles, the halves exchanged.
     fn halves_become_equal(
         &self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
+        before: &Solution<CycleLocusInspection>,
+        after: &Solution<CycleLocusInspection>,
     ) -> Option<f64> {
         let n = self.states;
-        let half_difference = |solution: &Solution<Inspection>| -> (Vec<f64>, f64) {
+        let half_difference = |solution: &Solution<CycleLocusInspection>| -> (Vec<f64>, f64) {
             let (mut cycle, _) = split(&solution.unknown, n, self.kind());
             let parameter = cycle[cycle.len() - 2];
             cycle.pop();
@@ -299,7 +303,7 @@ pub(super) fn sizes_of_resting(sizes: &StateSizes, states: &[f64]) -> Vec<f64> {
     natural.iter().enumerate().map(size).collect()
 }
 
-pub(super) fn test_value(solution: &Solution<Inspection>, kind: SpecialKind) -> Option<f64> {
+pub(super) fn test_value(solution: &Solution<CycleLocusInspection>, kind: SpecialKind) -> Option<f64> {
     solution.point.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
 }
 
@@ -331,7 +335,7 @@ impl Equations for CycleLocusCurve<'_> {
 }
 
 impl Curve for CycleLocusCurve<'_> {
-    type Point = Inspection;
+    type Point = CycleLocusInspection;
     type Kind = SpecialKind;
     type Reason = CycleLocusEnd;
 
@@ -355,11 +359,16 @@ impl Curve for CycleLocusCurve<'_> {
         Ok(if rescaled { Adaptation::Renormalised } else { adaptation })
     }
 
-    fn carry_over(&self, point: &mut Inspection) {
+    fn carry_over(&self, point: &mut CycleLocusInspection) {
         point.mesh = self.system.collocation.mesh().to_vec();
     }
 
-    fn inspect(&mut self, unknown: &[f64], _tangent: &[f64], _orientation: f64) -> Result<Inspection, Error> {
+    fn inspect(
+        &mut self,
+        unknown: &[f64],
+        _tangent: &[f64],
+        _orientation: f64,
+    ) -> Result<CycleLocusInspection, Error> {
         let kind = self.kind();
         self.base.problem.segments.clone_from(&self.system.collocation.problem.segments);
         let (cycle, eigenfunctions) = split(unknown, self.states, kind);
@@ -381,9 +390,9 @@ impl Curve for CycleLocusCurve<'_> {
         let angle = angle.min(TAU - angle);
         let multipliers: Vec<Complex64> =
             floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
-        Ok(Inspection {
+        Ok(CycleLocusInspection {
             error_estimate: self.error_estimate,
-            ranges: ranges(&self.base, base, self.states),
+            extremes: extremes(&self.base, base, self.states),
             mesh: self.base.mesh().to_vec(),
             tests: monitor::tests(kind, &multipliers, coefficient, angle),
             coefficient,
@@ -394,7 +403,7 @@ impl Curve for CycleLocusCurve<'_> {
         })
     }
 
-    fn measure(&mut self, solution: &mut Solution<Inspection>) {
+    fn measure(&mut self, solution: &mut Solution<CycleLocusInspection>) {
         solution.point.error_estimate = self.error(&solution.unknown);
     }
 
@@ -402,7 +411,7 @@ impl Curve for CycleLocusCurve<'_> {
         Cow::Borrowed(monitor::test_functions(self.kind()))
     }
 
-    fn test(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<Reading> {
+    fn test(&self, kind: SpecialKind, solution: &Solution<CycleLocusInspection>) -> Option<Reading> {
         let value = test_value(solution, kind)?;
         if !monitor::is_coefficient(kind) {
             return Some(Reading::exact(value));
@@ -413,7 +422,7 @@ impl Curve for CycleLocusCurve<'_> {
     }
 
     /// The tests for resonances are made of the angle, which is an unknown.
-    fn test_rate(&self, kind: SpecialKind, solution: &Solution<Inspection>) -> Option<f64> {
+    fn test_rate(&self, kind: SpecialKind, solution: &Solution<CycleLocusInspection>) -> Option<f64> {
         if !matches!(kind, SpecialKind::Resonance3 | SpecialKind::Resonance4) {
             return None;
         }
@@ -422,7 +431,7 @@ impl Curve for CycleLocusCurve<'_> {
         Some(if is_folded { -solution.tangent[place] } else { solution.tangent[place] })
     }
 
-    fn spectrum(&self, solution: &Solution<Inspection>) -> Spectrum {
+    fn spectrum(&self, solution: &Solution<CycleLocusInspection>) -> Spectrum {
         let point = &solution.point;
         monitor::growth(self.kind(), &point.floquet, point.argument.unwrap_or(0.0))
     }
@@ -430,8 +439,8 @@ impl Curve for CycleLocusCurve<'_> {
     fn locate(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
-    ) -> Result<Location<Inspection>, Error> {
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
+    ) -> Result<Location<CycleLocusInspection>, Error> {
         self.point_of_codimension_two(kind, [before, after])
     }
 
@@ -439,14 +448,14 @@ impl Curve for CycleLocusCurve<'_> {
         let (cycle, _) = split(unknown, self.states, self.kind());
         let end = cycle.len() - 3;
         let mut signature = vec![(cycle[end].ln(), 1.0)];
-        signature.extend(self.sizes.signature(&ranges(&self.base, &cycle[..end + 2], self.states)));
+        signature.extend(self.sizes.signature(&extremes(&self.base, &cycle[..end + 2], self.states)));
         signature
     }
 
     fn ending(
         &mut self,
-        before: &Solution<Inspection>,
-        after: &Solution<Inspection>,
+        before: &Solution<CycleLocusInspection>,
+        after: &Solution<CycleLocusInspection>,
     ) -> Option<Ending<CycleLocusEnd>> {
         let end = after.unknown.len() - self.system.collocation.problem.scalars();
         let period = after.unknown[end];

@@ -1,7 +1,7 @@
 //! Points of codimension two on curves of special cycles: resonances of torus bifurcations by Newton's method at their angle,
 //! the others by the secant method on their test functions.
 
-use super::curve::{CycleLocusCurve, Inspection, test_value};
+use super::curve::{CycleLocusCurve, CycleLocusInspection, test_value};
 use super::monitor;
 use crate::branch::SpecialKind;
 use crate::continuation::events::Location;
@@ -29,7 +29,7 @@ const SAME_PLACE: f64 = 1e-7;
 /// What a change of sign of a test function turned out to be.
 enum Zero {
     /// A point at which it vanishes, and the size that its test function has there: its value, or the noise in it.
-    At(Box<Solution<Inspection>>, f64),
+    At(Box<Solution<CycleLocusInspection>>, f64),
     /// A coefficient goes through infinity.
     Pole,
     /// No point was located.
@@ -44,8 +44,8 @@ impl CycleLocusCurve<'_> {
     pub(super) fn point_of_codimension_two(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
-    ) -> Result<Location<Inspection>, Error> {
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
+    ) -> Result<Location<CycleLocusInspection>, Error> {
         let found = match self.at_resonance(kind, [before, after])? {
             Some(found) => Zero::At(Box::new(found), 0.0),
             None => self.zero(kind, [before, after])?,
@@ -61,7 +61,7 @@ impl CycleLocusCurve<'_> {
             return Ok(Location::Nothing);
         }
         // At a point where the coefficient has a pole, rounding is all that is left of it.
-        let size = |solution: &Solution<Inspection>| solution.point.coefficient.map(f64::abs);
+        let size = |solution: &Solution<CycleLocusInspection>| solution.point.coefficient.map(f64::abs);
         let ends = size(before).into_iter().chain(size(after)).fold(0.0, f64::max);
         solution.point.coefficient =
             solution.point.coefficient.filter(|value| value.abs() <= POLE_GROWTH * ends);
@@ -86,8 +86,8 @@ impl CycleLocusCurve<'_> {
     fn at_resonance(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
-    ) -> Result<Option<Solution<Inspection>>, Error> {
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
+    ) -> Result<Option<Solution<CycleLocusInspection>>, Error> {
         let resonant = match kind {
             SpecialKind::Resonance3 => TAU / 3.0,
             SpecialKind::Resonance4 => FRAC_PI_2,
@@ -113,9 +113,9 @@ impl CycleLocusCurve<'_> {
     /// The solution between two others at which the angle of a torus bifurcation has a value.
     fn at_angle(
         &mut self,
-        [before, after]: [&Solution<Inspection>; 2],
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
         angle: f64,
-    ) -> Result<Solution<Inspection>, Error> {
+    ) -> Result<Solution<CycleLocusInspection>, Error> {
         let (from_end, settings) = (self.angle_from_end(), self.settings);
         fix(self, before, after, from_end, angle, &settings)
     }
@@ -124,7 +124,7 @@ impl CycleLocusCurve<'_> {
     /// behind it, with the eigenfunctions conjugate: then the parameters are the same on both sides. `None` where it cannot be told.
     pub(super) fn comes_back(
         &mut self,
-        [before, after]: [&Solution<Inspection>; 2],
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
         resonance: f64,
     ) -> Option<bool> {
         let (from, to) = (self.angle(before)?, self.angle(after)?);
@@ -144,12 +144,12 @@ impl CycleLocusCurve<'_> {
     fn zero(
         &mut self,
         kind: SpecialKind,
-        [before, after]: [&Solution<Inspection>; 2],
+        [before, after]: [&Solution<CycleLocusInspection>; 2],
     ) -> Result<Zero, Error> {
         let is_coefficient = monitor::is_coefficient(kind);
         let zero = if is_coefficient { ZERO * after.point.natural_coefficient } else { ZERO };
         let mut largest = 0.0_f64;
-        let test = |_: &mut Self, solution: &Solution<Inspection>| {
+        let test = |_: &mut Self, solution: &Solution<CycleLocusInspection>| {
             let value = test_value(solution, kind);
             largest = value.map_or(largest, |value| largest.max(value.abs()));
             value
@@ -161,7 +161,7 @@ impl CycleLocusCurve<'_> {
             Err(error) => return Err(error),
         };
         // The test function of a coefficient is small where its factors are: the coefficient itself has to be.
-        let size = |solution: &Solution<Inspection>| match solution.point.coefficient {
+        let size = |solution: &Solution<CycleLocusInspection>| match solution.point.coefficient {
             Some(value) if is_coefficient => value.abs(),
             _ => modulus(solution, kind),
         };
@@ -173,7 +173,7 @@ impl CycleLocusCurve<'_> {
         }
         let smallest = modulus(&found, kind);
         if kind == SpecialKind::CuspOfCycles {
-            let speed = |solution: &Solution<Inspection>| {
+            let speed = |solution: &Solution<CycleLocusInspection>| {
                 let [one, other] = self.parameter_speeds(solution);
                 one.hypot(other)
             };
@@ -191,6 +191,6 @@ impl CycleLocusCurve<'_> {
 }
 
 /// Modulus of a test function, infinite where it does not exist.
-fn modulus(solution: &Solution<Inspection>, kind: SpecialKind) -> f64 {
+fn modulus(solution: &Solution<CycleLocusInspection>, kind: SpecialKind) -> f64 {
     test_value(solution, kind).map_or(f64::INFINITY, f64::abs)
 }

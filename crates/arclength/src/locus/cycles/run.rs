@@ -1,11 +1,11 @@
 //! Asking for a curve of special cycles.
 
 use super::branch::{CycleLocusBranch, CycleLocusPoint};
-use super::curve::{CycleLocusCurve, Inspection, sizes_of_resting};
+use super::curve::{CycleLocusCurve, CycleLocusInspection, sizes_of_resting};
 use super::end::CycleLocusEnd;
 use super::hold::Hold;
 use crate::branch::{
-    Branch, Continuation, Label, Problem, SpecialKind, check_length, invalid, observer, request,
+    Branch, Continuation, Label, Labelled, Problem, SpecialKind, check_length, invalid, observer, request,
 };
 use crate::collocation::equations::Collocation;
 use crate::continuation::events::around_start;
@@ -20,7 +20,7 @@ use crate::cycle::floquet::floquet;
 use crate::cycle::limit_cycle::LimitCycle;
 use crate::cycle::locating::{DefiningCurve, join};
 use crate::cycle::sizes::StateSizes;
-use crate::cycle::{Orbit, Resolution};
+use crate::cycle::{CyclePoint, Orbit, Resolution};
 use crate::erased::ErasedField;
 use crate::error::Error;
 use crate::field::VectorField;
@@ -49,10 +49,8 @@ impl Problem for CycleLocusProblem {
 ///
 /// ```
 /// use arclength::branch::SpecialKind;
-/// use arclength::cycle::{CycleStart, Cycles};
-/// use arclength::locus::CycleLocus;
+/// use arclength::equilibrium::Equilibria;
 /// use arclength::{Scalar, VectorField};
-/// use num_complex::Complex64;
 ///
 /// /// Circles of radius s with a + b s^2 - s^4 = 0: folds at a = -b^2/4.
 /// struct Bautin;
@@ -67,25 +65,34 @@ impl Problem for CycleLocusProblem {
 ///     }
 /// }
 ///
-/// let half = 0.5_f64.sqrt();
-/// let start = CycleStart::Hopf {
-///     state: vec![0.0; 2],
-///     frequency: 1.0,
-///     eigenvector: vec![Complex64::new(half, 0.0), Complex64::new(0.0, -half)],
-///     crossing_speed: 1.0,
-///     cubic_coefficient: 1.0,
-/// };
-/// let branch = Cycles::of(&Bautin, start).parameters(&[0.0, 1.0]).along("a", -1.0..=1.0).run()?;
-/// let fold = branch.of_kind(SpecialKind::FoldOfCycles).next().unwrap();
-/// let folds = CycleLocus::of(&Bautin)
-///     .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, 1.0])
-///     .along("a", -1.0..=1.0)
-///     .and("b", 0.5..=1.5)
-///     .run()?;
+/// let equilibria = Equilibria::of(&Bautin).parameters(&[-1.0, 1.0]).along("a", -1.0..=1.0).run()?;
+/// let hopf = equilibria.hopf_points().next().expect("a Hopf point");
+/// let branch = hopf.cycles(&Bautin).along("a", -1.0..=1.0).run()?;
+/// let fold = branch.of_kind(SpecialKind::FoldOfCycles).next().expect("a fold of cycles");
+/// let folds = fold.curve(&Bautin).expect("a curve").along("a", -1.0..=1.0).and("b", 0.5..=1.5).run()?;
 /// assert!(folds.points.iter().all(|point| (point.values[0] + 0.25 * point.values[1].powi(2)).abs() < 1e-8));
 /// # Ok::<(), arclength::Error>(())
 /// ```
 pub type CycleLocus<'a> = Continuation<'a, CycleLocusProblem>;
+
+impl CyclePoint {
+    /// The curve of special cycles through this one, in two parameters: of folds, period doublings or torus bifurcations; `None` where it
+    /// is none of them.
+    pub fn curve<'a, F: VectorField>(&self, field: &'a F) -> Option<CycleLocus<'a>> {
+        let kind = self.special_kind().filter(|kind| defining_system(*kind).is_some())?;
+        Some(CycleLocus::of(field).from_cycle(kind, &self.orbit, &self.parameters))
+    }
+}
+
+/// The equations that define special cycles of a kind, if they make curves.
+fn defining_system(kind: SpecialKind) -> Option<Kind> {
+    match kind {
+        SpecialKind::FoldOfCycles => Some(Kind::Fold),
+        SpecialKind::PeriodDoubling => Some(Kind::Doubling),
+        SpecialKind::Torus => Some(Kind::Torus),
+        _ => None,
+    }
+}
 
 impl<'a> CycleLocus<'a> {
     /// A curve of special cycles of `field`.
@@ -124,13 +131,9 @@ impl<'a> CycleLocus<'a> {
         };
         let kind = match special {
             None => Kind::Cycle,
-            Some(SpecialKind::FoldOfCycles) => Kind::Fold,
-            Some(SpecialKind::PeriodDoubling) => Kind::Doubling,
-            Some(SpecialKind::Torus) => Kind::Torus,
-            Some(other) => {
-                let allowed = "fold of cycles, period doubling, torus bifurcation";
-                return Err(invalid("start", other.name(), allowed));
-            }
+            Some(special) => defining_system(special).ok_or_else(|| {
+                invalid("start", special.name(), "fold of cycles, period doubling, torus bifurcation")
+            })?,
         };
         let (active, bounds) = self.active(2)?;
         let names = self.field.parameter_names();
@@ -149,8 +152,9 @@ impl<'a> CycleLocus<'a> {
             settings: self.settings,
         };
         let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
-        let bare = |solution: &Solution<Inspection>| CycleLocusPoint::new(solution, None, orbit.degree);
-        let point = |solution: &Solution<Inspection>, label: Option<Label>| {
+        let bare =
+            |solution: &Solution<CycleLocusInspection>| CycleLocusPoint::new(solution, None, orbit.degree);
+        let point = |solution: &Solution<CycleLocusInspection>, label: Option<Label>| {
             let mut point = CycleLocusPoint::new(solution, label, orbit.degree);
             point.monitors =
                 monitors.iter().map(|monitor| monitor.value(&point).unwrap_or(f64::NAN)).collect();
@@ -188,9 +192,9 @@ impl<'a> Asked<'a> {
         &self,
         kind: Kind,
         orbit: &Orbit,
-        request: &Request<'_, Inspection>,
-        observer: &mut Observer<'_, Inspection, SpecialKind>,
-    ) -> Result<BothWays<Inspection, SpecialKind, CycleLocusEnd>, Error> {
+        request: &Request<'_, CycleLocusInspection>,
+        observer: &mut Observer<'_, CycleLocusInspection, SpecialKind>,
+    ) -> Result<BothWays<CycleLocusInspection, SpecialKind, CycleLocusEnd>, Error> {
         let mut forward: Vec<f64> = Vec::new();
         let directions = both_ways(|sign| {
             // Mesh and sizes move on along the way: every direction begins with those of the start.

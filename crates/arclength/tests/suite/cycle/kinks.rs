@@ -264,12 +264,7 @@ fn a_period_doubling_with_kinks() {
     // What kinks do to the coefficient is not computed.
     assert!(doubling.normal_form.is_empty());
     // The doubled cycles.
-    let start = CycleStart::Branching(doubling.branching.clone().unwrap());
-    let doubled = Cycles::of(&JerkWithKink, start)
-        .parameters(&[doubling.value, 0.7])
-        .along("m", 0.8..=1.0)
-        .run()
-        .unwrap();
+    let doubled = doubling.doubled(&JerkWithKink).unwrap().along("m", 0.8..=1.0).run().unwrap();
     let last = doubled.points.last().unwrap();
     assert!(
         (last.value - 1.0).abs() < 1e-12 && (last.period - 2.0 * DOUBLING.1).abs() < 0.5,

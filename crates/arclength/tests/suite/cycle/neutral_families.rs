@@ -96,23 +96,14 @@ fn a_field_that_is_linear_at_its_hopf_point_has_a_family_that_van_der_pols_cycle
     let equilibria = Equilibria::of(&VanDerPol).parameters(&[-1.0]).along("mu", -1.0..=1.0).run().unwrap();
     let hopf = equilibria.hopf_points().next().unwrap();
     assert_eq!(hopf.criticality, Criticality::Degenerate, "l1 = {:?}", hopf.first_lyapunov);
-    let family = Cycles::of(&VanDerPol, CycleStart::from(hopf))
-        .parameters(&[hopf.value])
-        .along("mu", -1.0..=1.0)
-        .run()
-        .unwrap();
+    let family = hopf.cycles(&VanDerPol).along("mu", -1.0..=1.0).run().unwrap();
     assert!(family.points.iter().all(|point| point.neutral));
     assert!(family.points[0].max[0] < 0.1, "{}", family.points[0].max[0]);
     let [(kind, crossing)] = family.special().collect::<Vec<_>>()[..] else { panic!("one branch point") };
     assert_eq!(kind, SpecialKind::BranchPointOfCycles);
     // The amplitude for small mu (van der Pol (1926)).
     assert!((crossing.max[0] - 2.0).abs() < 1e-8, "{}", crossing.max[0]);
-    let other = crossing.branching.clone().unwrap();
-    let cycles = Cycles::of(&VanDerPol, CycleStart::Branching(other))
-        .parameters(&[crossing.value])
-        .along("mu", -1.0..=1.0)
-        .run()
-        .unwrap();
+    let cycles = crossing.other(&VanDerPol).unwrap().along("mu", -1.0..=1.0).run().unwrap();
     let ends = [&cycles.points[0], cycles.points.last().unwrap()];
     for end in ends {
         // T(1) = 6.6632868593231 (Strogatz gives 6.66).

@@ -122,10 +122,10 @@ fn doubling_of_a_moebius_band() {
             );
         }
         // The doubled cycles have xi^2 = -mu / c and the period 4 pi / (1 + s xi^2).
-        let start = CycleStart::Branching(doubling.branching.clone().expect("a branch"));
         let mu = -0.1 * c.signum();
-        let doubled = Cycles::of(&Moebius, start)
-            .parameters(&[doubling.value, c, s])
+        let doubled = doubling
+            .doubled(&Moebius)
+            .expect("a branch")
             .along("mu", -0.5..=0.5)
             .at(&[mu])
             .run()
@@ -150,9 +150,9 @@ fn doubling_of_the_lure_system_agrees_with_its_branches() {
         .run()
         .expect("exists");
     let doubling = special(&branch, |special| special == SpecialKind::PeriodDoubling);
-    let start = CycleStart::Branching(doubling.branching.clone().expect("a branch"));
-    let doubled = Cycles::of(&Lure, start)
-        .parameters(&[doubling.value, 1.0])
+    let doubled = doubling
+        .doubled(&Lure)
+        .expect("a branch")
         .along("alpha", 0.5..=0.7)
         .at(&values)
         .run()
@@ -269,12 +269,7 @@ fn branch_points_and_the_other_branch() {
             .expect("exists");
         let point = special(&branch, |special| special == SpecialKind::BranchPointOfCycles);
         assert!(point.value.abs() < 1e-9, "{}", point.value);
-        let start = CycleStart::Branching(point.branching.clone().expect("a branch"));
-        let other = Cycles::of(&Symmetric, start)
-            .parameters(&[point.value, q])
-            .along("mu", -0.5..=0.5)
-            .run()
-            .expect("exists");
+        let other = point.other(&Symmetric).expect("a branch").along("mu", -0.5..=0.5).run().expect("exists");
         let heights: Vec<f64> = other.points.iter().map(|point| point.max[2]).collect();
         assert!(heights.iter().any(|&z| z > 0.1) && heights.iter().any(|&z| z < -0.1), "{heights:?}");
         for point in &other.points {

@@ -71,11 +71,8 @@ fn lure_doubled_branch() {
         Cycles::of(&Lure, start).parameters(&[1.0, 1.0]).along("alpha", -1.1..=1.1).run().expect("exists");
     let (_, doubling) =
         branch.special().find(|(special, _)| *special == SpecialKind::PeriodDoubling).expect("a doubling");
-    let doubled = Cycles::of(&Lure, CycleStart::Branching(doubling.branching.clone().expect("a branch")))
-        .parameters(&[doubling.value, 1.0])
-        .along("alpha", -1.1..=1.1)
-        .run()
-        .expect("exists");
+    let doubled =
+        doubling.doubled(&Lure).expect("a branch").along("alpha", -1.1..=1.1).run().expect("exists");
     let found = |sought: SpecialKind| -> Vec<(f64, f64)> {
         let points = doubled.special().filter(|(special, _)| *special == sought);
         points.map(|(_, cycle)| (cycle.value, cycle.period)).collect()

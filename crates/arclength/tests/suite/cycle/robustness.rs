@@ -33,7 +33,7 @@ impl VectorField for Polynomial {
 
 fn check(field: &Polynomial, start: CycleStart) -> Result<(), TestCaseError> {
     let resolution = Resolution { tolerance: 1e-5, most_intervals: 60, ..Resolution::default() };
-    let settings = Settings { most_steps: 15, ..Settings::default() };
+    let settings = Settings::default().most_steps(15);
     let run = Cycles::of(field, start)
         .parameters(&[0.1])
         .along("p", -1.0..=1.0)

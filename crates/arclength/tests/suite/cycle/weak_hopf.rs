@@ -47,7 +47,7 @@ fn cycles(wheel: &Wheel, hopf: f64, at: &[f64]) -> CycleBranch {
         .parameters(&[points[0].value])
         .along("v", 0.05..=100.0)
         .at(at)
-        .settings(Settings { most_steps: 30, ..Settings::default() })
+        .settings(Settings::default().most_steps(30))
         .run()
         .unwrap()
 }

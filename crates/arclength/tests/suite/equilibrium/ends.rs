@@ -1,7 +1,7 @@
 //! Where branches of equilibria end that reach no end of a range, and what special points do not say.
 
 use arclength::branch::{Criticality, Stability};
-use arclength::continuation::{Settings, Stop};
+use arclength::continuation::Stop;
 use arclength::equilibrium::{Equilibria, EquilibriumBranch, EquilibriumEnd, equilibrium_settings};
 use arclength::{Scalar, VectorField};
 
@@ -29,11 +29,8 @@ fn a_line_of_equilibria_at_one_parameter_value() {
     assert_eq!(point.criticality, Some(Criticality::Degenerate));
     for finer in [1.0, 10.0] {
         let settings = equilibrium_settings();
-        let settings = Settings {
-            initial_step: settings.initial_step / finer,
-            largest_step: settings.largest_step / finer,
-            ..settings
-        };
+        let settings =
+            settings.initial_step(settings.initial_step / finer).largest_step(settings.largest_step / finer);
         let line = Equilibria::of(&VerticalLine)
             .from_branch_point(point)
             .along("a", -1.0..=1.0)

@@ -246,7 +246,7 @@ mod tests {
             let kick = SafeKick::find(
                 &wheel,
                 ContactModel::Rolling,
-                ClassificationSettings { duration: 30.0 },
+                ClassificationSettings::with_duration(30.0),
                 Disturbance::ReleaseAngle,
                 direction * LARGEST_ANGLE,
                 &Control::none(),

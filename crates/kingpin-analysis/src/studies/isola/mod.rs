@@ -12,7 +12,7 @@ use crate::error::{Error, unless_stopped};
 use crate::last_fold::LastFold;
 use arclength::branch::SpecialKind;
 use arclength::continuation::{Settings, Stop};
-use arclength::cycle::{CycleBranch, CycleEnd, CyclePoint, CycleStart, Cycles, Orbit};
+use arclength::cycle::{CycleBranch, CycleEnd, CyclePoint, Cycles};
 use arclength::equilibrium::{Equilibria, HopfPoint};
 use arclength::locus::{CycleLocus, CycleLocusBranch};
 use arclength_analysis::Control;
@@ -232,12 +232,7 @@ impl Isola {
             if attached.iter().any(ends_here) {
                 continue;
             }
-            attached.push(along_speed(
-                &field,
-                &ranges,
-                CycleStart::from(hopf),
-                [hopf.value, with_hopf_points],
-            )?);
+            attached.push(along_speed(hopf.cycles(&field), &ranges)?);
         }
         control.done(0.2);
         unless_stopped(control)?;
@@ -255,13 +250,8 @@ impl Isola {
         })?;
         let speed = bridge.value;
         ranges.bridge = speed;
-        let follow = |wanted: &[f64]| {
-            Cycles::of(&field, CycleStart::Orbit(bridge.orbit.clone()))
-                .parameters(&[speed, with_hopf_points])
-                .along("c_q", dampings.0..=dampings.1)
-                .at(wanted)
-                .run()
-        };
+        let follow =
+            |wanted: &[f64]| bridge.cycles(&field).along("c_q", dampings.0..=dampings.1).at(wanted).run();
         let mut bridged = follow(&[ranges.shown[0], ranges.detached, ranges.shown[1]])?;
         let strongest = bridged.points.iter().map(|point| point.value).fold(0.0, f64::max);
         if strongest < ranges.detached {
@@ -281,27 +271,26 @@ impl Isola {
             ranges.detached = 0.5 * (birth.damping + strongest);
             bridged = follow(&[ranges.detached])?;
         }
-        let reached = |damping: f64| -> Result<&Orbit, Error> {
+        let reached = |damping: f64| -> Result<&CyclePoint, Error> {
             let at = |point: &&CyclePoint| point.value == damping;
-            let found = bridged.points.iter().find(at).map(|point| &point.orbit);
+            let found = bridged.points.iter().find(at);
             let place = || format!("v = {} m/s, c_q = {} N s/m", readable(speed), readable(damping));
             found.ok_or_else(|| Error::not_found("limit cycle", &place()))
         };
         control.done(0.3);
         unless_stopped(control)?;
-        let start = |damping: f64| Ok::<_, Error>(CycleStart::Orbit(reached(damping)?.clone()));
         let lightest = bridged.points.iter().min_by(|a, b| a.value.total_cmp(&b.value));
         let undamped_angle = lightest.map_or(0.0, |point| point.max[1]);
         let shown = ranges
             .shown
             .into_iter()
             .filter(|damping| reached(*damping).is_ok())
-            .map(|damping| Ok((damping, along_speed(&field, &ranges, start(damping)?, [speed, damping])?)))
+            .map(|damping| Ok((damping, along_speed(reached(damping)?.cycles(&field), &ranges)?)))
             .collect::<Result<Vec<_>, Error>>()?;
         control.done(0.5);
         unless_stopped(control)?;
         let detached = ranges.detached;
-        let closed = along_speed(&field, &ranges, start(detached)?, [speed, detached])?;
+        let closed = along_speed(reached(detached)?.cycles(&field), &ranges)?;
         if let Some(stop) = closed.stops[1].as_ref().filter(|stop| !matches!(stop, Stop::Closed)) {
             return Err(Error::NothingFound(format!(
                 "the branch of cycles at c_q = {detached} N s/m does not close: {stop}"
@@ -313,11 +302,12 @@ impl Isola {
             .of_kind(SpecialKind::FoldOfCycles)
             .max_by(|a, b| a.value.total_cmp(&b.value))
             .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?;
-        let folds = CycleLocus::of(&field)
-            .from_cycle(SpecialKind::FoldOfCycles, &fold.orbit, &[fold.value, detached])
+        let folds = fold
+            .curve(&field)
+            .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?
             .along("v", ranges.speeds.0..=ranges.speeds.1)
             .and("c_q", ranges.fold_dampings.0..=ranges.fold_dampings.1)
-            .settings(Settings { predictor_error: FOLD_PREDICTOR_ERROR, ..settings() })
+            .settings(settings().predictor_error(FOLD_PREDICTOR_ERROR))
             .run()?;
         control.done(0.9);
         unless_stopped(control)?;
@@ -371,11 +361,7 @@ impl Isola {
 }
 
 fn settings() -> Settings {
-    Settings {
-        largest_parameter_change: LARGEST_CHANGE,
-        predictor_error: PREDICTOR_ERROR,
-        ..Settings::default()
-    }
+    Settings::default().largest_parameter_change(LARGEST_CHANGE).predictor_error(PREDICTOR_ERROR)
 }
 
 /// The range of a branch and why it ends, in words.
@@ -390,18 +376,8 @@ fn told(branch: &CycleBranch, key: &str, unit: &str) -> String {
     )
 }
 
-fn along_speed(
-    field: &LateralWheel,
-    ranges: &Ranges,
-    start: CycleStart,
-    parameters: [f64; 2],
-) -> Result<CycleBranch, arclength::Error> {
-    Cycles::of(field, start)
-        .parameters(&parameters)
-        .along("v", ranges.speeds.0..=ranges.speeds.1)
-        .at(&[ranges.bridge])
-        .settings(settings())
-        .run()
+fn along_speed(cycles: Cycles<'_>, ranges: &Ranges) -> Result<CycleBranch, arclength::Error> {
+    cycles.along("v", ranges.speeds.0..=ranges.speeds.1).at(&[ranges.bridge]).settings(settings()).run()
 }
 
 /// The fold with the largest damping.

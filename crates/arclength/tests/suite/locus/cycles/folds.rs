@@ -227,10 +227,7 @@ fn a_cusp_of_cycles_on_which_a_state_rests() {
             .from_cycle(SpecialKind::FoldOfCycles, &orbit, &parameters)
             .along("c", -1.0..=1.0)
             .and("a", -1.0..=2.0)
-            .settings(arclength::continuation::Settings {
-                largest_step: settings.largest_step / finer,
-                ..settings
-            })
+            .settings(settings.largest_step(settings.largest_step / finer))
             .run()
             .expect("exists");
         assert_at(&folds, SpecialKind::CuspOfCycles, [0.0, 0.0], 1e-7);

@@ -1,14 +1,12 @@
 //! A model: what the text declares, ready to evaluate.
 
-use crate::compile::{Lowering, Regions, Scope, Symbol};
-use crate::declarations::{Declarations, InitialValue, SetDefinition};
+mod reading;
+
 use crate::error::{OdeError, Place, Warning};
 use crate::event::Event;
-use crate::expression::parse_number;
 use crate::options::{OptionEntry, Options};
-use crate::source::{decode, physical_lines};
 use crate::switches::{GivenUp, Switch, TimeSwitches};
-use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
+use crate::tape::Tape;
 use arclength::{Direction, ErasedField, Scalar, Threshold, VectorField};
 
 /// A model read from a `.ode` text.
@@ -57,27 +55,6 @@ pub struct NamedSet {
 }
 
 impl Model {
-    /// Reads a model from text.
-    ///
-    /// # Errors
-    ///
-    /// [`OdeError`] where the text is not a model, or not one that is a smooth system of ordinary
-    /// differential equations.
-    pub fn parse(source: &str) -> Result<Self, OdeError> {
-        let source = source.strip_prefix('\u{feff}').unwrap_or(source);
-        let lines: Vec<&str> = physical_lines(source).collect();
-        read(source, &lines).map_err(|error| error.with_source(&lines))
-    }
-
-    /// Reads a model from the bytes of a file, in UTF-8 or else in Latin-1.
-    ///
-    /// # Errors
-    ///
-    /// As [`Model::parse`].
-    pub fn parse_bytes(bytes: &[u8]) -> Result<Self, OdeError> {
-        Self::parse(&decode(bytes))
-    }
-
     /// The text from which the model was read; [`Model::parse`] of it gives the same model.
     pub fn source(&self) -> &str {
         &self.source
@@ -272,201 +249,4 @@ impl VectorField for Model {
 
 fn position(names: &[String], name: &str) -> Option<usize> {
     names.iter().position(|candidate| candidate.eq_ignore_ascii_case(name))
-}
-
-fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
-    let mut declarations = Declarations::read(source)?;
-    if declarations.equations.is_empty() {
-        return Err(OdeError::NoEquations);
-    }
-    let states = declarations.equations.len();
-    let parameters = declarations.parameters.len();
-
-    let mut lowering = Lowering::new(&declarations.symbols);
-    // In the order of the text, so that a chain of quantities is no deep recursion.
-    for index in 0..declarations.symbols.derived.len() {
-        lowering.derived_parameter(index)?;
-    }
-    for index in 0..declarations.symbols.fixed.len() {
-        lowering.fixed_quantity(index)?;
-    }
-    let field = declarations
-        .equations
-        .iter()
-        .map(|equation| lowering.lower(equation, Scope::Field))
-        .collect::<Result<Vec<_>, _>>()?;
-    let field = lowering.graph.with_norms(field);
-    let conditions = declarations
-        .events
-        .iter()
-        .map(|event| lowering.lower(&event.condition, Scope::Field))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut actions = Vec::new();
-    for event in &declarations.events {
-        let mut list = Vec::new();
-        for assignment in &event.assignments {
-            let value = lowering.lower(&assignment.expression, Scope::Field)?;
-            match declarations.action(&assignment.name)? {
-                Some(action) => list.push((action, value)),
-                None => lowering.warnings.push(Warning::new(
-                    assignment.name.span,
-                    format!("`{}` is ignored: events are located where they happen", assignment.name.text),
-                )),
-            }
-        }
-        actions.push(list);
-    }
-    let mut auxiliary = Vec::new();
-    let mut auxiliaries = Vec::new();
-    let mut left_out = Vec::new();
-    for definition in &declarations.auxiliaries {
-        let name = definition.name.text.clone();
-        match lowering.output(definition)? {
-            Ok(node) => {
-                auxiliary.push(node);
-                auxiliaries.push(name);
-            }
-            Err(error) => left_out.push((name, error)),
-        }
-    }
-    let derivation = (0..declarations.symbols.derived.len())
-        .map(|index| lowering.derived_parameter(index))
-        .collect::<Result<Vec<_>, _>>()?;
-    let mut initial = vec![lowering.graph.constant(0.0); states];
-    for (name, value) in &declarations.initial {
-        if declarations.is_refused(name) {
-            continue;
-        }
-        initial[declarations.state(name)?] = match value {
-            InitialValue::Number(value) => lowering.graph.constant(*value),
-            InitialValue::Formula(expression) => lowering.lower(expression, Scope::Initial)?,
-        };
-    }
-
-    let first = declarations.symbols.states[0].span;
-    let too_large = || OdeError::TooLarge {
-        place: first.into(),
-        what: "the model needs too many registers".into(),
-        limit: MAXIMUM_REGISTERS,
-    };
-    let compile = |results: &[u32], states: usize| {
-        schedule(&lowering.graph, results, states, parameters).ok_or_else(too_large)
-    };
-    let regions = Regions::of(&lowering.graph, &field, parameters);
-    let thresholds = regions.as_ref().map_or(Vec::new(), |regions| regions.thresholds.clone());
-    let regions = regions
-        .map(|Regions { graph, results, thresholds }| {
-            schedule(&graph, &results, states, parameters + thresholds.len()).ok_or_else(too_large)
-        })
-        .transpose()?;
-    let switches = TimeSwitches::of(&lowering.graph, &field, &conditions);
-    let events = declarations.events.iter().zip(&conditions).zip(&actions);
-    let events = events
-        .map(|((definition, &condition), actions)| {
-            Ok(Event {
-                place: filled(definition.span.into(), source_lines),
-                direction: definition.direction,
-                condition: compile(&[condition], states)?,
-                actions: actions
-                    .iter()
-                    .map(|&(action, value)| Ok((action, compile(&[value], states)?)))
-                    .collect::<Result<_, OdeError>>()?,
-            })
-        })
-        .collect::<Result<_, OdeError>>()?;
-    let field = compile(&field, states)?;
-    let time =
-        if field.uses_time() { lowering.time.map(|span| filled(span.into(), source_lines)) } else { None };
-    let auxiliary = compile(&auxiliary, states)?;
-    let derivation = compile(&derivation, 0)?;
-    let initial = compile(&initial, 0)?;
-
-    let mut warnings = std::mem::take(&mut declarations.warnings);
-    warnings.append(&mut lowering.warnings);
-    drop(lowering);
-    let sets = std::mem::take(&mut declarations.sets)
-        .iter()
-        .map(|set| named_set(set, &declarations, source_lines))
-        .collect::<Result<_, _>>()?;
-    let mut options = declarations.options;
-    for entry in &mut options.entries {
-        entry.place = filled(entry.place.clone(), source_lines);
-    }
-    let mut warnings: Vec<Warning> =
-        warnings.into_iter().map(|warning| warning.with_source(source_lines)).collect();
-    warnings.sort_by_key(|warning| (warning.place.line, warning.place.column));
-    warnings.dedup();
-
-    let symbols = declarations.symbols;
-    let numbers = symbols
-        .constants
-        .iter()
-        .filter_map(|(name, symbol)| match symbol {
-            Symbol::Number(value) => Some((name.clone(), *value)),
-            _ => None,
-        })
-        .collect();
-    Ok(Model {
-        source: source.to_owned(),
-        states: symbols.states.into_iter().map(|name| name.text).collect(),
-        defaults: declarations.parameters.iter().map(|parameter| parameter.value).collect(),
-        parameter_places: declarations
-            .parameters
-            .iter()
-            .map(|parameter| filled(parameter.name.span.into(), source_lines))
-            .collect(),
-        parameters: declarations.parameters.into_iter().map(|parameter| parameter.name.text).collect(),
-        auxiliaries,
-        left_out,
-        derived: symbols.derived.into_iter().map(|definition| definition.name.text).collect(),
-        functions: symbols.functions.iter().map(|function| function.signature()).collect(),
-        numbers,
-        sets,
-        options,
-        warnings,
-        time,
-        frozen: None,
-        switches,
-        field,
-        regions,
-        thresholds,
-        events,
-        auxiliary,
-        derivation,
-        initial,
-    })
-}
-
-fn filled(mut place: Place, source_lines: &[&str]) -> Place {
-    place.fill(source_lines);
-    place
-}
-
-fn named_set(
-    definition: &SetDefinition,
-    declarations: &Declarations,
-    source_lines: &[&str],
-) -> Result<NamedSet, OdeError> {
-    let mut set = NamedSet {
-        name: definition.name.text.clone(),
-        states: Vec::new(),
-        parameters: Vec::new(),
-        options: Vec::new(),
-    };
-    for (name, value, span) in &definition.entries {
-        let number = || {
-            parse_number(value)
-                .ok_or_else(|| OdeError::syntax(*span, format!("expected a number, found `{value}`")))
-        };
-        match declarations.symbols.names.get(&name.key()) {
-            Some(&Symbol::State(index)) => set.states.push((index, number()?)),
-            Some(&Symbol::Parameter(index)) => set.parameters.push((index, number()?)),
-            _ => set.options.push(OptionEntry {
-                name: name.key(),
-                value: value.clone(),
-                place: filled(name.span.into(), source_lines),
-            }),
-        }
-    }
-    Ok(set)
 }
