@@ -12,7 +12,7 @@ use super::solution::{Bound, Solution};
 
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;
-/// A step back to the start begins this many times that away from it.
+/// A curve has left its start when it has been this many times that away from it.
 const AWAY: f64 = 10.0;
 /// Part of a step to which the place of the start is narrowed down.
 const PLACE: f64 = 1e-9;
@@ -29,6 +29,8 @@ pub(super) struct Closure {
     bounds: Vec<Bound>,
     /// The signature and the bounded parameters.
     signature: Vec<f64>,
+    /// Whether the curve has left it: the first steps may be so short that they do not.
+    has_left: bool,
 }
 
 impl Closure {
@@ -36,7 +38,7 @@ impl Closure {
         let mut signature: Vec<f64> =
             curve.signature(&start.unknown).into_iter().map(|(value, _)| value).collect();
         signature.extend(bounds.iter().map(|bound| bound.value(&start.unknown)));
-        Self { bounds: bounds.to_vec(), signature }
+        Self { bounds: bounds.to_vec(), signature, has_left: false }
     }
 
     /// The signature of a solution less that of the start, in parts of the sizes.
@@ -48,7 +50,7 @@ impl Closure {
 
     /// The solution at which the curve comes back between two consecutive solutions, which are not the first two.
     pub(super) fn reached<C: Curve>(
-        &self,
+        &mut self,
         curve: &mut C,
         current: &Solution<C::Point>,
         advanced: &Solution<C::Point>,
@@ -62,9 +64,14 @@ impl Closure {
             here.min(there) > FAR * settings.largest_parameter_change * bound.width()
         });
         if leads_elsewhere {
+            self.has_left = true;
             return None;
         }
         let [here, there] = [current, advanced].map(|solution| self.beyond(curve, solution));
+        self.has_left |= here.iter().any(|entry| entry.abs() > AWAY * CLOSURE_TOLERANCE);
+        if !self.has_left {
+            return None;
+        }
         let changes: Vec<f64> = here.iter().zip(&there).map(|(here, there)| (there - here).abs()).collect();
         let largest = changes.iter().copied().fold(0.0, f64::max);
         passing(&here, &there).into_iter().take(MOST_COMPONENTS).find_map(|index| {
@@ -87,8 +94,7 @@ fn passing(here: &[f64], there: &[f64]) -> Vec<usize> {
     let change = |index: &usize| (there[*index] - here[*index]).abs();
     let step: f64 = (0..here.len()).map(|index| change(&index).powi(2)).sum();
     let beyond = here.iter().map(|entry| entry * entry).sum::<f64>();
-    // The first steps may be so short that they do not leave the start.
-    if beyond > (FAR * FAR) * step || beyond < (AWAY * AWAY) * (CLOSURE_TOLERANCE * CLOSURE_TOLERANCE) {
+    if beyond > (FAR * FAR) * step {
         return Vec::new();
     }
     let passes = |index: &usize| here[*index] * there[*index] <= 0.0 && change(index) > 0.0;

@@ -296,13 +296,16 @@ fn fix_closely<C: Curve>(
     near.map(|near| fix(curve, &near, &near, from_end, value, settings)).transpose()
 }
 
-/// First bound that `unknown` violates and the end that was passed.
+/// Part of a range by which values beyond its ends may be rounding.
+const ON_END: f64 = 1e-10;
+
+/// First bound that `unknown` violates by more than rounding and the end that was passed: a curve may lie on an end.
 pub(super) fn first_exit(unknown: &[f64], bounds: &[Bound]) -> Option<(usize, f64)> {
     bounds.iter().enumerate().find_map(|(index, bound)| {
-        let value = bound.value(unknown);
-        if value > bound.upper {
+        let (value, margin) = (bound.value(unknown), ON_END * bound.width());
+        if value > bound.upper + margin {
             Some((index, bound.upper))
-        } else if value < bound.lower {
+        } else if value < bound.lower - margin {
             Some((index, bound.lower))
         } else {
             None

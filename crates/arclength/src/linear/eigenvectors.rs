@@ -85,10 +85,20 @@ pub fn right_eigenvector(
         square.sqrt() / size
     };
     let (mut vector, residual) = inverse_iteration(n, |iterate| lu.solve(iterate), residual);
+    drop_rounding(&mut vector);
     vector.iter_mut().zip(&scales).for_each(|(x, scale)| *x *= scale);
     normalize(&mut vector);
     fix_phase(&mut vector);
     Ok(Eigenvector { vector, residual })
+}
+
+/// Puts zeros for the balanced components that are rounding of the largest: where a state has no part in the eigenvector each step of the
+/// iteration leaves less of it, and what is left, however small, would have a sign.
+fn drop_rounding(vector: &mut [Complex64]) {
+    let largest = vector.iter().fold(0.0_f64, |largest, entry| largest.max(entry.norm()));
+    for entry in vector.iter_mut().filter(|entry| entry.norm() < f64::EPSILON * largest) {
+        *entry = Complex64::ZERO;
+    }
 }
 
 /// Scales that balance the matrix. Influences on each other whose product is rounding are none: they would make components of
@@ -206,6 +216,17 @@ pub(super) fn fix_phase(vector: &mut [Complex64]) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_state_without_part_in_the_vector_is_zero_in_it() {
+        // A filter that is driven: its state is no part of the left vector of what drives it, nor what drives it of its own right one.
+        let matrix = [-0.3, 2.0, 0.7, -1.0, 0.3, 0.4, 0.0, 0.0, -1.7];
+        let driving = Complex64::new(0.0, (2.0_f64 - 0.09).sqrt());
+        let left = left_eigenvector(&matrix, 3, driving).expect("finite").vector;
+        assert_eq!(left[2], Complex64::ZERO);
+        let right = right_eigenvector(&matrix, 3, (-1.7).into()).expect("finite").vector;
+        assert_eq!(right[..2], [Complex64::ZERO; 2]);
+    }
 
     #[test]
     fn couplings_at_rounding_do_not_spoil_the_vector() {

@@ -80,7 +80,7 @@ impl LocusPoint {
             frequency: monitor.frequency,
             first_lyapunov: monitor.first_lyapunov,
             label,
-            tests: monitor.tests.iter().map(|(kind, value)| (kind.label().into(), *value)).collect(),
+            tests: monitor.tests.iter().map(|(kind, reading)| (kind.label().into(), reading.value)).collect(),
             monitors: Vec::new(),
             special,
         }

@@ -70,7 +70,7 @@ impl Curve for LocusCurve<'_> {
     }
 
     fn test(&self, kind: SpecialKind, solution: &Solution<EquilibriumLocusInspection>) -> Option<Reading> {
-        solution.point.monitor.test(kind).map(Reading::exact)
+        solution.point.monitor.reading(kind)
     }
 
     fn spectrum(&self, solution: &Solution<EquilibriumLocusInspection>) -> events::Spectrum {

@@ -103,14 +103,15 @@ impl<'a> LocusKind<'a> for HeldSystem<'a> {
     fn monitor(&mut self, point: &Linearized<'_>) -> Result<Monitor, Error> {
         self.fastest = point.eigenvalues.iter().map(|value| value.norm()).fold(self.fastest, f64::max);
         let zero = zero_test(point.eigenvalues, self.fastest);
-        let mut tests = vec![(SpecialKind::Fold, if zero.is_nan() { 0.0 } else { zero })];
+        let mut monitor = Monitor::default();
+        monitor.add(SpecialKind::Fold, if zero.is_nan() { 0.0 } else { zero });
         let pairs = HopfTest::of_one_block(point.eigenvalues);
         if point.scales.len() > 1 {
             // The secant method may hit the point itself.
             let value = if pairs.undecided == 0 { pairs.closest.copysign(pairs.product) } else { 0.0 };
-            tests.push((SpecialKind::Hopf, value));
+            monitor.add(SpecialKind::Hopf, value);
         }
-        Ok(Monitor { tests, frequency: None, first_lyapunov: None })
+        Ok(monitor)
     }
 
     fn critical_eigenvalues(&self, _unknown: &[f64]) -> Vec<Complex64> {

@@ -3,7 +3,7 @@
 use super::gauge::{PlaneGauge, combine, rewrite_vector};
 use crate::algebraic::length;
 use crate::branch::SpecialKind;
-use crate::continuation::events::TestFunction;
+use crate::continuation::events::{Reading, TestFunction};
 use crate::equilibrium::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use crate::equilibrium::hopf::CriticalPair;
 use crate::equilibrium::locating::normals;
@@ -19,6 +19,8 @@ const VECTOR_WEIGHT: f64 = 10.0;
 /// The vectors that span the critical plane are chosen anew when the Jacobian turns the first one this much less than it
 /// turns the best of the candidates.
 const SMALLEST_TURN: f64 = 0.5;
+/// Part of the terms of the first Lyapunov coefficient below which their sum may be rounding.
+const CANCELLATION: f64 = 1e-10;
 /// Candidates.
 const ANGLES: usize = 32;
 
@@ -36,7 +38,7 @@ pub(super) struct Linearized<'u> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Monitor {
     /// Test functions that are defined here, by what happens where they change sign.
-    pub tests: Vec<(SpecialKind, f64)>,
+    pub tests: Vec<(SpecialKind, Reading)>,
     pub frequency: Option<f64>,
     pub first_lyapunov: Option<f64>,
 }
@@ -44,7 +46,16 @@ pub(super) struct Monitor {
 impl Monitor {
     /// The value of a test function, where it is defined.
     pub(super) fn test(&self, kind: SpecialKind) -> Option<f64> {
-        self.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, value)| *value)
+        self.reading(kind).map(|reading| reading.value)
+    }
+
+    /// The same with what may be rounding of it.
+    pub(super) fn reading(&self, kind: SpecialKind) -> Option<Reading> {
+        self.tests.iter().find(|(candidate, _)| *candidate == kind).map(|(_, reading)| *reading)
+    }
+
+    pub(super) fn add(&mut self, kind: SpecialKind, value: f64) {
+        self.tests.push((kind, Reading::exact(value)));
     }
 }
 
@@ -168,25 +179,35 @@ impl<'a> LocusKind<'a> for FoldSystem<'a> {
         let curvature = forms.real(&[vector, vector]);
         let vector_size = length(vector, point.scales);
         let terms = inner(&left, &curvature) / (vector_size * vector_size);
-        let largest = point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
-        let quadratic = if largest > 0.0 { terms / largest } else { terms };
+        // A single eigenvalue is zero here.
+        let rate =
+            if n > 1 { point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max) } else { 0.0 };
+        let quadratic = if rate > 0.0 { terms / rate } else { terms };
         let double = inner(&left, vector) / vector_size;
         let rest = without(point.eigenvalues, &[Complex64::ZERO]);
-        let mut tests = vec![(SpecialKind::Cusp, quadratic)];
+        let mut monitor = Monitor::default();
+        monitor.add(SpecialKind::Cusp, quadratic);
         if n > 1 {
-            tests.push((SpecialKind::BogdanovTakens, double));
+            monitor.add(SpecialKind::BogdanovTakens, double);
         }
         let pairs = HopfTest::of_one_block(&rest);
         if n > 2 && pairs.undecided == 0 {
-            tests.push((SpecialKind::ZeroHopf, pairs.closest.copysign(pairs.product)));
+            monitor.add(SpecialKind::ZeroHopf, pairs.closest.copysign(pairs.product));
         }
         self.left = left;
-        Ok(Monitor { tests, frequency: None, first_lyapunov: None })
+        Ok(monitor)
     }
 
     fn critical_eigenvalues(&self, _unknown: &[f64]) -> Vec<Complex64> {
         vec![Complex64::ZERO]
     }
+}
+
+/// Largest entry of the Jacobian in units of the states: not zero where all eigenvalues are.
+fn scaled_norm(point: &Linearized<'_>) -> f64 {
+    let n = point.scales.len();
+    let entry = |index: usize| point.matrix[index] * point.scales[index / n] / point.scales[index % n];
+    (0..n * n).map(|index| entry(index).abs()).fold(0.0, f64::max)
 }
 
 /// Inner product of covectors.
@@ -205,7 +226,7 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
                 TestFunction::new(SpecialKind::BogdanovTakens).changing(&[0]),
                 TestFunction::new(SpecialKind::ZeroHopf).changing(&[1]).of_spectrum(),
                 TestFunction::new(SpecialKind::HopfHopf).changing(&[0, 2]).of_spectrum(),
-                TestFunction::new(SpecialKind::GeneralizedHopf).changing(&[0]),
+                TestFunction::new(SpecialKind::GeneralizedHopf).changing(&[0]).partial(),
             ]
         }
     }
@@ -271,7 +292,8 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
         let n = point.scales.len();
         let kappa = point.unknown[3 * n];
         let largest = point.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
-        let mut monitor = Monitor { tests: vec![(SpecialKind::BogdanovTakens, kappa)], ..Monitor::default() };
+        let mut monitor = Monitor::default();
+        monitor.add(SpecialKind::BogdanovTakens, kappa);
         if kappa <= 0.0 {
             return Ok(monitor);
         }
@@ -279,25 +301,28 @@ impl<'a> LocusKind<'a> for HopfSystem<'a> {
         monitor.frequency = Some(frequency);
         let rest = without(point.eigenvalues, &self.critical_eigenvalues(point.unknown));
         if n > 2 {
-            monitor.tests.push((SpecialKind::ZeroHopf, zero_test(&rest, largest)));
+            monitor.add(SpecialKind::ZeroHopf, zero_test(&rest, largest));
         }
         let pairs = HopfTest::of_one_block(&rest);
         if n > 3 && pairs.undecided == 0 {
-            monitor.tests.push((SpecialKind::HopfHopf, pairs.closest.copysign(pairs.product)));
+            monitor.add(SpecialKind::HopfHopf, pairs.closest.copysign(pairs.product));
         }
         let parameters = self.equilibria.parameters_at(&point.unknown[3 * n + 1..]);
         let state = &point.unknown[..n];
         let local = CriticalPair::at(self.equilibria.field, state, &parameters, frequency, point.scales)?;
-        if let Some((value, _)) = local.first_lyapunov() {
+        if let Some((value, size)) = local.first_lyapunov() {
             monitor.first_lyapunov = Some(value);
-            // With the eigenvector of unit length in the metric, so that units do not matter.
+            // With the eigenvector of unit length in the metric, so that units do not matter; and without the pole that the coefficient has
+            // at a zero-Hopf point.
             let square = local
                 .right
                 .iter()
                 .zip(point.scales)
                 .map(|(entry, scale)| (entry / scale).norm_sqr())
                 .sum::<f64>();
-            monitor.tests.push((SpecialKind::GeneralizedHopf, value / square));
+            let factor = zero_test(&rest, largest) / square;
+            let reading = Reading::exact(factor * value).with_noise(CANCELLATION * (factor * size).abs());
+            monitor.tests.push((SpecialKind::GeneralizedHopf, reading));
         }
         Ok(monitor)
     }
@@ -358,13 +383,13 @@ impl<'a> LocusKind<'a> for BranchPointSystem<'a> {
         let rest = without(point.eigenvalues, &[Complex64::ZERO]);
         let mut monitor = Monitor::default();
         if n > 1 {
-            monitor.tests.push((SpecialKind::BogdanovTakens, zero_test(&rest, largest)));
+            monitor.add(SpecialKind::BogdanovTakens, zero_test(&rest, largest.max(scaled_norm(point))));
         }
         let pairs = HopfTest::of_one_block(&rest);
         if n > 2 {
             // The secant method may hit the point itself.
             let value = if pairs.undecided == 0 { pairs.closest.copysign(pairs.product) } else { 0.0 };
-            monitor.tests.push((SpecialKind::ZeroHopf, value));
+            monitor.add(SpecialKind::ZeroHopf, value);
         }
         Ok(monitor)
     }

@@ -60,7 +60,7 @@ pub(super) fn codimension_two(
                         *own = own.and(frequencies.first().copied());
                         // Where eigenvalues are on the axis their test function may be undefined; its limit is zero.
                         if here.point.monitor.test(kind).is_none() {
-                            here.point.monitor.tests.push((kind, 0.0));
+                            here.point.monitor.add(kind, 0.0);
                         }
                         return Ok(Some(complete(curve, here, unknown, error, kind, true)?));
                     }

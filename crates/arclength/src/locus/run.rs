@@ -42,6 +42,28 @@ pub enum EquilibriumLocusStart {
     Held(Held<[f64]>, Vec<f64>, Vec<f64>),
 }
 
+impl EquilibriumLocusStart {
+    /// What the curve consists of; `None` for any equilibria.
+    fn kind(&self) -> Option<SpecialKind> {
+        match self {
+            Self::Fold(_) => Some(SpecialKind::Fold),
+            Self::Hopf(_) => Some(SpecialKind::Hopf),
+            Self::BranchPoint(_) => Some(SpecialKind::BranchPoint),
+            Self::Held(..) => None,
+        }
+    }
+
+    /// The state and all parameters.
+    fn equilibrium(&self) -> (&[f64], &[f64]) {
+        match self {
+            Self::Fold(point) => (&point.state, &point.parameters),
+            Self::Hopf(point) => (&point.state, &point.parameters),
+            Self::BranchPoint(point) => (&point.state, &point.parameters),
+            Self::Held(_, state, parameters) => (state, parameters),
+        }
+    }
+}
+
 impl Problem for Option<EquilibriumLocusStart> {
     type Point = LocusPoint;
 
@@ -141,28 +163,40 @@ impl<'a> EquilibriumLocus<'a> {
                 "a fold, a Hopf point, a branch point or an equilibrium with a held quantity",
             )
         })?;
-        let (kind, state, parameters) = match &start {
-            EquilibriumLocusStart::Fold(point) => (Some(SpecialKind::Fold), &point.state, &point.parameters),
-            EquilibriumLocusStart::Hopf(point) => (Some(SpecialKind::Hopf), &point.state, &point.parameters),
-            EquilibriumLocusStart::BranchPoint(point) => {
-                (Some(SpecialKind::BranchPoint), &point.state, &point.parameters)
-            }
-            EquilibriumLocusStart::Held(_, state, parameters) => (None, state, parameters),
-        };
+        let (state, parameters) = start.equilibrium();
         let n = self.field.dimension();
         let names = self.field.parameter_names();
         check_length("state of the start", state, n, "the dimension of the field")?;
         check_length("parameters of the start", parameters, names.len(), "the number of parameters")?;
         let asked = TwoParameters::checked(&active, &bounds, &names, parameters)?;
-        // The branch point's own parameter is the one along which the branches cross.
+        // The branch point's own parameter is the one along which the branches cross; where it is not varied one of the two is, and
+        // they may not cross along the other.
         let own = match &start {
             EquilibriumLocusStart::BranchPoint(point) => Some(point.active),
             _ => None,
         };
-        let ordered = if own == Some(asked.active[1]) { asked.swapped() } else { asked };
-        let run = Run { field: self.field, parameters: parameters.clone(), ordered, settings: self.settings };
+        match own {
+            Some(own) if own == asked.active[1] => self.run_in_order(&start, asked.swapped(), &active),
+            Some(own) if own != asked.active[0] => self
+                .run_in_order(&start, asked, &active)
+                .or_else(|_| self.run_in_order(&start, asked.swapped(), &active)),
+            _ => self.run_in_order(&start, asked, &active),
+        }
+    }
 
-        let Continuation { at, monitors, observer: told, settings, .. } = &mut self;
+    /// Follows the curve with the parameters in an order.
+    fn run_in_order(
+        &mut self,
+        start: &EquilibriumLocusStart,
+        ordered: TwoParameters,
+        active: &[usize],
+    ) -> Result<EquilibriumLocusBranch, Error> {
+        let (state, parameters) = start.equilibrium();
+        let n = state.len();
+        let run =
+            Run { field: self.field, parameters: parameters.to_vec(), ordered, settings: self.settings };
+
+        let Continuation { at, monitors, observer: told, settings, .. } = self;
         let bare = |solution: &Solution<EquilibriumLocusInspection>| {
             LocusPoint::new(solution, None, (n, ordered.swapped))
         };
@@ -174,12 +208,12 @@ impl<'a> EquilibriumLocus<'a> {
         };
         let request = request(&ordered.bounds, at, monitors, *settings, &bare);
         let mut observe = observer(told.as_mut().map(|told| &mut **told as _), &point);
-        let mut followed = run.from(&start, state, &request, &mut *observe)?;
+        let mut followed = run.from(start, state, &request, &mut *observe)?;
         drop(observe);
         followed.mark_requested(at, |solution| ordered.bounds[0].value(&solution.unknown));
         let place = (&run.parameters[..], &active[..]);
         let branch = Branch::assemble(&run.field, place, followed, |solution, label| point(&solution, label));
-        Ok(Branch { kind, ..branch })
+        Ok(Branch { kind: start.kind(), ..branch })
     }
 }
 

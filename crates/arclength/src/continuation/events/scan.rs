@@ -14,6 +14,8 @@ use crate::continuation::solution::Bound;
 use crate::continuation::{Curve, Settings, Solution};
 use crate::error::Error;
 
+/// Part of a step in which a test function may begin or cease to be defined without the step being divided.
+const DEFINED: f64 = 1e-2;
 /// A step is divided at these parts of the fraction where the fraction itself gives a special point.
 const ASIDE: [f64; 3] = [0.8, 0.9, 0.7];
 /// Part of a step below which it is not divided any further while two kinds that may be one point are not separated.
@@ -125,6 +127,9 @@ impl<'s, C: Curve> Scan<'s, C> {
             let most = [single.iter().sum(), pairs.iter().sum()];
             suspicious(self.curve, [before, after], length, self.memory, (most, self.settings))
         };
+        let divide = divide.or_else(|| {
+            (share > DEFINED && self.begins_or_ceases([before, after])).then(|| Suspicion::at(0.5))
+        });
         let smallest =
             if self.is_one_point(&changed) { COINCIDENT_PART } else { self.settings.smallest_part };
         if let Some(Suspicion { place, is_kink }) = divide {
@@ -156,6 +161,13 @@ impl<'s, C: Curve> Scan<'s, C> {
             }
         }
         Ok(())
+    }
+
+    /// Whether a test function is defined at one of two solutions only.
+    fn begins_or_ceases(&self, [before, after]: [&Node<C>; 2]) -> bool {
+        let tests = self.curve.test_functions();
+        let mut pairs = tests.iter().zip(before.readings.iter().zip(&after.readings));
+        pairs.any(|(test, (one, other))| test.is_partial && one.is_some() != other.is_some())
     }
 
     /// Whether a quantity that comes to zero and turns back at once, still in this `share` of a step, shows that the step led over to

@@ -17,12 +17,22 @@ pub struct TestFunction<K: 'static> {
     pub is_turn: bool,
     /// Whether it is the orientation of the curve, which changes at every simple branch point and nowhere else.
     pub is_orientation: bool,
+    /// Whether it is undefined on some stretches, at whose ends it may have any value.
+    pub is_partial: bool,
 }
 
 impl<K: Copy> TestFunction<K> {
     /// A test function of which nothing but its sign is known.
     pub const fn new(kind: K) -> Self {
-        Self { kind, changes: &[], absorbs: &[], of_spectrum: false, is_turn: false, is_orientation: false }
+        Self {
+            kind,
+            changes: &[],
+            absorbs: &[],
+            of_spectrum: false,
+            is_turn: false,
+            is_orientation: false,
+            is_partial: false,
+        }
     }
 
     /// The same with the changes of the number of unstable directions that its points allow.
@@ -43,6 +53,12 @@ impl<K: Copy> TestFunction<K> {
     /// The same for the orientation of the curve.
     pub const fn orienting(self) -> Self {
         Self { is_orientation: true, ..self }
+    }
+
+    /// The same for a function that is not defined everywhere: a step in which it begins or ceases to be is divided, lest a zero next to
+    /// that place be lost.
+    pub const fn partial(self) -> Self {
+        Self { is_partial: true, ..self }
     }
 
     /// The same for the rate of change of the first bounded parameter.

@@ -390,6 +390,10 @@ impl Curve for CycleLocusCurve<'_> {
         let angle = angle.min(TAU - angle);
         let multipliers: Vec<Complex64> =
             floquet.nontrivial.iter().map(|multiplier| multiplier.to_complex()).collect();
+        if !monitor::is_critical(kind, &multipliers, floquet.trivial_error) {
+            let cause = CorrectionFailure::Diverged;
+            return Err(Error::NotFound { sought: "cycle with the multiplier of the curve", cause });
+        }
         Ok(CycleLocusInspection {
             error_estimate: self.error_estimate,
             extremes: extremes(&self.base, base, self.states),

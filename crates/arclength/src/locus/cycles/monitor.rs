@@ -151,7 +151,7 @@ pub(super) fn test_functions(kind: Kind) -> &'static [TestFunction<SpecialKind>]
         TestFunction::new(SpecialKind::PeriodDoublingTorus).changing(&[0, 2]).of_spectrum(),
     ];
     const TORUS: &[TestFunction<SpecialKind>] = &[
-        TestFunction::new(SpecialKind::Chenciner).changing(&[0]),
+        TestFunction::new(SpecialKind::Chenciner).changing(&[0]).partial(),
         TestFunction::new(SpecialKind::Resonance3).changing(&[0]),
         TestFunction::new(SpecialKind::Resonance4).changing(&[0]),
         TestFunction::new(SpecialKind::FoldTorus).changing(&[1]).of_spectrum(),
@@ -212,6 +212,23 @@ pub(super) fn is_genuine(sought: SpecialKind, kind: Kind, multipliers: &[Complex
     on_circle.count() > usize::from(kind == Kind::Torus)
 }
 
+/// Whether one of the multipliers that are not trivial is the one that the curve is about: next to a homoclinic orbit the equations of a
+/// curve may be solved, within their tolerance, by cycles that are none of its.
+pub(super) fn is_critical(kind: Kind, multipliers: &[Complex64], trivial_error: f64) -> bool {
+    let target = match kind {
+        Kind::Fold => 1.0,
+        Kind::Doubling => -1.0,
+        Kind::Torus | Kind::BranchPoint | Kind::Cycle => return true,
+    };
+    let nearest = multipliers.iter().map(|value| (value - target).norm()).fold(f64::INFINITY, f64::min);
+    let tolerance = if multipliers.len() > 1 { CRITICAL_BESIDE_OTHERS } else { CRITICAL };
+    nearest < tolerance.max(trivial_error.sqrt())
+}
+
+/// Distance from its target within which a multiplier is the critical one, where it is the only one that is not trivial, and where others
+/// may come near to it: of three that meet each is known to the third root of its error.
+const CRITICAL: f64 = 1e-3;
+const CRITICAL_BESIDE_OTHERS: f64 = 1e-2;
 /// Distance of the argument from that of a strong resonance within which a point counts as next to it.
 pub(super) const NEXT_TO: f64 = 1e-2;
 /// Logarithm of the modulus of a multiplier below which it is not decided on which side of the unit circle it is: next to another
