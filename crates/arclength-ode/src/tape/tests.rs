@@ -9,8 +9,7 @@ use arclength::Dual;
 /// The sum of `states` states, times a parameter, plus a half; and the first state over the last.
 fn tape(states: usize) -> Tape {
     let mut graph = Graph::default();
-    let all: Vec<NodeId> =
-        (0..states).map(|index| graph.insert(Operation::State(index as u32))).collect();
+    let all: Vec<NodeId> = (0..states).map(|index| graph.insert(Operation::State(index as u32))).collect();
     let sum = all[1..].iter().fold(all[0], |sum, &state| graph.binary(Add, sum, state));
     let parameter = graph.insert(Operation::Parameter(0));
     let half = graph.constant(0.5);
