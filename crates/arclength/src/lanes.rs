@@ -163,6 +163,33 @@ mod tests {
         assert_eq!(a.minus::<false>(a, b), a - a * b);
     }
 
+    /// Divides numbers by their index plus one, four at a time and the rest one by one, in place.
+    struct DividedByPlace<'a>(&'a mut Vec<f64>);
+
+    impl Kernel for DividedByPlace<'_> {
+        type Output = usize;
+        #[inline(always)]
+        fn run<const FUSED: bool>(self) -> usize {
+            let (vectors, rest) = self.0.as_chunks_mut::<4>();
+            for (index, numbers) in vectors.iter_mut().enumerate() {
+                let first = (4 * index) as f64;
+                *numbers = (Lanes(*numbers) / Lanes([1.0, 2.0, 3.0, 4.0].map(|place| first + place))).0;
+            }
+            let done = 4 * vectors.len();
+            rest.iter_mut().enumerate().for_each(|(index, number)| *number /= (done + index + 1) as f64);
+            done + rest.len()
+        }
+    }
+
+    #[test]
+    fn a_kernel_writes_through_what_it_borrows() {
+        for count in [0, 3, 4, 11] {
+            let mut numbers: Vec<f64> = (1..=count).map(|index| 2.0 * f64::from(index)).collect();
+            assert_eq!(run(DividedByPlace(&mut numbers)), numbers.len());
+            assert!(numbers.iter().all(|number| *number == 2.0), "{numbers:?}");
+        }
+    }
+
     /// The error of a product, which only a fused operation shows.
     struct RoundingError(f64);
 

@@ -9,6 +9,8 @@ mod registers;
 mod schedule;
 mod selection;
 mod special;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use instruction::{apply_binary, apply_unary};
 pub(crate) use schedule::{MAXIMUM_REGISTERS, schedule};

@@ -97,3 +97,29 @@ impl<T: Copy> Registers<T, u16> for Vec<T> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_register_on_the_stack_holds_what_was_written() {
+        for count in 0..=7 {
+            // SAFETY: of the eight registers each is read after it was written.
+            let mut registers = unsafe { Stack::<f64, 8>::new() };
+            let values: Vec<f64> = (0..count).map(f64::from).collect();
+            registers.load(0, &values, |value| value);
+            registers.write(7, 10.0);
+            assert!(values.iter().enumerate().all(|(index, value)| registers.read(index as u8) == *value));
+            assert_eq!(registers.read(7), 10.0);
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "range")]
+    fn more_than_there_is_room_for_is_not_loaded() {
+        // SAFETY: nothing is read.
+        let mut registers = unsafe { Stack::<f64, 8>::new() };
+        registers.load(5, &[1.0; 4], |value| value);
+    }
+}

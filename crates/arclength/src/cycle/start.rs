@@ -90,31 +90,7 @@ impl From<&HopfPoint> for CycleStart {
 }
 
 impl HopfPoint {
-    /// The cycles of the field that are born here.
-    ///
-    /// ```
-    /// use arclength::equilibrium::Equilibria;
-    /// use arclength::{Scalar, VectorField};
-    ///
-    /// /// x' = rho x - y - x (x^2 + y^2), y' = x + rho y - y (x^2 + y^2): circles of radius sqrt(rho).
-    /// struct Circle;
-    /// impl VectorField for Circle {
-    ///     fn state_names(&self) -> Vec<String> { vec!["x".into(), "y".into()] }
-    ///     fn parameter_names(&self) -> Vec<String> { vec!["rho".into()] }
-    ///     fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
-    ///         let growth = p[0] - s[0] * s[0] - s[1] * s[1];
-    ///         d[0] = growth * s[0] - s[1];
-    ///         d[1] = s[0] + growth * s[1];
-    ///     }
-    /// }
-    ///
-    /// let equilibria = Equilibria::of(&Circle).parameters(&[-1.0]).along("rho", -1.0..=1.0).run()?;
-    /// let hopf = equilibria.hopf_points().next().expect("a Hopf point");
-    /// let branch = hopf.cycles(&Circle).along("rho", 0.0..=1.0).at(&[0.25]).run()?;
-    /// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).unwrap();
-    /// assert!((quarter.max[0] - 0.5).abs() < 1e-8);
-    /// # Ok::<(), arclength::Error>(())
-    /// ```
+    /// The cycles of the field that are born here; see the example of [`Cycles`].
     pub fn cycles<'a, F: VectorField>(&self, field: &'a F) -> Cycles<'a> {
         Cycles::of(field, CycleStart::from(self)).parameters(&self.parameters)
     }
@@ -162,9 +138,8 @@ type FollowedCycles = Followed<CycleInspection, SpecialKind, CycleEnd>;
 /// A branch of limit cycles to be followed.
 ///
 /// ```
-/// use arclength::cycle::{CycleStart, Cycles};
+/// use arclength::equilibrium::Equilibria;
 /// use arclength::{Scalar, VectorField};
-/// use num_complex::Complex64;
 ///
 /// /// x' = rho x - y - x (x^2 + y^2), y' = x + rho y - y (x^2 + y^2): circles of radius sqrt(rho).
 /// struct Circle;
@@ -178,16 +153,10 @@ type FollowedCycles = Followed<CycleInspection, SpecialKind, CycleEnd>;
 ///     }
 /// }
 ///
-/// let half = 0.5_f64.sqrt();
-/// let start = CycleStart::Hopf {
-///     state: vec![0.0; 2],
-///     frequency: 1.0,
-///     eigenvector: vec![Complex64::new(half, 0.0), Complex64::new(0.0, -half)],
-///     crossing_speed: 1.0,
-///     cubic_coefficient: -1.0,
-/// };
-/// let branch = Cycles::of(&Circle, start).parameters(&[0.0]).along("rho", 0.0..=1.0).at(&[0.25]).run()?;
-/// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).unwrap();
+/// let equilibria = Equilibria::of(&Circle).parameters(&[-1.0]).along("rho", -1.0..=1.0).run()?;
+/// let hopf = equilibria.hopf_points().next().expect("a Hopf point");
+/// let branch = hopf.cycles(&Circle).along("rho", 0.0..=1.0).at(&[0.25]).run()?;
+/// let quarter = branch.points.iter().find(|cycle| cycle.value == 0.25).expect("asked for");
 /// assert!((quarter.max[0] - 0.5).abs() < 1e-8);
 /// assert_eq!(quarter.stable, Some(true));
 /// # Ok::<(), arclength::Error>(())
