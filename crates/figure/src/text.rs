@@ -19,6 +19,8 @@ const DESCENDER_DEPTH: f64 = 0.2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlacedGlyph {
     pub glyph: Glyph,
+    /// What it shows.
+    pub character: char,
     pub at: Point,
     pub size: f64,
 }
@@ -63,6 +65,22 @@ impl TextLayout {
         layout
     }
 
+    /// What it says, without its form.
+    pub(crate) fn plain(source: &str) -> String {
+        fn add(pieces: &[Piece], text: &mut String) {
+            for piece in pieces {
+                match piece {
+                    Piece::Character(character) => text.push(*character),
+                    Piece::Space(_) => {}
+                    Piece::Scripts { lower, upper } => [lower, upper].iter().for_each(|part| add(part, text)),
+                }
+            }
+        }
+        let mut text = String::new();
+        add(&parse(source), &mut text);
+        text
+    }
+
     pub(crate) fn height(&self) -> f64 {
         self.ascent + self.descent
     }
@@ -93,7 +111,12 @@ fn set(pieces: &[Piece], size: f64, start: Point, font: Font, layout: &mut TextL
         match piece {
             Piece::Character(character) => {
                 let glyph = font.glyph(*character);
-                layout.glyphs.push(PlacedGlyph { glyph, at: Point::new(x, start.y), size });
+                layout.glyphs.push(PlacedGlyph {
+                    glyph,
+                    character: *character,
+                    at: Point::new(x, start.y),
+                    size,
+                });
                 x += glyph.advance() * scale;
                 layout.ascent = layout.ascent.max(CAPITAL_HEIGHT * size - start.y);
                 // Digits and capitals have no descender; a label of those alone is centred better without one.
