@@ -129,7 +129,7 @@ impl Frame {
                         columns: 1,
                         rows: 256,
                         pixels: (0..256).map(pixel).collect(),
-                        is_scale: true,
+                        is_scale: map.map.has_own_paper(),
                     },
                 })
             }

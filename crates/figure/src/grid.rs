@@ -162,7 +162,7 @@ impl HeatMap {
 
     pub(crate) fn raster(&self, x: &Scale, y: &Scale) -> Raster {
         let scale = self.value_scale();
-        self.grid.raster(x, y, true, |index| {
+        self.grid.raster(x, y, self.map.has_own_paper(), |index| {
             let value = self.values[index];
             value.is_finite().then(|| self.map.at(scale.fraction(value)))
         })

@@ -78,7 +78,7 @@ pub(crate) struct Raster {
     pub rows: usize,
     /// Red, green, blue and opacity of each pixel, row by row.
     pub pixels: Vec<[u8; 4]>,
-    /// Whether its colours mean values.
+    /// Whether its colours are the same on any paper.
     pub is_scale: bool,
 }
 

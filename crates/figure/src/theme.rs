@@ -52,7 +52,7 @@ impl Theme {
         Color { rgb, ..color }
     }
 
-    /// A scene in this theme. Colours that mean values, as those of heat maps, stay.
+    /// A scene in this theme. The colours of heat maps stay, but for those that begin with the colour of the paper.
     pub(crate) fn apply(self, scene: &mut Scene) {
         if self == Self::Light {
             return;
