@@ -251,7 +251,7 @@ test("pictures and numbers are saved, of the page's own plots too, and undo is a
   assert.match(String(svg.contents), /^<svg [^]*<title>[^]*<desc>Horizontal axis: alpha/);
   const csv = await saved(page, page.getByLabel("Save cycles.json"), "csv");
   assert.equal(csv.name, "cycles.csv");
-  assert.match(String(csv.contents), /^value,/);
+  assert.match(String(csv.contents), /^label,value,period,/);
   await page.locator("#steps li[data-step='cycles.json'] button.label", { hasText: "PD1" }).click();
   const plane = await saved(page, page.getByLabel("Save the phase plane"), "png");
   assert.deepEqual([...plane.contents.subarray(1, 4)], [...Buffer.from("PNG")]);

@@ -98,7 +98,9 @@ fn a_diagram_says_where_its_axes_are() {
     // A part of it, on dark paper, with text.
     let request = json!({"results": ["equilibria.json"], "states": ["y"], "format": "svg", "window": {"x": [-0.5, 0.25]}, "dark": true, "text": true});
     let part = server.post("/api/diagram", &json!({"request": request, "files": files})).body;
-    assert!(part.contains("from -0.5 to 0.25") && part.contains("fill=\"#16181a\"") && part.contains("</text>"));
+    assert!(
+        part.contains("from -0.5 to 0.25") && part.contains("fill=\"#16181a\"") && part.contains("</text>")
+    );
 }
 
 #[test]
