@@ -22,7 +22,7 @@ after(async () => {
 
 /** Presses a label in a diagram and chooses what starts there. */
 async function start(opened, label, title) {
-  await opened.page.locator(`.target[data-label="${label}"]`).first().press("Enter");
+  await opened.page.locator(`.target[data-label="${label}"]`).first().click();
   await opened.page.locator("dialog").getByRole("button", { name: title, exact: true }).click();
   await opened.settled();
 }
