@@ -70,7 +70,7 @@ impl TextLayout {
         fn add(pieces: &[Piece], text: &mut String) {
             for piece in pieces {
                 match piece {
-                    Piece::Character(character) => text.push(*character),
+                    Piece::Character(character) => text.push(upright(*character)),
                     Piece::Space(_) => {}
                     Piece::Scripts { lower, upper } => [lower, upper].iter().for_each(|part| add(part, text)),
                 }
@@ -101,6 +101,20 @@ impl TextLayout {
     pub(crate) fn bounds(&self, origin: Point) -> Rect {
         Rect::new(origin.x, origin.y - self.ascent, origin.x + self.width, origin.y + self.descent)
     }
+}
+
+/// The letter that an italic letter of mathematics is, as it is searched and read aloud.
+fn upright(character: char) -> char {
+    let code = u32::from(character);
+    let letter = match code {
+        0x1D434..=0x1D44D => code - 0x1D434 + u32::from('A'),
+        0x1D44E..=0x1D467 => code - 0x1D44E + u32::from('a'),
+        0x210E => u32::from('h'),
+        0x1D6E2..=0x1D6FA => code - 0x1D6E2 + u32::from('Α'),
+        0x1D6FC..=0x1D714 => code - 0x1D6FC + u32::from('α'),
+        _ => code,
+    };
+    char::from_u32(letter).unwrap_or(character)
 }
 
 /// Sets pieces from `start` on and returns the horizontal position after them.
@@ -148,6 +162,13 @@ mod tests {
         let wide = TextLayout::new("velocity", 10.0);
         assert!(wide.width > 3.0 * narrow.width);
         assert!((TextLayout::new("velocity", 20.0).width - 2.0 * wide.width).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_a_label_says_is_plain() {
+        assert_eq!(TextLayout::plain("$v$ (m/s)"), "v (m/s)");
+        assert_eq!(TextLayout::plain("$\\psi_0$"), "ψ0");
+        assert_eq!(TextLayout::plain("$\\Omega h$"), "Ωh");
     }
 
     #[test]
