@@ -15,7 +15,7 @@ use crate::geometry::Point;
 use crate::path::{Path, Segment};
 use crate::png::encode;
 use crate::scene::{Item, Scene, Stroke};
-use crate::text::TextLayout;
+use crate::text::{PlacedGlyph, TextLayout, upright};
 
 /// Steps per point on the page.
 const PAGE_STEPS: f64 = 100.0;
@@ -198,9 +198,13 @@ fn runs(body: &mut String, layout: &TextLayout, halo: Option<f64>) {
 
 /// The same as text: every character stands where its glyph would.
 fn texts(body: &mut String, layout: &TextLayout, halo: Option<f64>) {
-    for run in layout.glyphs.chunk_by(|a, b| a.size == b.size && a.at.y == b.at.y) {
+    let is_italic = |placed: &PlacedGlyph| upright(placed.character) != placed.character;
+    let alike = |a: &PlacedGlyph, b: &PlacedGlyph| {
+        a.size == b.size && a.at.y == b.at.y && is_italic(a) == is_italic(b)
+    };
+    for run in layout.glyphs.chunk_by(alike) {
         let places: Vec<String> = run.iter().map(|placed| number(placed.at.x)).collect();
-        let characters: String = run.iter().map(|placed| placed.character).collect();
+        let characters: String = run.iter().map(|placed| upright(placed.character)).collect();
         push(
             body,
             format_args!(
@@ -210,6 +214,9 @@ fn texts(body: &mut String, layout: &TextLayout, halo: Option<f64>) {
                 places.join(" ")
             ),
         );
+        if is_italic(&run[0]) {
+            body.push_str(" font-style=\"italic\"");
+        }
         if let Some(width) = halo {
             // It is said once, by the text itself.
             push(body, format_args!(" stroke-width=\"{}\" aria-hidden=\"true\"", number(2.0 * width)));

@@ -104,7 +104,7 @@ impl TextLayout {
 }
 
 /// The letter that an italic letter of mathematics is, as it is searched and read aloud.
-fn upright(character: char) -> char {
+pub(crate) fn upright(character: char) -> char {
     let code = u32::from(character);
     let letter = match code {
         0x1D434..=0x1D44D => code - 0x1D434 + u32::from('A'),

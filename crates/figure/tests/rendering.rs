@@ -216,7 +216,12 @@ fn labels_are_text_where_that_is_asked_for() {
     assert!(outlines.contains("<title>a curve</title>") && outlines.contains("HB1 at (1, 2)"));
     let options = SvgOptions { text: true, fluid: true };
     let text = figure.to_svg_with(options).unwrap();
-    assert!(text.contains(">HB1</text>") && text.contains(">angle</text>") && !text.contains("<use"));
+    assert!(
+        text.contains(">HB1</text>")
+            && text.contains(">angle</text>")
+            && text.contains("font-style=\"italic\">v</text>")
+            && !text.contains("<use")
+    );
     assert!(!text.contains("mm\""));
 }
 
