@@ -115,6 +115,11 @@ const DIVERGING: [[u8; 3]; 11] = [
 ];
 
 impl ColorMap {
+    /// Whether its colours are the same on any paper. Those about zero of a diverging map are those of the paper.
+    pub(crate) fn has_own_paper(self) -> bool {
+        self == Self::Viridis
+    }
+
     /// The colour at a fraction of the scale from 0 to 1; values outside take the colour of the nearest end.
     pub fn at(self, fraction: f64) -> Color {
         let anchors: &[[u8; 3]] = match self {

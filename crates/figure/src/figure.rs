@@ -12,7 +12,8 @@ use crate::panel::Panel;
 use crate::panel3d::Panel3d;
 use crate::save::{Format, write_atomically};
 use crate::scene::Scene;
-use crate::svg::POINTS_PER_MM;
+use crate::svg::{POINTS_PER_MM, SvgOptions};
+use crate::theme::Theme;
 
 /// Widths of one and of two columns of a journal, in millimetres.
 const SINGLE_COLUMN: f64 = 84.0;
@@ -50,6 +51,7 @@ pub struct Figure {
     row_weights: Vec<f64>,
     description: String,
     panels: Vec<Content>,
+    theme: Theme,
 }
 
 /// What fills one place of the grid of a figure: a [`Panel`] or a [`Panel3d`].
@@ -128,6 +130,7 @@ impl Figure {
             row_weights: Vec::new(),
             description: String::new(),
             panels: Vec::new(),
+            theme: Theme::Light,
         }
     }
 
@@ -171,6 +174,21 @@ impl Figure {
         Self { description: text.into(), ..self }
     }
 
+    /// The theme, light unless given.
+    pub fn theme(self, theme: Theme) -> Self {
+        Self { theme, ..self }
+    }
+
+    /// Other limits of the axes of a panel with two axes: a part of it, or more. What there is none of stays as it is; a panel in space
+    /// does.
+    pub fn window(mut self, panel: usize, x: Option<(f64, f64)>, y: Option<(f64, f64)>) -> Self {
+        if let Some(Content::Plane(panel)) = self.panels.get_mut(panel) {
+            panel.x.limits = x.or(panel.x.limits);
+            panel.y.limits = y.or(panel.y.limits);
+        }
+        self
+    }
+
     /// Adds a [`Panel`] or a [`Panel3d`].
     pub fn panel(mut self, panel: impl Into<Content>) -> Self {
         self.panels.push(panel.into());
@@ -182,7 +200,15 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Png`] when the raster of a map cannot be encoded.
     pub fn to_svg(&self) -> Result<String, FigureError> {
-        crate::svg::write(&self.scene())
+        self.to_svg_with(SvgOptions::default())
+    }
+
+    /// The same with other options.
+    ///
+    /// # Errors
+    /// Those of [`Figure::to_svg`].
+    pub fn to_svg_with(&self, options: SvgOptions) -> Result<String, FigureError> {
+        crate::svg::write(&self.scene(), options)
     }
 
     /// The figure as PNG at a resolution in dots per inch.
@@ -261,8 +287,13 @@ impl Figure {
     fn scene(&self) -> Scene {
         let page = self.page();
         let width = self.width * POINTS_PER_MM;
-        let mut scene =
-            Scene { width, height: page.height, description: self.description.clone(), items: Vec::new() };
+        let mut scene = Scene::new(width, page.height, self.description.clone());
+        scene.paper = self.theme.paper();
+        let told = self.panels.iter().filter_map(|content| match content {
+            Content::Plane(panel) => Some(panel.told()),
+            Content::Space(_) => None,
+        });
+        scene.detail = told.collect::<Vec<_>>().join(" ");
         for ((panel, plot), margins) in self.panels.iter().zip(&page.plots).zip(&page.margins) {
             match panel {
                 Content::Plane(panel) => {
@@ -272,6 +303,7 @@ impl Figure {
                 Content::Space(panel) => draw_panel3d(&mut scene, panel, plot),
             }
         }
+        self.theme.apply(&mut scene);
         scene
     }
 

@@ -125,7 +125,12 @@ impl Frame {
                 };
                 Some(ColorBar {
                     axis,
-                    raster: Raster { columns: 1, rows: 256, pixels: (0..256).map(pixel).collect() },
+                    raster: Raster {
+                        columns: 1,
+                        rows: 256,
+                        pixels: (0..256).map(pixel).collect(),
+                        is_scale: map.map.has_own_paper(),
+                    },
                 })
             }
             _ => None,

@@ -48,7 +48,7 @@ impl Grid {
     }
 
     /// Samples the cells over the whole panel, the upper row first.
-    fn raster(&self, x: &Scale, y: &Scale, color: impl Fn(usize) -> Option<Color>) -> Raster {
+    fn raster(&self, x: &Scale, y: &Scale, is_scale: bool, color: impl Fn(usize) -> Option<Color>) -> Raster {
         let columns = sample(&self.x, x, false);
         let rows = sample(&self.y, y, true);
         let mut pixels = Vec::with_capacity(columns.len() * rows.len());
@@ -58,7 +58,7 @@ impl Grid {
                 pixels.push(color.map_or([255, 255, 255, 0], |Color { rgb: [r, g, b], .. }| [r, g, b, 255]));
             }
         }
-        Raster { columns: columns.len(), rows: rows.len(), pixels }
+        Raster { columns: columns.len(), rows: rows.len(), pixels, is_scale }
     }
 }
 
@@ -162,7 +162,7 @@ impl HeatMap {
 
     pub(crate) fn raster(&self, x: &Scale, y: &Scale) -> Raster {
         let scale = self.value_scale();
-        self.grid.raster(x, y, |index| {
+        self.grid.raster(x, y, self.map.has_own_paper(), |index| {
             let value = self.values[index];
             value.is_finite().then(|| self.map.at(scale.fraction(value)))
         })
@@ -195,7 +195,8 @@ impl CategoryMap {
     }
 
     pub(crate) fn raster(&self, x: &Scale, y: &Scale) -> Raster {
-        self.grid.raster(x, y, |index| self.entries.get(self.categories[index]).map(|(_, color)| *color))
+        self.grid
+            .raster(x, y, false, |index| self.entries.get(self.categories[index]).map(|(_, color)| *color))
     }
 }
 

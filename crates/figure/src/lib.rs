@@ -61,6 +61,7 @@ mod smooth;
 mod style;
 mod svg;
 mod text;
+mod theme;
 mod ticks;
 
 pub use axis::Axis;
@@ -77,7 +78,9 @@ pub use projection::Projection;
 pub use save::Format;
 pub use scene::Dash;
 pub use series::{Branch, Curve, Line, Marker, MarkerShape, Markers, Note, PointLabel, Region, Stability};
+pub use svg::SvgOptions;
 pub use text::Anchor;
+pub use theme::Theme;
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

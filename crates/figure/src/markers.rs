@@ -68,8 +68,7 @@ mod tests {
     fn hatching_stays_inside_at_every_angle() {
         let square = Rect::new(10.0, 20.0, 40.0, 50.0);
         for degrees in [0.0, 30.0, 45.0, 90.0, 135.0, f64::NAN] {
-            let mut scene =
-                Scene { width: 99.0, height: 99.0, description: String::new(), items: Vec::new() };
+            let mut scene = Scene::new(99.0, 99.0, String::new());
             draw_hatching(&mut scene, &square.corners(), palette::BLACK, degrees);
             let Some(Item::Shape { path, .. }) = scene.items.first() else { panic!("nothing drawn") };
             assert!(path.segments.len() > 16);

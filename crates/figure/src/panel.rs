@@ -6,6 +6,7 @@ use crate::grid::{CategoryMap, HeatMap};
 use crate::legend::{Legend, LegendEntry, Swatch};
 use crate::scene::Dash;
 use crate::series::{Curve, Markers, Note, PointLabel, Region};
+use crate::text::TextLayout;
 
 /// One diagram of a figure: axes, and what they show.
 ///
@@ -180,6 +181,37 @@ impl Panel {
         entries
     }
 
+    /// What it shows, in sentences.
+    pub(crate) fn told(&self) -> String {
+        let (x, y) = self.scales();
+        let axis = |name: &str, axis: &Axis, scale: Scale| {
+            let label = if axis.label.is_empty() {
+                String::new()
+            } else {
+                format!("{}, ", TextLayout::plain(&axis.label))
+            };
+            format!("{name}: {label}from {} to {}. ", rounded(scale.low), rounded(scale.high))
+        };
+        let title = if self.title.is_empty() {
+            String::new()
+        } else {
+            format!("{}. ", TextLayout::plain(&self.title))
+        };
+        let mut text = title + &axis("Horizontal axis", &self.x, x) + &axis("Vertical axis", &self.y, y);
+        let list = |name: &str, texts: Vec<String>| {
+            if texts.is_empty() { String::new() } else { format!("{name}: {}. ", texts.join(", ")) }
+        };
+        let entries = self.entries().iter().map(|entry| TextLayout::plain(&entry.text)).collect();
+        let labels = self.points.iter().filter(|point| !point.text.is_empty() && point.at.is_finite());
+        let labels = labels.map(|point| {
+            let place = format!("({}, {})", rounded(point.at.x), rounded(point.at.y));
+            format!("{} at {place}", TextLayout::plain(&point.text))
+        });
+        text += &list("Legend", entries);
+        text += &list("Labelled points", labels.collect());
+        text.trim_end().to_owned()
+    }
+
     /// The scales of both axes, from their limits or the data.
     pub(crate) fn scales(&self) -> (Scale, Scale) {
         let (mut x, mut y) = (Range::default(), Range::default());
@@ -200,4 +232,9 @@ impl Panel {
         let exact = |axis: &Axis| if self.map.is_some() { axis.clone().tight() } else { axis.clone() };
         (exact(&self.x).scale(x), exact(&self.y).scale(y))
     }
+}
+
+/// A number with four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }

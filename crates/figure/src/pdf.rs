@@ -3,7 +3,7 @@
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
-use crate::color::Color;
+use crate::color::{Color, palette};
 use crate::font::UNITS_PER_EM;
 use crate::geometry::Point;
 use crate::path::{Path, Segment};
@@ -16,6 +16,14 @@ const COMPRESSION: u8 = 6;
 pub(crate) fn write(scene: &Scene) -> Vec<u8> {
     let mut page =
         Page { height: scene.height, content: Content::new(), opacities: Vec::new(), rasters: Vec::new() };
+    // Paper is white by itself.
+    if scene.paper != palette::WHITE {
+        page.content.save_state();
+        page.fill_color(scene.paper);
+        page.content.rect(0.0, 0.0, scene.width as f32, scene.height as f32);
+        page.content.fill_nonzero();
+        page.content.restore_state();
+    }
     for item in &scene.items {
         page.draw(item);
     }

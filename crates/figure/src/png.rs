@@ -30,7 +30,8 @@ pub(crate) fn write(scene: &Scene, dpi: f64) -> Result<Vec<u8>, FigureError> {
     let scale = dpi / POINTS_PER_INCH;
     let (width, height) = ((scene.width * scale).round() as u32, (scene.height * scale).round() as u32);
     let mut pixmap = Pixmap::new(width, height).ok_or_else(unusable)?;
-    pixmap.fill(tiny_skia::Color::WHITE);
+    let [red, green, blue] = scene.paper.rgb;
+    pixmap.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
     let page = Transform::from_scale(
         (f64::from(width) / scene.width) as f32,
         (f64::from(height) / scene.height) as f32,

@@ -12,6 +12,10 @@ pub(crate) struct Scene {
     pub width: f64,
     pub height: f64,
     pub description: String,
+    /// What is to be seen, in sentences.
+    pub detail: String,
+    /// The colour of the paper.
+    pub paper: Color,
     pub items: Vec<Item>,
 }
 
@@ -74,9 +78,17 @@ pub(crate) struct Raster {
     pub rows: usize,
     /// Red, green, blue and opacity of each pixel, row by row.
     pub pixels: Vec<[u8; 4]>,
+    /// Whether its colours are the same on any paper.
+    pub is_scale: bool,
 }
 
 impl Scene {
+    /// An empty picture on white paper.
+    pub(crate) fn new(width: f64, height: f64, description: String) -> Self {
+        let (detail, paper) = (String::new(), crate::color::palette::WHITE);
+        Self { width, height, description, detail, paper, items: Vec::new() }
+    }
+
     pub(crate) fn stroke(&mut self, path: Path, stroke: Stroke) {
         if !path.segments.is_empty() {
             self.items.push(Item::Shape { path, fill: None, stroke: Some(stroke) });

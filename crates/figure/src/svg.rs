@@ -1,4 +1,4 @@
-//! Writes a scene as SVG: outlines only, no fonts, no scripts, no styles, so it can stand alone or inside HTML.
+//! Writes a scene as SVG: outlines only unless text is asked for, no fonts, no scripts, so it can stand alone or inside HTML.
 //!
 //! Coordinates are rounded to 0.01 pt (3.5 µm) and written relative to the point before. Each glyph is defined once and
 //! used by reference; its name depends only on the glyph, so several figures in one HTML page do not disturb each other.
@@ -15,15 +15,28 @@ use crate::geometry::Point;
 use crate::path::{Path, Segment};
 use crate::png::encode;
 use crate::scene::{Item, Scene, Stroke};
-use crate::text::TextLayout;
+use crate::text::{PlacedGlyph, TextLayout, upright};
 
 /// Steps per point on the page.
 const PAGE_STEPS: f64 = 100.0;
 /// Points per millimetre.
 pub(crate) const POINTS_PER_MM: f64 = 72.0 / 25.4;
 
+/// Fonts of text that is no outline: those that look like the outlines, then any that a system has for print.
+const FONTS: &str =
+    "Latin Modern Roman, CMU Serif, STIX Two Text, STIX Two Math, Cambria Math, Times New Roman, serif";
+
+/// How a figure is written as SVG.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SvgOptions {
+    /// Labels are text, which can be searched and copied but looks as the fonts of the reader do; without, outlines of glyphs.
+    pub text: bool,
+    /// It has no size of its own and fills what it stands in; without, that of the figure in millimetres.
+    pub fluid: bool,
+}
+
 /// Writes the scene as SVG text.
-pub(crate) fn write(scene: &Scene) -> Result<String, FigureError> {
+pub(crate) fn write(scene: &Scene, options: SvgOptions) -> Result<String, FigureError> {
     let mut body = String::new();
     let mut glyphs = BTreeSet::new();
     for item in &scene.items {
@@ -46,7 +59,10 @@ pub(crate) fn write(scene: &Scene) -> Result<String, FigureError> {
                 );
             }
             Item::Text { layout, at, degrees, color, halo } => {
-                glyphs.extend(layout.glyphs.iter().map(|placed| placed.glyph).filter(has_outline));
+                if !options.text {
+                    glyphs.extend(layout.glyphs.iter().map(|placed| placed.glyph).filter(has_outline));
+                }
+                let runs = if options.text { texts } else { runs };
                 let mut transform = format!("translate({} {})", number(at.x), number(at.y));
                 if *degrees != 0.0 {
                     push(&mut transform, format_args!(" rotate({})", number(*degrees)));
@@ -68,19 +84,26 @@ pub(crate) fn write(scene: &Scene) -> Result<String, FigureError> {
 
     let mut text = String::with_capacity(body.len() + 400 * glyphs.len() + 500);
     let (width, height) = (scene.width, scene.height);
+    let size = if options.fluid {
+        String::new()
+    } else {
+        let (width, height) = (number(width / POINTS_PER_MM), number(height / POINTS_PER_MM));
+        format!("width=\"{width}mm\" height=\"{height}mm\" ")
+    };
     push(
         &mut text,
         format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-             width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n",
-            number(width / POINTS_PER_MM),
-            number(height / POINTS_PER_MM),
+             {size}viewBox=\"0 0 {} {}\" role=\"img\">\n",
             number(width),
             number(height)
         ),
     );
     if !scene.description.is_empty() {
         push(&mut text, format_args!("<title>{}</title>\n", escape(&scene.description)));
+    }
+    if !scene.detail.is_empty() {
+        push(&mut text, format_args!("<desc>{}</desc>\n", escape(&scene.detail)));
     }
     if !glyphs.is_empty() {
         text.push_str("<defs>\n");
@@ -94,7 +117,12 @@ pub(crate) fn write(scene: &Scene) -> Result<String, FigureError> {
     }
     push(
         &mut text,
-        format_args!("<path d=\"M0 0h{}v{}H0z\" fill=\"#fff\"/>\n", number(width), number(height)),
+        format_args!(
+            "<path d=\"M0 0h{}v{}H0z\" fill=\"{}\"/>\n",
+            number(width),
+            number(height),
+            scene.paper.hex()
+        ),
     );
     text.push_str(&body);
     text.push_str("</svg>\n");
@@ -165,6 +193,35 @@ fn runs(body: &mut String, layout: &TextLayout, halo: Option<f64>) {
             body.push_str("/>");
         }
         body.push_str("</g>");
+    }
+}
+
+/// The same as text: every character stands where its glyph would.
+fn texts(body: &mut String, layout: &TextLayout, halo: Option<f64>) {
+    let is_italic = |placed: &PlacedGlyph| upright(placed.character) != placed.character;
+    let alike = |a: &PlacedGlyph, b: &PlacedGlyph| {
+        a.size == b.size && a.at.y == b.at.y && is_italic(a) == is_italic(b)
+    };
+    for run in layout.glyphs.chunk_by(alike) {
+        let places: Vec<String> = run.iter().map(|placed| number(placed.at.x)).collect();
+        let characters: String = run.iter().map(|placed| upright(placed.character)).collect();
+        push(
+            body,
+            format_args!(
+                "<text font-family=\"{FONTS}\" font-size=\"{}\" y=\"{}\" x=\"{}\" xml:space=\"preserve\"",
+                number(run[0].size),
+                number(run[0].at.y),
+                places.join(" ")
+            ),
+        );
+        if is_italic(&run[0]) {
+            body.push_str(" font-style=\"italic\"");
+        }
+        if let Some(width) = halo {
+            // It is said once, by the text itself.
+            push(body, format_args!(" stroke-width=\"{}\" aria-hidden=\"true\"", number(2.0 * width)));
+        }
+        push(body, format_args!(">{}</text>", escape(&characters)));
     }
 }
 
@@ -269,15 +326,14 @@ mod tests {
 
     #[test]
     fn a_small_scene_is_written_as_expected() {
-        let mut scene =
-            Scene { width: 72.0, height: 36.0, description: "a < b".to_owned(), items: Vec::new() };
+        let mut scene = Scene::new(72.0, 36.0, "a < b".to_owned());
         let line = Path::polyline(&[Point::new(10.0, 10.0), Point::new(60.0, 20.0)]);
         scene.stroke(line, Stroke { color: palette::BLUE, width: 1.0, dash: Dash::Dashed });
         scene.fill(
             Path::rectangle(&crate::geometry::Rect::new(1.0, 1.0, 3.0, 4.0)),
             palette::BLACK.with_opacity(0.5),
         );
-        let svg = write(&scene).unwrap();
+        let svg = write(&scene, SvgOptions::default()).unwrap();
         assert_eq!(
             svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" width=\"25.4mm\" \

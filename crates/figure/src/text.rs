@@ -19,6 +19,8 @@ const DESCENDER_DEPTH: f64 = 0.2;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlacedGlyph {
     pub glyph: Glyph,
+    /// What it shows.
+    pub character: char,
     pub at: Point,
     pub size: f64,
 }
@@ -63,6 +65,22 @@ impl TextLayout {
         layout
     }
 
+    /// What it says, without its form.
+    pub(crate) fn plain(source: &str) -> String {
+        fn add(pieces: &[Piece], text: &mut String) {
+            for piece in pieces {
+                match piece {
+                    Piece::Character(character) => text.push(upright(*character)),
+                    Piece::Space(_) => {}
+                    Piece::Scripts { lower, upper } => [lower, upper].iter().for_each(|part| add(part, text)),
+                }
+            }
+        }
+        let mut text = String::new();
+        add(&parse(source), &mut text);
+        text
+    }
+
     pub(crate) fn height(&self) -> f64 {
         self.ascent + self.descent
     }
@@ -85,6 +103,20 @@ impl TextLayout {
     }
 }
 
+/// The letter that an italic letter of mathematics is, as it is searched and read aloud.
+pub(crate) fn upright(character: char) -> char {
+    let code = u32::from(character);
+    let letter = match code {
+        0x1D434..=0x1D44D => code - 0x1D434 + u32::from('A'),
+        0x1D44E..=0x1D467 => code - 0x1D44E + u32::from('a'),
+        0x210E => u32::from('h'),
+        0x1D6E2..=0x1D6FA => code - 0x1D6E2 + u32::from('Α'),
+        0x1D6FC..=0x1D714 => code - 0x1D6FC + u32::from('α'),
+        _ => code,
+    };
+    char::from_u32(letter).unwrap_or(character)
+}
+
 /// Sets pieces from `start` on and returns the horizontal position after them.
 fn set(pieces: &[Piece], size: f64, start: Point, font: Font, layout: &mut TextLayout) -> f64 {
     let scale = size / UNITS_PER_EM;
@@ -93,7 +125,12 @@ fn set(pieces: &[Piece], size: f64, start: Point, font: Font, layout: &mut TextL
         match piece {
             Piece::Character(character) => {
                 let glyph = font.glyph(*character);
-                layout.glyphs.push(PlacedGlyph { glyph, at: Point::new(x, start.y), size });
+                layout.glyphs.push(PlacedGlyph {
+                    glyph,
+                    character: *character,
+                    at: Point::new(x, start.y),
+                    size,
+                });
                 x += glyph.advance() * scale;
                 layout.ascent = layout.ascent.max(CAPITAL_HEIGHT * size - start.y);
                 // Digits and capitals have no descender; a label of those alone is centred better without one.
@@ -125,6 +162,13 @@ mod tests {
         let wide = TextLayout::new("velocity", 10.0);
         assert!(wide.width > 3.0 * narrow.width);
         assert!((TextLayout::new("velocity", 20.0).width - 2.0 * wide.width).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_a_label_says_is_plain() {
+        assert_eq!(TextLayout::plain("$v$ (m/s)"), "v (m/s)");
+        assert_eq!(TextLayout::plain("$\\psi_0$"), "ψ0");
+        assert_eq!(TextLayout::plain("$\\Omega h$"), "Ωh");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use kingpin_figure::{
     Axis, Branch, ColorMap, Figure, Grid, HeatMap, Legend, Line, Marker, Markers, Note, Panel, Panel3d,
-    Point, PointLabel, Region, Wall, palette,
+    Point, PointLabel, Region, SvgOptions, Theme, Wall, palette,
 };
 use proptest::prelude::*;
 
@@ -204,4 +204,39 @@ fn a_figure_says_where_its_axes_stand() {
         assert!(svg.contains(&format!("m{} {} ", corner(place.left), corner(place.top))), "{place:?} {svg}");
     }
     assert!(places[0].right < places[1].left);
+}
+
+#[test]
+fn labels_are_text_where_that_is_asked_for() {
+    let panel =
+        Panel::new(Axis::new("$v$ (m/s)"), Axis::new("angle")).point(PointLabel::new((1.0, 2.0), "HB1"));
+    let figure = Figure::single_column().description("a curve").panel(panel);
+    let outlines = figure.to_svg().unwrap();
+    assert!(!outlines.contains("<text") && outlines.contains("width=\"84mm\""));
+    assert!(outlines.contains("<title>a curve</title>") && outlines.contains("HB1 at (1, 2)"));
+    let options = SvgOptions { text: true, fluid: true };
+    let text = figure.to_svg_with(options).unwrap();
+    assert!(
+        text.contains(">HB1</text>")
+            && text.contains(">angle</text>")
+            && text.contains("font-style=\"italic\">v</text>")
+            && !text.contains("<use")
+    );
+    assert!(!text.contains("mm\""));
+}
+
+#[test]
+fn a_dark_figure_has_dark_paper_in_every_format_and_other_ends_of_its_axes_where_these_are_asked_for() {
+    let panel = Panel::new(Axis::new("x"), Axis::new("y")).curve(Line::new([(0.0, 0.0), (1.0, 1.0)]));
+    let figure = Figure::single_column().panel(panel);
+    let dark = figure.clone().theme(Theme::Dark);
+    assert!(
+        figure.to_svg().unwrap().contains("fill=\"#fff\"")
+            && dark.to_svg().unwrap().contains("fill=\"#16181a\"")
+    );
+    assert_ne!(figure.to_pdf(), dark.to_pdf());
+    let part = figure.clone().window(0, Some((0.25, 0.5)), None);
+    let (before, after) = (figure.places()[0].unwrap(), part.places()[0].unwrap());
+    assert_eq!((after.x.low, after.x.high), (0.25, 0.5));
+    assert_eq!(after.y, before.y);
 }

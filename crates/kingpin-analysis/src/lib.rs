@@ -13,6 +13,7 @@ mod classification;
 pub mod cycles;
 pub mod damper;
 mod description;
+pub mod diagram;
 mod disturbance;
 mod error;
 pub mod fit;

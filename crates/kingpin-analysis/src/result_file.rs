@@ -3,6 +3,7 @@
 use crate::cycles::CyclesResult;
 use crate::hopf::HopfResult;
 use crate::locus::{CycleLocusResult, HopfLocusResult};
+use arclength_analysis::{Disk, Files};
 use kingpin_report::Schema;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -37,11 +38,19 @@ impl ResultFile {
     /// # Errors
     /// It cannot be read, is no result file or not one of these.
     pub fn read(path: &Path) -> Result<Self, String> {
+        Self::read_among(&Disk, path)
+    }
+
+    /// The same from other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`read`](Self::read).
+    pub fn read_among(files: &dyn Files, path: &Path) -> Result<Self, String> {
         fn parse<R: DeserializeOwned>(text: &[u8]) -> Result<R, String> {
             serde_json::from_slice(text)
                 .map_err(|error| format!("not such a result file: {error}; {ALLOWED}"))
         }
-        let text = std::fs::read(path).map_err(|error| format!("cannot be read: {error}"))?;
+        let text = files.read(path).map_err(|error| format!("cannot be read: {error}"))?;
         let Header { schema: Schema { name, version } } = parse(&text)?;
         match (name.as_str(), version) {
             (HopfResult::SCHEMA, 1) => parse(&text).map(Self::Hopf),

@@ -5,6 +5,7 @@ use crate::error::Error;
 use crate::shimmy::{ShimmyPointResult, ShimmyResult};
 use crate::simulate::{ForcesFromAbove, HistoryResult, SlidingHistory};
 use crate::steady::SteadyResult;
+use arclength::cycle::Orbit;
 use arclength_analysis::Control;
 use kingpin::Wheel;
 use serde::Serialize;
@@ -51,6 +52,20 @@ impl SeenFromAbove {
             king_pin_force: pair(&forces.king_pin),
             ground_force: pair(&forces.ground),
         }
+    }
+
+    /// A cycle over one period, at so many times.
+    pub(crate) fn of_cycle(wheel: &Wheel, orbit: &Orbit, samples: usize) -> Result<Self, Error> {
+        let model = wheel.rolling_model(&[])?;
+        let (mut times, mut states): (Vec<f64>, Vec<Vec<f64>>) = orbit
+            .sample(samples.saturating_sub(1).max(1))
+            .into_iter()
+            .map(|(time, free)| (time, model.full_state(&free, &[])))
+            .unzip();
+        // The end of the period is its start.
+        times.push(orbit.period);
+        states.push(states[0].clone());
+        Self::of_rolling(wheel, &times, &states)
     }
 
     /// A motion that rolls, by all states of the wheel at every time.
@@ -111,16 +126,7 @@ impl CyclesResult {
     ) -> Result<Option<SeenFromAbove>, Error> {
         let Some(orbit) = &point.cycle.orbit else { return Ok(None) };
         let wheel = self.wheel.with(self.interval.key(), point.cycle.value)?;
-        let model = wheel.rolling_model(&[])?;
-        let (mut times, mut states): (Vec<f64>, Vec<Vec<f64>>) = orbit
-            .sample(samples.saturating_sub(1).max(1))
-            .into_iter()
-            .map(|(time, free)| (time, model.full_state(&free, &[])))
-            .unzip();
-        // The end of the period is its start.
-        times.push(orbit.period);
-        states.push(states[0].clone());
-        SeenFromAbove::of_rolling(&wheel, &times, &states).map(Some)
+        SeenFromAbove::of_cycle(&wheel, orbit, samples).map(Some)
     }
 }
 

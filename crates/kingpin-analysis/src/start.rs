@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::result_file::ResultFile;
 use arclength::cycle::{Branching, Orbit};
-use arclength_analysis::PointReference;
+use arclength_analysis::{Files, PointReference};
 use kingpin::branches::Along;
 use kingpin::{Key, Wheel};
 
@@ -36,8 +36,9 @@ impl LabelledPoint {
     /// # Errors
     /// [`Error::Start`]: no such file, not a result that can be started from, no such label, or a point that does not fit its
     /// wheel.
-    pub(crate) fn read(reference: &PointReference) -> Result<Self, Error> {
-        let file = ResultFile::read(&reference.path).map_err(|problem| reference.failure(problem))?;
+    pub(crate) fn read(reference: &PointReference, files: &dyn Files) -> Result<Self, Error> {
+        let file =
+            ResultFile::read_among(files, &reference.path).map_err(|problem| reference.failure(problem))?;
         let labels = file.labels();
         let missing = || reference.no_such_label(&labels);
         let is_wanted = |label: &Option<String>| label.as_ref() == Some(&reference.label);

@@ -7,9 +7,9 @@ import { Refusal, ask, listen } from "./ask.js";
  * @typedef {{values: number[], max: number[], min: number[], stable: boolean | null, label: string | null,
  *   orbit: {period: number, t: number[], states: number[][]} | null}} FoundPoint
  * @typedef {{
- *   name: string, key: string, running: boolean, run: string, text: string, data: any, before: any, points: FoundPoint[], warnings: string[],
+ *   name: string, key: string, running: boolean, run: string, text: string, data: any, before: any, points: FoundPoint[], motions: any[], warnings: string[],
  *   problem: import("./ask.js").Problem | null, progress: number | null,
- * }} Result `before` is what was there before it was computed anew
+ * }} Result `before` is what was there before it was computed anew; `motions` are those of cycles, where the server tells them
  * @typedef {{path: string, request: any, from: string[]}} Question where it is asked, what is asked, and the results that it names
  */
 
@@ -45,7 +45,7 @@ export class Chain {
       if (known && known.key === key && !known.running) continue;
       /** @type {Result} */
       const result = {
-        name: step.name, key, running: true, run: "", text: "", data: null, before: known?.data ?? known?.before, points: [], warnings: [], problem: null, progress: null,
+        name: step.name, key, running: true, run: "", text: "", data: null, before: known?.data ?? known?.before, points: [], motions: [], warnings: [], problem: null, progress: null,
       };
       this.results.set(step.name, result);
       this.changed(step.name);
@@ -74,6 +74,7 @@ export class Chain {
       await listen(path, { request, files }, signal, (kind, text) => {
         if (kind === "run") result.run = text;
         else if (kind === "point") result.points.push(JSON.parse(text));
+        else if (kind === "motion") result.motions.push(JSON.parse(text));
         else if (kind === "warning") result.warnings.push(text);
         else if (kind === "progress") result.progress = JSON.parse(text);
         else if (kind === "failure") result.problem = JSON.parse(text).error;

@@ -25,6 +25,7 @@ function command(state, step) {
   if (step.from) words.push("--from", `${step.from.path}:${step.from.label}`);
   else {
     words.push(state.name);
+    if (state.named) words.push("--named-set", state.named);
     for (const [key, value] of Object.entries(state.set)) words.push("-s", `${key}=${value}`);
     const start = Object.entries(state.start).map(([key, value]) => `${key}=${value}`);
     if (start.length) words.push("--start", start.join(","));
@@ -79,6 +80,7 @@ function call(state, step) {
   if (plane) words.push(...plane.map(tuple));
   if (step.duration) words.push(String(step.duration));
   if (step.stay) words.push("stay=True");
+  if (!from && state.named) words.push(`named_set=${JSON.stringify(state.named)}`);
   if (!from && Object.keys(state.set).length) words.push(`set=${dictionary(state.set)}`);
   if (!from && Object.keys(state.start).length) words.push(`start=${dictionary(state.start)}`);
   const source = !from ? "model" : from.label === "END" ? `${variable(from.path)}.end` : `${variable(from.path)}["${from.label}"]`;

@@ -7,6 +7,7 @@ import { readable } from "./numbers.js";
 import { draw } from "./plot.js";
 import { saveMenu, saveResults } from "./save.js";
 import { labelKind } from "./starts.js";
+import { Zoom, isDark } from "./zoom.js";
 
 /**
  * @typedef {import("./chain.js").Result} Result
@@ -49,14 +50,17 @@ function onPage(place, [x, y]) {
   ];
 }
 
+/** Whether a point of the page is within the axes. @param {Place} place @param {Point} point */
+function isInside({ left, top, right, bottom }, [x, y]) {
+  return x >= left - 1 && x <= right + 1 && y >= top - 1 && y <= bottom + 1;
+}
+
 /** A finished picture of the server as an element. @param {Picture} picture @param {string} description */
 export function pictureElement(picture, description) {
   // The page allows no styles of its own in elements; the attribute beside it says the same.
   const text = picture.svg.replace(/ style="[^"]*"/g, "");
   const parsed = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
   const element = /** @type {SVGSVGElement} */ (/** @type {unknown} */ (document.adoptNode(parsed)));
-  element.removeAttribute("width");
-  element.removeAttribute("height");
   element.setAttribute("aria-label", description);
   element.setAttribute("class", "drawn");
   return element;
@@ -65,9 +69,11 @@ export function pictureElement(picture, description) {
 /** One diagram with its heading. */
 class Diagram {
   /**
+   * @param {string} path where pictures are asked for
    * @param {Listener} listener
    */
-  constructor(listener) {
+  constructor(path, listener) {
+    this.path = path;
     this.listener = listener;
     this.title = html("h2");
     this.tools = html("span", { class: "tools" });
@@ -96,7 +102,9 @@ class Diagram {
     /** @type {SVGSVGElement | null} */
     this.overlay = null;
     this.marker = svg("circle", { class: "picked", r: 5, visibility: "hidden" });
-    this.tools.append(saveMenu("this diagram", ["svg", "png", "pdf"], (format) => this.save(format)));
+    /** Which part is seen. */
+    this.zoom = new Zoom(() => void (this.isShown = this.finish()));
+    this.tools.append(this.zoom.buttons, saveMenu("this diagram", ["svg", "png", "pdf"], (format) => this.save(format)));
   }
 
   /** Results that are to be seen and have points. */
@@ -109,12 +117,19 @@ class Diagram {
   }
 
   get states() {
-    return this.group.steps[0]?.kind === "simulate" || this.group.steps[0]?.plane ? [] : [this.shown];
+    // A wheel has one diagram; its states are not asked for.
+    return this.group.steps[0]?.kind === "simulate" || this.group.steps[0]?.plane || this.path !== "/api/diagram" ? [] : [this.shown];
+  }
+
+  /** What a picture of it is asked with. */
+  get asked() {
+    const { states } = this;
+    return { results: this.seen.map((step) => step.name), ...(states.length ? { states } : {}), window: this.zoom.window, dark: isDark() };
   }
 
   /** @param {string} format */
   async save(format) {
-    await saveResults(this.files, this.seen.map((step) => step.name), this.states, format, this.group.key.replace(/\W+/g, "-"));
+    await saveResults(this.path, this.files, this.asked, format, this.group.key.replace(/\W+/g, "-"));
   }
 
   /**
@@ -182,7 +197,7 @@ class Diagram {
   /** Shows the finished picture. */
   async finish() {
     const names = this.seen.map((step) => step.name);
-    const signature = JSON.stringify([this.shown, names.map((name) => this.results.get(name)?.key)]);
+    const signature = JSON.stringify([this.asked, this.shown, names.map((name) => this.results.get(name)?.key)]);
     if (signature === this.drawn) {
       this.mark();
       return this.isShown;
@@ -198,7 +213,7 @@ class Diagram {
     /** @type {Picture} */
     let picture;
     try {
-      picture = await ask("/api/diagram", { request: { results: names, states: this.states, format: "page" }, files: this.files });
+      picture = await ask(this.path, { request: { ...this.asked, format: "page" }, files: this.files });
     } catch (error) {
       if (this.drawn !== signature) return;
       this.picture.replaceChildren(html("p", { class: "problem" }, error instanceof Error ? error.message : String(error)));
@@ -213,9 +228,12 @@ class Diagram {
     this.place = picture.panels[0] ?? null;
     this.overlay = svg("svg", { viewBox: `0 0 ${picture.width} ${picture.height}`, class: "overlay" });
     this.picture.replaceChildren(pictureElement(picture, this.group.title), this.overlay);
+    if (this.place) this.zoom.attach(this.overlay, this.picture, this.place, picture);
     if (this.group.steps[0]?.kind === "simulate") return;
     this.overlay.append(this.marker);
-    this.overlay.addEventListener("click", (event) => this.pickNear(event));
+    this.overlay.addEventListener("click", (event) => {
+      if (!this.zoom.hasDragged) this.pickNear(event);
+    });
     this.addLabels();
     this.mark();
   }
@@ -228,6 +246,7 @@ class Diagram {
         const at = placesOf(step, this.shown, point)[0];
         if (!at) return;
         const [x, y] = onPage(this.place, at);
+        if (!isInside(this.place, [x, y])) return;
         const where = step.plane ? point.values.map((/** @type {number} */ value) => readable(value, 6)).join(", ") : readable(point.value, 6);
         const target = svg("circle", {
           class: "target", cx: x, cy: y, r: 7, "data-label": `${step.name}:${point.label}`,
@@ -272,6 +291,7 @@ class Diagram {
     this.marker.setAttribute("visibility", at && this.place ? "visible" : "hidden");
     if (!at || !this.place) return;
     const [x, y] = onPage(this.place, at);
+    if (!isInside(this.place, [x, y])) this.marker.setAttribute("visibility", "hidden");
     this.marker.setAttribute("cx", String(x));
     this.marker.setAttribute("cy", String(y));
   }
@@ -291,10 +311,11 @@ function pieces(step, shown, points, kind) {
   for (let side = 0; side < (places[0]?.length ?? 0); side++) {
     points.forEach((point, index) => {
       const [from, to] = [places[index]?.[side], places[index + 1]?.[side]];
-      if (!from || !to) return;
+      // Where a branch ends another one may begin.
+      if (!from || !to || point.branch !== points[index + 1].branch) return;
       const dashed = !step.plane && (point.stable ?? points[index + 1].stable) !== true;
       const last = curves.at(-1);
-      if (index > 0 && last && last.dashed === dashed) last.points.push(to);
+      if (index > 0 && last && last.dashed === dashed && points[index - 1].branch === point.branch) last.points.push(to);
       else curves.push({ points: [from, to], kind, dashed });
     });
   }
@@ -305,13 +326,23 @@ function pieces(step, shown, points, kind) {
 export class Diagrams {
   /**
    * @param {HTMLElement} box
+   * @param {string} path where pictures are asked for
    * @param {Listener} listener
    */
-  constructor(box, listener) {
+  constructor(box, path, listener) {
     this.box = box;
+    this.path = path;
     this.listener = listener;
     /** @type {Map<string, Diagram>} */
     this.diagrams = new Map();
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      for (const diagram of this.diagrams.values()) diagram.isShown = diagram.finish();
+    });
+  }
+
+  /** Shows all of everything. */
+  reset() {
+    for (const diagram of this.diagrams.values()) diagram.zoom.window = {};
   }
 
   /** Waits until the pictures that were asked for are there. */
@@ -345,7 +376,7 @@ export class Diagrams {
     for (const [key, group] of groups) {
       let diagram = this.diagrams.get(key);
       if (!diagram) {
-        diagram = new Diagram(this.listener);
+        diagram = new Diagram(this.path, this.listener);
         this.diagrams.set(key, diagram);
         this.box.append(diagram.element);
       }

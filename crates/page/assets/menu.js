@@ -15,8 +15,9 @@ class IntervalFields {
    * @param {string} name
    * @param {Record<string, number>} parameters
    * @param {Interval} interval
+   * @param {(key: string) => [number, number]} rangeOf
    */
-  constructor(name, parameters, interval) {
+  constructor(name, parameters, interval, rangeOf) {
     const keys = Object.keys(parameters);
     this.key = html("select", { "aria-label": `${name} parameter` }, ...keys.map((key) => html("option", { value: key }, key)));
     this.key.value = interval.key;
@@ -25,7 +26,7 @@ class IntervalFields {
     this.start.value = readable(interval.start);
     this.end.value = readable(interval.end);
     this.key.addEventListener("change", () => {
-      const [low, high] = sliderRange(parameters[this.key.value] ?? 0);
+      const [low, high] = rangeOf(this.key.value);
       this.start.value = readable(low);
       this.end.value = readable(high);
     });
@@ -46,13 +47,14 @@ class IntervalFields {
  * @param {Record<string, number>} parameters with their values there
  * @param {[Interval, Interval]} intervals that are offered first
  * @param {number} duration
+ * @param {(key: string) => [number, number]} [rangeOf] an interval of a parameter
  * @returns {Promise<Choice | null>}
  */
-export function choose(title, starts, parameters, intervals, duration) {
+export function choose(title, starts, parameters, intervals, duration, rangeOf = (key) => sliderRange(parameters[key] ?? 0)) {
   return new Promise((resolve) => {
     const [first, second] = intervals;
-    const along = new IntervalFields("first", parameters, first);
-    const other = new IntervalFields("second", parameters, second);
+    const along = new IntervalFields("first", parameters, first, rangeOf);
+    const other = new IntervalFields("second", parameters, second, rangeOf);
     const time = html("input", { type: "text", inputmode: "decimal", "aria-label": "duration" });
     time.value = readable(duration);
     /** @type {Choice | null} */
@@ -75,6 +77,7 @@ export function choose(title, starts, parameters, intervals, duration) {
       group([along.row], needing("along")) ?? "",
       (canVaryTwo && group([...(needing("along").length ? [] : [along.row]), html("div", {}, "in the parameter above and"), other.row], needing("plane"))) || "",
       group([html("div", { class: "interval" }, "lasts ", time)], needing("duration")) ?? "",
+      group([], needing("nothing")) ?? "",
       html("button", { type: "button", class: "quiet", click: () => dialog.close() }, "Cancel"),
     );
     dialog.addEventListener("click", (event) => {

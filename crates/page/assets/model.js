@@ -10,9 +10,11 @@ import { choose } from "./menu.js";
 import { readable, sliderRange } from "./numbers.js";
 import { PointView, parametersAt } from "./point.js";
 import { showQuantities } from "./quantities.js";
-import { give, saveMenu, saveResults } from "./save.js";
+import { stepRow } from "./rows.js";
+import { give } from "./save.js";
 import { startsAt } from "./starts.js";
 import { freeName, pack, unpack, without } from "./state.js";
+import { enter, listenToUndo, showProgress } from "./undo.js";
 
 /**
  * @typedef {import("./state.js").State} State
@@ -20,7 +22,7 @@ import { freeName, pack, unpack, without } from "./state.js";
  * @typedef {import("./diagram.js").Picked} Picked
  * @typedef {{
  *   states: Record<string, number>, parameters: Record<string, number>, along: import("./state.js").Interval | null,
- *   named_sets: string[], duration: number | null, time: import("./ask.js").Place | null,
+ *   named_sets: {name: string, states: Record<string, number>, parameters: Record<string, number>}[], duration: number | null, time: import("./ask.js").Place | null,
  *   warnings: {message: string, place: import("./ask.js").Place}[],
  * }} Model what the server says of the text
  */
@@ -47,7 +49,7 @@ const chain = new Chain(() => {
   });
 });
 const editor = new Editor((source) => void change({ ...fresh(), name: editor.name, source }));
-const diagrams = new Diagrams(byId("diagrams"), {
+const diagrams = new Diagrams(byId("diagrams"), "/api/diagram", {
   pick(point) {
     picked = point;
     showResults();
@@ -72,7 +74,7 @@ const pointView = new PointView(byId("point"), {
 
 /** @returns {State} a state with nothing but what the text says */
 function fresh() {
-  return { ...state, set: {}, start: {}, steps: [], shown: "" };
+  return { ...state, set: {}, start: {}, steps: [], shown: "", named: undefined };
 }
 
 /** A state of an address, if it is one. @param {any} known @returns {State | null} */
@@ -84,7 +86,7 @@ function addressed(known) {
 function question(step) {
   const { from } = step;
   const source = from ? { point: from } : { text: { name: state.name, source: state.source } };
-  const chosen = from ? { source } : { source, set: state.set, start: state.start };
+  const chosen = from ? { source } : { source, named_set: state.named ?? null, set: state.set, start: state.start };
   const path = `/api/${step.kind}`;
   const names = from ? [from.path] : [];
   if (step.kind === "equilibria") return { path, request: { model: chosen, along: step.along }, from: names };
@@ -105,6 +107,7 @@ async function change(next, isEntry = true) {
   if (isOther) {
     chain.abort.abort();
     chain.results.clear();
+    diagrams.reset();
     picked = null;
     model = null;
     editor.show(state.source, state.name);
@@ -130,7 +133,7 @@ async function change(next, isEntry = true) {
   const text = `#${await pack(state)}`;
   // Who has gone on since has an address of its own.
   if (state !== next) return;
-  if (text !== location.hash) history[isEntry ? "pushState" : "replaceState"](null, "", text);
+  if (text !== location.hash) enter(text, isEntry);
   showModel();
   void chain.run(state.steps, question);
   showResults();
@@ -184,8 +187,12 @@ function moved(next, rests) {
 
 function showModel() {
   if (!model) return;
-  const { parameters, states } = model;
+  const named = model.named_sets.find((other) => other.name === state.named);
+  const [parameters, states] = [{ ...model.parameters, ...named?.parameters }, { ...model.states, ...named?.states }];
   const { set, start } = state;
+  byId("named").hidden = !model.named_sets.length;
+  byId("named-set").replaceChildren(html("option", { value: "" }, "the model itself"),
+    ...model.named_sets.map(({ name }) => html("option", { value: name, selected: name === state.named }, `the set ${name}`)));
   const active = document.activeElement;
   // What is being moved must not be replaced under the hand.
   if (!byId("parameters").contains(active)) {
@@ -216,49 +223,29 @@ function showResults() {
   diagrams.update(state.steps, chain.results, state.shown, Object.keys(model?.states ?? {}), picked);
   const step = state.steps.find((other) => other.name === picked?.name);
   const result = picked && chain.results.get(picked.name);
-  if (step && result?.data?.points && picked) pointView.show({ name: state.name, source: state.source }, step, result, picked.index);
+  const others = state.steps.filter((other) => other !== step && other.kind !== "locus").flatMap(({ name }) => chain.results.get(name)?.data ?? []);
+  if (step && result?.data?.points && picked) pointView.show({ name: state.name, source: state.source }, step, result, picked.index, others);
   else if (!result?.running) pointView.clear();
-  byId("steps").replaceChildren(...state.steps.map(stepRow));
+  byId("steps").replaceChildren(...state.steps.map((step) => stepRow(step, chain.results.get(step.name), actions)));
   byId("stop").hidden = !chain.isRunning;
   const running = [...chain.results.values()].find((other) => other.running);
   byId("status").textContent = running ? `${running.name.replace(/\.json$/, "")}: ${running.points.length} points` : "";
+  showProgress([...chain.results.values()].filter((other) => other.running).map((other) => other.progress));
   byId("lines").textContent = commands(state);
   byId("python-lines").textContent = pythonLines(state);
 }
 
-/** @param {Step} step */
-function stepRow(step) {
-  const result = chain.results.get(step.name);
-  const from = step.from ? ` from ${step.from.label} of ${step.from.path.replace(/\.json$/, "")}` : "";
-  const line = html("li", { "data-step": step.name, "data-state": result?.running ? "running" : result?.problem ? "failed" : "done" });
-  const visible = html("input", {
-    type: "checkbox", checked: !step.hidden, "aria-label": `show ${step.name}`,
-    change: () => void change({ ...state, steps: state.steps.map((other) => (other === step ? { ...step, hidden: !step.hidden } : other)) }),
-  });
-  line.append(html("button", { type: "button", class: "quiet", "aria-label": `remove ${step.name}`, click: () => void change({ ...state, steps: without(state.steps, step.name) }) }, "Remove"));
-  line.append(html("label", {}, visible, html("strong", {}, step.name.replace(/\.json$/, "")), from));
-  // What is computed anew keeps its place until it is there.
-  const data = result?.data ?? (result?.running ? result.before : null);
-  if (result && data) {
-    const count = data.points?.length ?? data.t?.length ?? 0;
-    line.append(` ${count} points `, saveMenu(step.name, ["json", "csv", "text", "svg", "png", "pdf"], async (format) => {
-      if (!result.text) return;
-      if (format === "json") give(new Blob([result.text], { type: "application/json" }), step.name);
-      else await saveResults({ [step.name]: result.text }, [step.name], [], format, step.name.replace(/\.json$/, ""));
-    }));
-    const labels = (data.points ?? []).filter((/** @type {any} */ point) => point.label);
-    for (const point of labels) {
-      const index = data.points.indexOf(point);
-      line.append(html("button", { type: "button", class: "label", click: () => { picked = { name: step.name, index }; showResults(); } }, point.label));
-    }
-    if (step.kind === "simulate") line.append(html("button", { type: "button", class: "label", click: () => void startAt({ name: step.name, index: 0 }) }, "END"));
-    const ends = data.ends?.map((/** @type {any} */ end) => end.cause).filter(Boolean);
-    if (ends?.length) line.append(html("p", { class: "note" }, `ends: ${ends.join("; ")}`));
-  }
-  if (result?.problem) line.append(html("p", { class: "problem" }, result.problem.message));
-  for (const warning of result?.warnings ?? []) line.append(html("p", { class: "note" }, warning));
-  return line;
-}
+const actions = {
+  path: "/api/diagram",
+  hide: (/** @type {Step} */ step) => void change({ ...state, steps: state.steps.map((other) => (other === step ? { ...step, hidden: !step.hidden } : other)) }),
+  remove: (/** @type {Step} */ step) => void change({ ...state, steps: without(state.steps, step.name) }),
+  pick: (/** @type {Step} */ step, /** @type {number} */ index) => {
+    picked = { name: step.name, index };
+    showResults();
+  },
+  end: (/** @type {Step} */ step) => void startAt({ name: step.name, index: 0 }),
+  keeps: () => true,
+};
 
 /** Asks what is to start at a point and starts it. @param {Picked} point */
 async function startAt({ name, index }) {
@@ -292,11 +279,18 @@ function intervalOf(parameters, key) {
   return { key, start, end };
 }
 
+listenToUndo();
 byId("stop").addEventListener("click", () => chain.stop());
 byId("shown").addEventListener("change", (event) => void change({ ...state, shown: /** @type {HTMLSelectElement} */ (event.target).value }));
+byId("named-set").addEventListener("change", (event) => {
+  const named = /** @type {HTMLSelectElement} */ (event.target).value || undefined;
+  // What was set by hand would hide the values of the set.
+  void change({ ...state, named, set: {}, start: {} });
+});
 byId("along-key").addEventListener("change", (event) => {
   const key = /** @type {HTMLSelectElement} */ (event.target).value;
-  const [start, end] = sliderRange(state.set[key] ?? model?.parameters[key] ?? 0);
+  const named = model?.named_sets.find((other) => other.name === state.named)?.parameters[key];
+  const [start, end] = sliderRange(state.set[key] ?? named ?? model?.parameters[key] ?? 0);
   fillAlong(start, end);
 });
 byId("along").addEventListener("submit", (event) => {

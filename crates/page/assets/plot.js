@@ -5,7 +5,8 @@ import { extent, readable, ticks } from "./numbers.js";
 
 /**
  * @typedef {[number, number]} Point
- * @typedef {{points: Point[], kind?: string, dashed?: boolean}} Curve `kind` is a class of the style sheet
+ * @typedef {{points: Point[], kind?: string, dashed?: boolean, arrows?: number}} Curve `kind` is a class of the style sheet; so many arrow heads tell
+ * in which direction it is passed
  * @typedef {{at: Point, kind?: string, text?: string, shape?: "cross" | "dot"}} Mark
  * @typedef {{label: string, low?: number, high?: number}} PlotAxis
  * @typedef {{
@@ -72,6 +73,9 @@ export function draw(plot) {
     // What leaves the axes that were asked for is cut off.
     line.setAttribute("clip-path", `url(#${clip})`);
     element.append(line);
+    for (const head of arrowHeads(curve.points.map(place), curve.arrows ?? 0)) {
+      element.append(svg("path", { class: `arrow ${curve.kind ?? ""}`, d: head, "clip-path": `url(#${clip})` }));
+    }
   }
   for (const mark of marks) {
     const [x, y] = place(mark.at);
@@ -106,6 +110,37 @@ export function draw(plot) {
 function range(axis, values) {
   const [low, high] = extent(values);
   return [axis.low ?? low, axis.high ?? high];
+}
+
+/**
+ * Arrow heads at equal distances along a line of the page, as paths.
+ * @param {Point[]} line
+ * @param {number} count
+ */
+function arrowHeads(line, count) {
+  const points = line.filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
+  const ways = [0];
+  points.forEach(([x, y], index) => {
+    const before = points[index - 1];
+    if (before) ways.push((ways.at(-1) ?? 0) + Math.hypot(x - before[0], y - before[1]));
+  });
+  const whole = ways.at(-1) ?? 0;
+  // On a line that is hardly longer than its heads they would only hide it.
+  if (whole < 20 * count) return [];
+  const heads = [];
+  for (let head = 0; head < count; head++) {
+    const way = ((head + 0.5) / count) * whole;
+    const index = ways.findIndex((passed) => passed >= way);
+    const [from, to] = [points[index - 1], points[index]];
+    if (!from || !to) continue;
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
+    const [ex, ey] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+    const part = (way - (ways[index - 1] ?? 0)) / length;
+    const [x, y] = [from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1])];
+    const corner = (/** @type {number} */ along, /** @type {number} */ aside) => `${(x + along * ex - aside * ey).toFixed(1)} ${(y + along * ey + aside * ex).toFixed(1)}`;
+    heads.push(`M${corner(4, 0)}L${corner(-3, 3)}L${corner(-3, -3)}Z`);
+  }
+  return heads;
 }
 
 /** @returns {Point[]} */

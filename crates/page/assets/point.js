@@ -1,9 +1,10 @@
 // A point of a branch beside the diagram: its numbers, its eigenvalues or multipliers, its orbit in the phase plane and over the time.
 
 import { Refusal, listen } from "./ask.js";
+import { captureMenu, columnsOf } from "./capture.js";
 import { html } from "./element.js";
-import { complex, readable } from "./numbers.js";
-import { draw } from "./plot.js";
+import { complex, extent, readable } from "./numbers.js";
+import { INNER, draw } from "./plot.js";
 import { labelKind } from "./starts.js";
 
 /**
@@ -13,6 +14,14 @@ import { labelKind } from "./starts.js";
  * @typedef {import("./plot.js").Point} Point
  * @typedef {{points: Point[], kind: string}} Extra a curve in the phase plane beside the orbit
  */
+
+/** What a special point has of its normal form, with its name. */
+const OF_NORMAL_FORMS = /** @type {const} */ ([
+  ["frequency", "frequency"], ["first_lyapunov", "first Lyapunov coefficient"], ["criticality", "criticality"], ["quadratic", "quadratic coefficient"],
+  ["cubic", "cubic coefficient"],
+]);
+/** How many times the width that the points of a branch need the phase plane may have to show motions. */
+const WIDEST = 3;
 
 /** All parameters at a point of a result. @param {any} data @param {any} point @returns {Record<string, number>} */
 export function parametersAt(data, point) {
@@ -48,8 +57,16 @@ export class PointView {
     this.axes = null;
     /** @type {Extra[]} */
     this.extras = [];
+    /** What of the field is shown in the phase plane, and the window that it is of. @type {Set<"nullcline" | "direction">} */
+    this.wanted = new Set();
+    this.windowOfField = "";
     this.where = "";
     this.abort = new AbortController();
+  }
+
+  /** Leaves out what was added to the phase plane. */
+  forget() {
+    Object.assign(this, { extras: [], wanted: new Set(), windowOfField: "" });
   }
 
   clear() {
@@ -58,19 +75,20 @@ export class PointView {
   }
 
   /**
-   * @param {{name: string, source: string}} model
+   * @param {{name: string, source: string} | null} model without, there is no phase plane
    * @param {Step} step
    * @param {Result} result
    * @param {number} index
+   * @param {any[]} others results of the same model, for the window of the phase plane
    */
-  show(model, step, result, index) {
+  show(model, step, result, index, others) {
     const point = result.data.points[index];
     if (!point) return this.clear();
     const where = `${result.key}:${index}`;
     if (where !== this.where) {
       this.abort.abort();
       this.abort = new AbortController();
-      this.extras = [];
+      this.forget();
     }
     this.where = where;
     const states = Object.keys(point.state ?? point.max ?? {});
@@ -90,8 +108,11 @@ export class PointView {
     if (point.error_estimate !== undefined) row("error estimate", readable(point.error_estimate, 2));
     for (const name of states) row(name, point.state ? readable(point.state[name]) : `${readable(point.min[name], 7)} to ${readable(point.max[name], 7)}`);
     for (const [name, value] of Object.entries(point.normal_form ?? {})) row(name.replaceAll("_", " "), readable(value, 7));
-    if (point.frequency) row("frequency", readable(point.frequency));
-    if (point.first_lyapunov) row("first Lyapunov coefficient", readable(point.first_lyapunov, 7));
+    for (const [key, name] of OF_NORMAL_FORMS) {
+      const value = point[key] ?? point.special?.[key];
+      if (typeof value === "number") row(name, readable(value, key === "frequency" ? 8 : 7));
+      else if (typeof value === "string") row(name, value);
+    }
     const title = point.label ? `${point.label}, ${result.name.replace(/\.json$/, "")}` : `Point ${index + 1} of ${result.name.replace(/\.json$/, "")}`;
     const canStart = point.label && (step.kind !== "cycles" || point.orbit || labelKind(point.label) === "HB");
     this.box.replaceChildren(
@@ -102,7 +123,7 @@ export class PointView {
       rows,
       canStart ? html("button", { type: "button", id: "start-here", click: () => this.listener.start() }, "What can start here…") : "",
       this.spectrum(point),
-      ...this.motion(model, states, point, orbit, parameters),
+      ...(model ? this.motion(model, states, point, orbit, parameters, [result.data, ...others]) : []),
     );
     if (focused) slider.focus();
   }
@@ -123,7 +144,9 @@ export class PointView {
       return /** @type {import("./plot.js").Mark} */ ({ at: [re ?? 0, im ?? 0], shape: "cross", kind: outside ? "outside" : "inside" });
     });
     const plot = draw({ description: `${name} in the complex plane`, equal: true, circle: isCycle, curves: [], marks, x: { label: "real part" }, y: { label: "imaginary part" } });
-    return html("figure", {}, plot.element, html("figcaption", {}, isCycle && near.length < finite.length ? `${name} (${finite.length - near.length} outside the picture)` : name), list);
+    const columns = () => ({ re: finite.map(([re]) => re ?? 0), im: finite.map(([, im]) => im ?? 0) });
+    const save = captureMenu(name, name.toLowerCase().replace(" ", "-"), () => plot.element, columns);
+    return html("figure", {}, plot.element, html("figcaption", {}, isCycle && near.length < finite.length ? `${name} (${finite.length - near.length} outside the picture) ` : `${name} `, save), list);
   }
 
   /**
@@ -133,8 +156,9 @@ export class PointView {
    * @param {any} point
    * @param {FoundPoint["orbit"]} orbit
    * @param {Record<string, number>} parameters
+   * @param {any[]} results that tell how far the states reach
    */
-  motion(model, states, point, orbit, parameters) {
+  motion(model, states, point, orbit, parameters, results) {
     if (states.length < 2) return [];
     if (!this.axes || !this.axes.every((axis) => states.includes(axis))) this.axes = [states[0] ?? "", states[1] ?? ""];
     const [x, y] = this.axes;
@@ -144,12 +168,16 @@ export class PointView {
     const curve = values(ix).map((value, sample) => [value, values(iy)[sample] ?? NaN]);
     /** @type {import("./plot.js").Mark[]} */
     const marks = point.state ? [{ at: [point.state[x], point.state[y]], kind: point.stable === true ? "equilibrium" : "equilibrium open" }] : [];
-    const [drawnX, drawnY] = curve.length ? [{ label: x }, { label: y }] : [window(x, point), window(y, point)];
-    const plot = draw({
+    const seen = (/** @type {string} */ key, /** @type {0 | 1} */ axis) =>
+      axisOf(key, curve.length ? curve.map((at) => at[axis]) : reach(key, point, results), this.extras.filter((extra) => extra.kind === "motion").flatMap((extra) => extra.points.map((at) => at[axis])));
+    const [drawnX, drawnY] = [seen(x, 0), seen(y, 1)];
+    /** @type {import("./plot.js").Plot} */
+    const plane = {
       description: `Phase plane of ${x} and ${y}`,
-      curves: [...this.extras, { points: curve, kind: "cycle", dashed: point.stable !== true }], marks,
+      curves: [...this.extras.map((extra) => ({ ...extra, arrows: extra.kind === "motion" ? 2 : 0 })), { points: curve, kind: "cycle", dashed: point.stable !== true, arrows: 3 }], marks,
       x: drawnX, y: drawnY,
-    });
+    };
+    const plot = draw(plane);
     plot.element.classList.add("pickable");
     const refresh = () => this.listener.move(-1);
     plot.element.addEventListener("click", (event) => {
@@ -165,23 +193,35 @@ export class PointView {
         "aria-label": which ? "vertical state" : "horizontal state",
         change: (/** @type {Event} */ event) => {
           if (this.axes) this.axes[which] = /** @type {HTMLSelectElement} */ (event.target).value;
-          this.extras = [];
+          this.forget();
           refresh();
         },
       }, ...states.map((name) => html("option", { value: name, selected: name === this.axes?.[which] }, name)));
     const tools = html("div", { class: "tools" }, axis(1), " over ", axis(0));
     if (states.length === 2) {
-      tools.append(html("button", { type: "button", click: () => void this.nullclines(model, parameters, point, drawnX, drawnY, refresh) }, "Nullclines"));
+      const add = () => void this.field(model, parameters, point, drawnX, drawnY, refresh);
+      for (const [kind, name] of /** @type {["nullcline" | "direction", string][]} */ ([["nullcline", "Nullclines"], ["direction", "Directions"]])) {
+        tools.append(html("button", { type: "button", "aria-pressed": String(this.wanted.has(kind)), click: () => {
+          if (!this.wanted.delete(kind)) this.wanted.add(kind);
+          add();
+        } }, name));
+      }
+      // A motion has made the window larger.
+      if (this.wanted.size && this.windowOfField && this.windowOfField !== JSON.stringify([drawnX, drawnY])) add();
     }
-    if (this.extras.length) tools.append(html("button", { type: "button", click: () => { this.extras = []; refresh(); } }, "Clear"));
-    const figures = [html("figure", {}, tools, plot.element, html("figcaption", {}, "Phase plane; press it to start a motion there"))];
+    if (this.extras.length) tools.append(html("button", { type: "button", click: () => { this.forget(); refresh(); } }, "Clear"));
+    const figures = [html("figure", {}, tools, plot.element, html("figcaption", {}, "Phase plane; press it to start a motion there ", captureMenu("the phase plane", "phase-plane", () => plot.element, () => columnsOf(plane))))];
     if (orbit) {
-      const history = draw({
+      /** @type {import("./plot.js").Plot} */
+      const course = {
         description: `${y} and ${x} over one period`,
         curves: [{ points: orbit.t.map((time, sample) => /** @type {Point} */ ([time, values(ix)[sample] ?? NaN])), kind: "cycle" }],
         x: { label: "t", low: 0, high: orbit.period }, y: { label: x },
-      });
-      figures.push(html("figure", {}, history.element, html("figcaption", {}, `${x} over one period`)));
+      };
+      const history = draw(course);
+      figures.push(html("figure", {}, history.element, html("figcaption", {}, `${x} over one period `, captureMenu("the time history", "history", () => history.element, () => ({
+        t: [...orbit.t], ...Object.fromEntries(states.map((name, index) => [name, [...values(index)]])),
+      })))));
     }
     return figures;
   }
@@ -223,7 +263,7 @@ export class PointView {
   }
 
   /**
-   * Adds the nullclines in the window that is seen.
+   * Adds what is wanted of the field in the window that is seen: nullclines, directions.
    * @param {{name: string, source: string}} model
    * @param {Record<string, number>} set
    * @param {any} point
@@ -231,24 +271,22 @@ export class PointView {
    * @param {import("./plot.js").PlotAxis} vertical
    * @param {() => void} refresh
    */
-  async nullclines(model, set, point, horizontal, vertical, refresh) {
+  async field(model, set, point, horizontal, vertical, refresh) {
     const [x, y] = this.axes ?? ["", ""];
-    const ends = (/** @type {string} */ key) => {
-      const [low, high] = point.state ? [point.state[key] - 1, point.state[key] + 1] : [point.min[key], point.max[key]];
-      return [low - 0.3 * (high - low), high + 0.3 * (high - low)];
-    };
-    const interval = (/** @type {string} */ key, /** @type {import("./plot.js").PlotAxis} */ axis) => {
-      const [low, high] = ends(key);
-      return { key, start: axis.low ?? low, end: axis.high ?? high };
-    };
+    this.windowOfField = JSON.stringify([horizontal, vertical]);
+    const interval = (/** @type {string} */ key, /** @type {import("./plot.js").PlotAxis} */ axis) => ({ key, start: axis.low, end: axis.high });
     try {
       const start = point.state ?? point.max;
       const request = { model: { source: { text: model }, set, start }, duration: 1e-3, points: 2, plots: [{ Listed: [x, y] }], window: [interval(x, horizontal), interval(y, vertical)] };
       const plane = (await this.simulate(request))?.phase_planes?.[0];
       if (!plane) return;
       const add = (/** @type {Point[][]} */ curves, /** @type {string} */ kind) => curves.forEach((points) => this.extras.push({ points, kind }));
-      add(plane.x_nullclines, "nullcline-x");
-      add(plane.y_nullclines, "nullcline-y");
+      this.extras = this.extras.filter((extra) => !/^(nullcline|direction)/.test(extra.kind));
+      if (this.wanted.has("direction")) add(plane.directions.map((/** @type {any} */ direction) => arrow(direction, plane.window)), "direction");
+      if (this.wanted.has("nullcline")) {
+        add(plane.x_nullclines, "nullcline-x");
+        add(plane.y_nullclines, "nullcline-y");
+      }
       refresh();
     } catch (error) {
       this.tell(error);
@@ -262,9 +300,49 @@ export class PointView {
   }
 }
 
-/** A window about an equilibrium. @param {string} key @param {any} point @returns {import("./plot.js").PlotAxis} */
-function window(key, point) {
-  const value = point.state?.[key] ?? 0;
-  const half = Math.max(1, Math.abs(value));
-  return { label: key, low: value - half, high: value + half };
+/**
+ * An arrow of the direction field, as long as any other on the page, as a line through its head.
+ * @param {{at: Point, velocity: Point}} direction
+ * @param {[Point, Point]} window
+ * @returns {Point[]}
+ */
+function arrow({ at, velocity }, [[left, right], [low, high]]) {
+  const [perX, perY] = [(right - left) / (INNER.width * 300), (high - low) / (INNER.height * 220)];
+  const [dx, dy] = [velocity[0] / perX, velocity[1] / perY];
+  const length = Math.hypot(dx, dy);
+  if (!(length > 0)) return [];
+  const [ex, ey] = [dx / length, dy / length];
+  const to = (/** @type {number} */ along, /** @type {number} */ aside) => /** @type {Point} */ ([at[0] + perX * (along * ex - aside * ey), at[1] + perY * (along * ey + aside * ex)]);
+  return [to(-4, 0), to(4, 0), to(1.5, 1.5), to(4, 0), to(1.5, -1.5)];
+}
+
+/**
+ * How far a state reaches on the branches: on that of the point, or where it is the same all along it on the others.
+ * @param {string} key
+ * @param {any} point
+ * @param {any[]} results
+ * @returns {number[]}
+ */
+function reach(key, point, results) {
+  const own = point.state?.[key] ?? 0;
+  for (let count = 1; count <= results.length; count += Math.max(1, results.length - 1)) {
+    const points = results.slice(0, count).flatMap((result) => result.points ?? []);
+    const values = points.flatMap((other) => (other.state ? [other.state[key]] : [other.min?.[key], other.max?.[key]])).filter((value) => Number.isFinite(value));
+    const [low, high] = extent(values, 0);
+    if (values.length && high - low > 1e-3 * Math.max(Math.abs(low), Math.abs(high)) && low <= own && own <= high) return [low, high];
+  }
+  return own === 0 ? [-1, 1] : [0, 2 * own];
+}
+
+/**
+ * An axis of the phase plane: what it must show, and motions as far as they do not go too far away.
+ * @param {string} key
+ * @param {number[]} needed
+ * @param {number[]} wanted
+ */
+function axisOf(key, needed, wanted) {
+  const [low, high] = extent(needed, 0.12);
+  const room = ((WIDEST - 1) / 2) * (high - low);
+  const [least, most] = wanted.length ? extent(wanted, 0.03) : [low, high];
+  return { label: key, low: Math.max(low - room, Math.min(low, least)), high: Math.min(high + room, Math.max(high, most)) };
 }

@@ -33,12 +33,12 @@ export function saveMenu(what, formats, save) {
 
 /**
  * Saves results in a format that the server writes.
+ * @param {string} path where it is asked
  * @param {Record<string, string>} files
- * @param {string[]} results
- * @param {string[]} states
+ * @param {{results: string[], states?: string[], window?: import("./zoom.js").Window}} what
  * @param {string} format
  * @param {string} name without an ending
  */
-export async function saveResults(files, results, states, format, name) {
-  give(await askFile("/api/diagram", { request: { results, states, format }, files }), `${name}.${format === "text" ? "txt" : format}`);
+export async function saveResults(path, files, what, format, name) {
+  give(await askFile(path, { request: { ...what, format }, files }), `${name}.${format === "text" ? "txt" : format}`);
 }

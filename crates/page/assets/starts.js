@@ -3,8 +3,8 @@
 /**
  * @typedef {import("./state.js").Step} Step
  * @typedef {{
- *   title: string, kind: Step["kind"], needs: "along" | "plane" | "duration", stay?: boolean,
- * }} Start `needs`: a parameter with its interval, two of them, or how long it lasts
+ *   title: string, kind: Step["kind"], needs: "along" | "plane" | "duration" | "nothing", stay?: boolean,
+ * }} Start `needs`: a parameter with its interval, two of them, how long it lasts, or nothing
  */
 
 /** The kind of a label: `HB` of `HB1`. @param {string} label */
@@ -22,6 +22,31 @@ const OF_CYCLES = /** @type {Record<string, string>} */ ({
   PD: "Curve of period doublings in two parameters",
   NS: "Curve of torus bifurcations in two parameters",
 });
+
+/**
+ * What can start at a labelled point of a branch of cycles, or of a curve, of a wheel.
+ * @param {Step["kind"]} kind
+ * @param {string} label
+ * @returns {Start[]}
+ */
+export function startsOfWheel(kind, label) {
+  const point = labelKind(label);
+  /** @type {Start[]} */
+  const starts = [];
+  if (point === "HB") {
+    starts.push({ title: "Cycles that are born there", kind: "cycles", needs: "along" });
+    if (kind === "cycles") starts.push({ title: "Curve of Hopf points in two parameters", kind: "locus", needs: "plane" });
+  } else if (kind === "cycles") {
+    if (point === "PD") starts.push({ title: "Doubled cycles", kind: "cycles", needs: "along" });
+    if (point === "BPC") starts.push({ title: "The other branch of cycles", kind: "cycles", needs: "along" });
+    const curve = OF_CYCLES[point];
+    if (curve) starts.push({ title: curve, kind: "locus", needs: "plane" });
+    starts.push({ title: "The cycles through it", kind: "cycles", needs: "along", stay: point === "PD" || point === "BPC" });
+  }
+  if (kind === "cycles" && point !== "HB") starts.push({ title: "A motion from there", kind: "simulate", needs: "duration" });
+  starts.push({ title: "Take the wheel there", kind: "equilibria", needs: "nothing" });
+  return starts;
+}
 
 /**
  * What can start at a labelled point of a result.

@@ -8,8 +8,8 @@
  *   plane?: [Interval, Interval], stay?: boolean, duration?: number, hidden?: boolean,
  * }} Step something that is computed; `name` is that of its result file
  * @typedef {{
- *   name: string, source: string, set: Record<string, number>, start: Record<string, number>, steps: Step[], shown: string,
- * }} State `shown` is the state on the vertical axis
+ *   name: string, source: string, set: Record<string, number>, start: Record<string, number>, steps: Step[], shown: string, named?: string,
+ * }} State `shown` is the state on the vertical axis, `named` the named set of values that is taken before `set` and `start`
  */
 
 /**

@@ -15,13 +15,20 @@ use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::simulate::SimulateRequest;
 use arclength_analysis::{
-    Along, Control, Error, Interval, ModelRequest, ModelSource, OpenedModel, StoredModel,
+    Along, ChosenModel, Control, Error, Interval, ModelRequest, ModelSource, OpenedModel, StoredModel,
 };
 use axum::body::Bytes;
 use axum::extract::State;
+use axum::http::StatusCode;
 use axum::response::Response;
 use kingpin_report::{NamedNumbers, Number};
 use serde::Serialize;
+use std::time::Duration;
+
+/// Most samples of a motion.
+const MOST_SAMPLES: u64 = 200_000;
+/// Longest time for which a motion is computed.
+const LONGEST: Duration = Duration::from_secs(120);
 
 /// Models to begin with: name, title and text.
 const GALLERY: &[(&str, &str, &str)] = &[
@@ -57,6 +64,7 @@ const ASSETS: &[Asset] = &[
     Asset { path: "/icon.svg", text: include_str!("../assets/icon.svg") },
     Asset { path: "/model.js", text: include_str!("../assets/model.js") },
     Asset { path: "/ask.js", text: include_str!("../assets/ask.js") },
+    Asset { path: "/capture.js", text: include_str!("../assets/capture.js") },
     Asset { path: "/chain.js", text: include_str!("../assets/chain.js") },
     Asset { path: "/commands.js", text: include_str!("../assets/commands.js") },
     Asset { path: "/diagram.js", text: include_str!("../assets/diagram.js") },
@@ -67,9 +75,12 @@ const ASSETS: &[Asset] = &[
     Asset { path: "/plot.js", text: include_str!("../assets/plot.js") },
     Asset { path: "/point.js", text: include_str!("../assets/point.js") },
     Asset { path: "/quantities.js", text: include_str!("../assets/quantities.js") },
+    Asset { path: "/rows.js", text: include_str!("../assets/rows.js") },
     Asset { path: "/save.js", text: include_str!("../assets/save.js") },
     Asset { path: "/starts.js", text: include_str!("../assets/starts.js") },
     Asset { path: "/state.js", text: include_str!("../assets/state.js") },
+    Asset { path: "/undo.js", text: include_str!("../assets/undo.js") },
+    Asset { path: "/zoom.js", text: include_str!("../assets/zoom.js") },
 ];
 
 /// The model that the page begins with.
@@ -134,13 +145,34 @@ struct ModelAnswer {
     parameters: NamedNumbers,
     /// The parameter that the model means to vary first, with its interval, where it says so.
     along: Option<Interval>,
-    /// Names of its sets of values.
-    named_sets: Vec<String>,
+    /// Its sets of values.
+    named_sets: Vec<NamedSet>,
     /// How long its motions are to be followed, where it says so.
     duration: Option<Number>,
     /// Where the right-hand side depends on the time.
     time: Option<TextPlace>,
     warnings: Vec<Warning>,
+}
+
+/// A set of values of a model: what differs from the model itself.
+#[derive(Serialize)]
+struct NamedSet {
+    name: String,
+    states: NamedNumbers,
+    parameters: NamedNumbers,
+}
+
+impl NamedSet {
+    fn of(set: &arclength_ode::NamedSet, chosen: &ChosenModel) -> Self {
+        let named = |names: &[String], values: &[(usize, f64)]| {
+            NamedNumbers(values.iter().map(|(index, value)| (names[*index].clone(), *value)).collect())
+        };
+        Self {
+            name: set.name.clone(),
+            states: named(chosen.model.states(), &set.states),
+            parameters: named(chosen.model.parameters(), &set.parameters),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -166,7 +198,7 @@ async fn model(State(work): State<Work>, body: Bytes) -> Result<Answer<Meaning>,
             states: chosen.named_state(&chosen.start),
             parameters: chosen.named_parameters(&[]),
             along: along.filter(|along| along.start.is_finite() && along.end.is_finite()),
-            named_sets: chosen.model.sets().iter().map(|set| set.name.clone()).collect(),
+            named_sets: chosen.model.sets().iter().map(|set| NamedSet::of(set, &chosen)).collect(),
             duration: options.total.filter(|total| *total > 0.0).map(Number),
             time: chosen.model.time_dependence().map(TextPlace::from),
             warnings: chosen
@@ -223,12 +255,24 @@ async fn locus(State(work): State<Work>, body: Bytes) -> Result<Response, Failur
 
 async fn simulate(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
     let Asked { request, files } = parse::<Asked<SimulateRequest>>(&body)?;
+    if let Some(points) = request.points.filter(|points| *points > MOST_SAMPLES) {
+        let message = format!("points {points}: too many for the page; allowed: up to {MOST_SAMPLES}");
+        return Err(Failure::new(StatusCode::UNPROCESSABLE_ENTITY, message));
+    }
     work.stream(move || {
         let analysis = request.validate_among(&files).map_err(Failure::from)?;
         Ok(move |control: &Control<'_>, events: &Events| {
             events.warn_of(analysis.warnings());
-            let result = analysis.run_under(control).map_err(|error: Error| Failure::from(error))?;
+            let (result, is_late) = events.within(LONGEST, || analysis.run_under(control));
+            let result = result.map_err(|error: Error| Failure::from(error))?;
             events.warn_of(&result.warnings);
+            if is_late {
+                let message = format!(
+                    "it was stopped after {} s of computing; the command line has no limit",
+                    LONGEST.as_secs()
+                );
+                events.tell("warning", &message);
+            }
             events.result(&result)
         })
     })

@@ -2,6 +2,7 @@
 
 use crate::answer::Answer;
 use crate::failure::Failure;
+use crate::look::Look;
 use crate::routes::Routes;
 use crate::sent_files::{Asked, parse};
 use crate::work::Work;
@@ -11,7 +12,7 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use kingpin_figure::{Figure, Span};
+use kingpin_figure::{Figure, Span, SvgOptions};
 use kingpin_report::Report;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -39,7 +40,6 @@ enum SavedFormat {
 
 /// Asks for a picture of results that belong together.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
 struct DiagramRequest {
     /// The results, by name.
     results: Vec<PathBuf>,
@@ -47,6 +47,8 @@ struct DiagramRequest {
     #[serde(default)]
     states: Vec<String>,
     format: SavedFormat,
+    #[serde(flatten)]
+    look: Look,
 }
 
 /// A picture for the page.
@@ -101,7 +103,8 @@ impl PictureAnswer {
             y: place.y.into(),
         };
         let panels = figure.places().into_iter().map(|place| place.map(panel)).collect();
-        Ok(Self { svg: figure.to_svg().map_err(drawing)?, width, height, panels })
+        let options = SvgOptions { fluid: true, ..SvgOptions::default() };
+        Ok(Self { svg: figure.to_svg_with(options).map_err(drawing)?, width, height, panels })
     }
 }
 
@@ -141,24 +144,27 @@ impl DiagramRequest {
             && !is_diagram(one)
         {
             return match one {
-                ResultFile::Equilibria(result) => saved_in(self.format, result),
-                ResultFile::Cycles(result) => saved_in(self.format, result),
-                ResultFile::Locus(result) => saved_in(self.format, result),
-                ResultFile::CycleLocus(result) => saved_in(self.format, result),
-                ResultFile::History(result) => saved_in(self.format, result),
+                ResultFile::Equilibria(result) => saved_in(self.format, self.look, result),
+                ResultFile::Cycles(result) => saved_in(self.format, self.look, result),
+                ResultFile::Locus(result) => saved_in(self.format, self.look, result),
+                ResultFile::CycleLocus(result) => saved_in(self.format, self.look, result),
+                ResultFile::History(result) => saved_in(self.format, self.look, result),
             };
         }
         let figure =
             if self.states.is_empty() { diagram(&results) } else { diagram_of(&results, &self.states) };
-        picture(self.format, &figure.map_err(|(index, problem)| failure(index, problem))?)
+        picture(self.format, self.look, figure.map_err(|(index, problem)| failure(index, problem))?)
     }
 }
 
-fn picture(format: SavedFormat, figure: &Figure) -> Result<Response, Failure> {
+fn picture(format: SavedFormat, look: Look, figure: Figure) -> Result<Response, Failure> {
+    let figure = look.of(figure);
     Ok(match format {
-        SavedFormat::Page => Answer(PictureAnswer::of(figure)?).into_response(),
+        SavedFormat::Page => Answer(PictureAnswer::of(&figure)?).into_response(),
         SavedFormat::Svg => {
-            ([(CONTENT_TYPE, "image/svg+xml")], figure.to_svg().map_err(drawing)?).into_response()
+            let options = SvgOptions { text: look.text, ..SvgOptions::default() };
+            let text = figure.to_svg_with(options).map_err(drawing)?;
+            ([(CONTENT_TYPE, "image/svg+xml")], text).into_response()
         }
         SavedFormat::Png => {
             ([(CONTENT_TYPE, "image/png")], figure.to_png(RESOLUTION).map_err(drawing)?).into_response()
@@ -170,7 +176,7 @@ fn picture(format: SavedFormat, figure: &Figure) -> Result<Response, Failure> {
     })
 }
 
-fn saved_in<R: Report>(format: SavedFormat, result: &R) -> Result<Response, Failure> {
+fn saved_in<R: Report>(format: SavedFormat, look: Look, result: &R) -> Result<Response, Failure> {
     let broken = |error: std::io::Error| {
         Failure::new(axum::http::StatusCode::INTERNAL_SERVER_ERROR, error.to_string())
     };
@@ -188,7 +194,7 @@ fn saved_in<R: Report>(format: SavedFormat, result: &R) -> Result<Response, Fail
             Ok(([(CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response())
         }
         _ => match result.figure().map_err(drawing)? {
-            Some(figure) => picture(format, &figure),
+            Some(figure) => picture(format, look, figure),
             None => Err(Failure::bad_request("this result has no picture; allowed: csv, text")),
         },
     }
@@ -198,9 +204,19 @@ fn saved_in<R: Report>(format: SavedFormat, result: &R) -> Result<Response, Fail
 ///
 /// # Errors
 /// Another format; a picture that cannot be drawn or that the result does not have.
-pub fn saved<R: Report>(format: &str, result: &R) -> Result<Response, Failure> {
-    let format =
-        SavedFormat::deserialize(serde::de::value::StrDeserializer::<serde::de::value::Error>::new(format))
-            .map_err(|error| Failure::bad_request(format!("format: {error}")))?;
-    saved_in(format, result)
+pub fn saved<R: Report>(format: &str, look: Look, result: &R) -> Result<Response, Failure> {
+    saved_in(format_named(format)?, look, result)
+}
+
+/// Answers with a picture in one of the formats of pictures: `page`, `svg`, `png` or `pdf`.
+///
+/// # Errors
+/// Another format; a picture that cannot be drawn.
+pub fn drawn(format: &str, look: Look, figure: Figure) -> Result<Response, Failure> {
+    picture(format_named(format)?, look, figure)
+}
+
+fn format_named(format: &str) -> Result<SavedFormat, Failure> {
+    SavedFormat::deserialize(serde::de::value::StrDeserializer::<serde::de::value::Error>::new(format))
+        .map_err(|error| Failure::bad_request(format!("format: {error}")))
 }

@@ -16,7 +16,9 @@ use std::convert::Infallible;
 use std::pin::Pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::RecvTimeoutError;
 use std::task::{Context, Poll};
+use std::time::Duration;
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::spawn_blocking;
 
@@ -87,6 +89,23 @@ impl Events {
         if let Ok(text) = serde_json::to_string(data) {
             self.tell(kind, &text);
         }
+    }
+
+    /// Computes something, which is stopped after some time; says whether it was.
+    pub fn within<A>(&self, longest: Duration, compute: impl FnOnce() -> A) -> (A, bool) {
+        let (done, is_done) = std::sync::mpsc::channel::<()>();
+        std::thread::scope(|scope| {
+            let alarm = scope.spawn(move || {
+                let is_late = is_done.recv_timeout(longest) == Err(RecvTimeoutError::Timeout);
+                if is_late {
+                    self.stop.store(true, Ordering::Relaxed);
+                }
+                is_late
+            });
+            let answer = compute();
+            drop(done);
+            (answer, alarm.join().unwrap_or(false))
+        })
     }
 
     /// Tells what is worth knowing.
@@ -177,5 +196,24 @@ impl Stream for Received {
 
     fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
         self.receiver.poll_recv(context).map(|event| event.map(Ok))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_too_long_is_stopped_and_what_does_not_is_not() {
+        let (sender, _receiver) = mpsc::channel(1);
+        let events = Events { sender, stop: Arc::default() };
+        assert_eq!(events.within(Duration::from_secs(60), || 1), (1, false));
+        assert!(!events.stop.load(Ordering::Relaxed));
+        let wait = || {
+            while !events.stop.load(Ordering::Relaxed) {
+                std::thread::yield_now();
+            }
+        };
+        assert_eq!(events.within(Duration::from_millis(20), wait), ((), true));
     }
 }

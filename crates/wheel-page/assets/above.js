@@ -8,9 +8,9 @@ import { readable } from "./numbers.js";
  * @typedef {{l: number, R: number, r: number, v: number}} Sizes in metres and m/s; `r` may be infinite
  * @typedef {[number[], number[]]} Components
  * @typedef {{
- *   label: string | null, t: number[], u: number[], q: number[], psi: number[], Omega: number[], king_pin_force: Components,
+ *   label: string | null, at?: [number, number], t: number[], u: number[], q: number[], psi: number[], Omega: number[], king_pin_force: Components,
  *   ground_force: Components,
- * }} Motion at equal distances of time
+ * }} Motion at equal distances of time; `at` is the value of the parameter and the period, of a cycle
  */
 
 /** How wide a wheel is drawn, in radii: the model knows no width. */

@@ -5,7 +5,7 @@
  * @typedef {import("./wheel.js").Value} Value
  * @typedef {{changes: [string, Value][], x: Interval, y: Interval, counts: number[], along: Interval, at: number | null, shimmy: boolean,
  *   motion: {duration: number, perturb: [string, number][], blow: number, slides: boolean}, basin: {x: Interval, y: Interval, counts: number[]} | null,
- *   report: boolean}} Shown what the page shows; `changes` are the keys in which the wheel is not the paper's
+ *   report: boolean, steps: import("./state.js").Step[]}} Shown what the page shows; `changes` are the keys in which the wheel is not the paper's
  */
 
 /** @param {Interval} interval @param {number} [count] */
@@ -19,7 +19,7 @@ function tuple({ key, start, end }, count) {
 }
 
 /** @param {Shown} shown */
-export function commandLines({ changes, x, y, counts, along, at, shimmy, motion, basin, report }) {
+export function commandLines({ changes, x, y, counts, along, at, shimmy, motion, basin, report, steps }) {
   const wheel = changes.map(([key, value]) => ` -s ${key}=${value}`).join("");
   const contact = motion.slides ? " --contact sliding" : "";
   const kicks = motion.perturb.map(([key, value]) => ` --perturb ${key}=${value}`).join("") + (motion.blow ? ` --blow=${motion.blow}` : "");
@@ -30,6 +30,13 @@ export function commandLines({ changes, x, y, counts, along, at, shimmy, motion,
     `kingpin cycles${wheel} --along ${written(along)}${at === null ? "" : ` --at ${at}`} -o cycles.json -o cycles.svg`,
     `kingpin simulate${wheel} --duration ${motion.duration}${kicks}${contact} -o motion.json`,
   ];
+  for (const step of steps) {
+    const words = [`kingpin ${step.kind} --from ${step.from?.path}:${step.from?.label}`];
+    if (step.stay) words.push("--stay");
+    if (step.along) words.push(`--along ${written(step.along)}`);
+    if (step.plane) words.push(`--in ${step.plane.map((axis) => written(axis)).join(",")}`);
+    lines.push(`${words.join(" ")} -o ${step.name} -o ${step.name.replace(/json$/, "svg")}`);
+  }
   if (shimmy) lines.push(`kingpin shimmy${wheel} --along ${written(along)}${at === null ? "" : ` --at ${at}`} -o shimmy.json -o shimmy.svg`);
   if (basin) lines.push(`kingpin basin${wheel} --x ${written(basin.x, basin.counts[0])} --y ${written(basin.y, basin.counts[1])} --contact ${motion.slides ? "sliding" : "rolling"} -o basin.json -o basin.svg`);
   if (report) lines.push(`kingpin report${wheel} -o report`);
@@ -37,7 +44,7 @@ export function commandLines({ changes, x, y, counts, along, at, shimmy, motion,
 }
 
 /** @param {Shown} shown */
-export function pythonLines({ changes, x, y, counts, along, at, shimmy, motion, basin, report }) {
+export function pythonLines({ changes, x, y, counts, along, at, shimmy, motion, basin, report, steps }) {
   const literal = (/** @type {Value | string} */ value) => (typeof value === "number" ? String(value) : `"${value}"`);
   const wheel = changes.map(([key, value]) => `${key}=${literal(value)}`).join(", ");
   const perturb = motion.perturb.length ? `, perturb={${motion.perturb.map(([key, value]) => `"${key}": ${value}`).join(", ")}}` : "";
@@ -54,6 +61,12 @@ export function pythonLines({ changes, x, y, counts, along, at, shimmy, motion, 
     `cycles = wheel.cycles(along=${tuple(along)}${wanted})`,
     `motion = wheel.simulate(${motion.duration}${perturb}${blow}${contact})`,
   ];
+  const variable = (/** @type {string} */ name) => name.replace(/\.json$/, "").replaceAll("-", "_");
+  for (const step of steps) {
+    const words = step.plane ? step.plane.map((axis) => tuple(axis)) : step.along ? [`along=${tuple(step.along)}`] : [];
+    if (step.stay) words.push("stay=True");
+    lines.push(`${variable(step.name)} = ${variable(step.from?.path ?? "")}["${step.from?.label}"].${step.kind}(${words.join(", ")})`);
+  }
   if (shimmy) lines.push(`shimmy = wheel.shimmy(along=${tuple(along)}${wanted})`);
   if (basin) lines.push(`basin = wheel.basin(x=${tuple(basin.x, basin.counts[0])}, y=${tuple(basin.y, basin.counts[1])}, contact="${motion.slides ? "sliding" : "rolling"}")`);
   if (report) lines.push('report = wheel.report("report")');

@@ -3,6 +3,7 @@
 
 import { Above } from "./above.js";
 import { Refusal } from "./ask.js";
+import { captureMenu } from "./capture.js";
 import { byId, html } from "./element.js";
 import { extent, readable } from "./numbers.js";
 import { Plane } from "./plane.js";
@@ -26,6 +27,13 @@ const FASTEST = 1.4;
 const COARSE = [25, 17];
 const FINE = [81, 61];
 
+/** A motion as columns. @param {Motion | null} motion @returns {Record<string, number[]>} */
+function columnsOfMotion(motion) {
+  if (!motion) return {};
+  const { t, u, q, psi, Omega, king_pin_force: [kingX, kingY], ground_force: [groundX, groundY] } = motion;
+  return { t, u, q, psi, Omega, king_pin_force_x: kingX, king_pin_force_y: kingY, ground_force_x: groundX, ground_force_y: groundY };
+}
+
 /** @param {string} id */
 function field(id) {
   return /** @type {HTMLInputElement} */ (byId(id));
@@ -47,7 +55,11 @@ export class Motions {
     /** The uniform motion. @type {Motion | null} */
     this.uniformMotion = null;
     /** What can be played besides, by the branch it belongs to. @type {Record<string, Motion[]>} */
-    this.offered = { cycles: [], shimmy: [], motion: [] };
+    this.offered = { shimmy: [], motion: [] };
+    /** All states of it. @type {Record<string, number>} */
+    this.uniformState = {};
+    /** Who waits for the uniform motion of another wheel. @type {(() => void)[]} */
+    this.waiting = [];
     /** Changes of the states from which the last motion started. @type {[string, number][]} */
     this.perturb = [];
     this.blow = 0;
@@ -67,6 +79,9 @@ export class Motions {
       byId("play").setAttribute("aria-pressed", String(!this.above.isPlaying));
     });
     byId("shown-motion").addEventListener("change", () => this.choose());
+    const columns = () => columnsOfMotion(this.above.motion ?? this.uniformMotion);
+    byId("above-tools").append(captureMenu("the wheel from above", "above", () => byId("above").querySelector("svg"), columns));
+    byId("plane-tools").append(captureMenu("the plane", "plane", () => byId("plane").querySelector("svg"), columns));
   }
 
   /** A state of the uniform motion. @param {"psi" | "Omega"} state */
@@ -90,6 +105,7 @@ export class Motions {
     const { above, plane, page } = this;
     this.abort.abort();
     this.uniformMotion = verdict.above;
+    this.uniformState = verdict.state;
     // A wheel that rolls in its uniform motion may slide when it is kicked; one with a tyre has a law of its own.
     if (!this.hasChosen) field("slides").checked = verdict.rolls && isRigid;
     const swing = Math.max(...verdict.eigenvalues.map((/** @type {[number, number]} */ [, im]) => Math.abs(im)));
@@ -102,28 +118,55 @@ export class Motions {
     plane.limits = [[-WIDEST, WIDEST], [round(middle - half), round(middle + half)]];
     Object.assign(plane, { rest: verdict.above, motion: null, map: null });
     plane.draw();
-    this.offered = { cycles: [], shimmy: [], motion: [] };
+    this.offered = { shimmy: [], motion: [] };
     page.keep("motion", null);
     page.keep("basin", null);
     byId("history").replaceChildren();
     byId("motion-note").textContent = "";
     this.list("");
+    this.waiting.splice(0).forEach((go) => go());
   }
 
-  /** Offers the motions of a branch. @param {string} name @param {Answer | null} answer */
-  offer(name, answer) {
-    this.offered[name] = answer?.motions ?? [];
+  /** Offers the motions of a branch. @param {string} name @param {Motion[]} motions */
+  offer(name, motions) {
+    if (this.offered[name]?.length === motions.length && motions.every((motion, index) => motion === this.offered[name]?.[index])) return;
+    this.offered[name] = motions;
     this.list(/** @type {HTMLSelectElement} */ (byId("shown-motion")).value);
+  }
+
+  /** Offers no more what belongs to curves that are gone. @param {Set<string>} names of those that are there */
+  withdraw(names) {
+    const gone = Object.keys(this.offered).filter((name) => name.endsWith(".json") && !names.has(name));
+    gone.forEach((name) => delete this.offered[name]);
+    if (gone.length) this.list(/** @type {HTMLSelectElement} */ (byId("shown-motion")).value);
+  }
+
+  /** Waits for the uniform motion of another wheel. @returns {Promise<void>} */
+  nextRest() {
+    return new Promise((resolve) => this.waiting.push(resolve));
+  }
+
+  /**
+   * Follows the motion from a state.
+   * @param {string[]} states
+   * @param {number[]} values
+   * @param {number} duration
+   */
+  async releaseAt(states, values, duration) {
+    field("duration").value = readable(duration, 3);
+    const changes = states.map((name, index) => /** @type {[string, number]} */ ([name, (values[index] ?? NaN) - (this.uniformState[name] ?? NaN)]));
+    await this.release(changes.filter(([, change]) => Number.isFinite(change)), 0);
   }
 
   /** What can be played, as a list. @param {string} chosen */
   list(chosen) {
     const titles = /** @type {Record<string, string>} */ ({ cycles: "cycle", shimmy: "shimmy", motion: "what was let go" });
     const options = [html("option", { value: "" }, "uniform motion")];
-    for (const [name, motions] of Object.entries(this.offered)) {
+    for (const [file, motions] of Object.entries(this.offered)) {
+      const name = file.replace(/\.json$/, "");
       motions.forEach((motion, index) => {
-        const value = `${name}:${index}`;
-        options.push(html("option", { value, selected: value === chosen }, `${titles[name]}${motion.label ? ` ${motion.label}` : ""}`));
+        const value = `${file}:${index}`;
+        options.push(html("option", { value, selected: value === chosen }, `${titles[name] ?? name}${motion.label ? ` ${motion.label}` : ""}`));
       });
     }
     byId("shown-motion").replaceChildren(...options);
@@ -147,7 +190,7 @@ export class Motions {
     const curve = motion.t.map((time, index) => /** @type {[number, number]} */ ([time, motion.psi[index] ?? NaN]));
     const [low, high] = extent(motion.psi);
     const plot = draw({ description: "caster angle over the time", curves: [{ points: curve, kind: "cycle" }], x: { label: "t (s)", low: 0, high: motion.t.at(-1) ?? 1 }, y: { label: "ψ (rad)", low, high } });
-    byId("history").replaceChildren(plot.element);
+    byId("history").replaceChildren(plot.element, captureMenu("the time history", "history", () => plot.element, () => columnsOfMotion(motion)));
   }
 
   /**

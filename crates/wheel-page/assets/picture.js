@@ -11,9 +11,10 @@ import { html, svg } from "./element.js";
  * @param {Picture} picture
  * @param {string} description
  * @param {[number, number] | null} marked
+ * @param {import("./zoom.js").Zoom | null} zoom
  * @param {((x: number, y: number) => void) | null} pick
  */
-export function showPicture(box, picture, description, marked, pick) {
+export function showPicture(box, picture, description, marked, zoom, pick) {
   const place = picture.panels[0];
   const overlay = svg("svg", { viewBox: `0 0 ${picture.width} ${picture.height}`, class: "overlay" });
   box.replaceChildren(pictureElement(picture, description), overlay);
@@ -25,8 +26,10 @@ export function showPicture(box, picture, description, marked, pick) {
     const inside = x >= place.left && x <= place.right && y >= place.top && y <= place.bottom;
     if (inside) overlay.append(svg("path", { class: "chosen", d: `M${x - 6} ${y}h12M${x} ${y - 6}v12` }));
   }
+  zoom?.attach(overlay, box, place, picture);
   if (!pick) return;
   overlay.addEventListener("click", (event) => {
+    if (zoom?.hasDragged) return;
     const bounds = overlay.getBoundingClientRect();
     const x = ((event.clientX - bounds.left) / bounds.width) * picture.width;
     const y = ((event.clientY - bounds.top) / bounds.height) * picture.height;

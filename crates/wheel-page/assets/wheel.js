@@ -1,6 +1,7 @@
 // The page for a wheel: its verdict, its stability chart, its cycles, its motions.
 
 import { Refusal, ask, askFile, listen } from "./ask.js";
+import { Branches } from "./branches.js";
 import { byId, html } from "./element.js";
 import { commandLines, pythonLines } from "./lines.js";
 import { Motions } from "./motions.js";
@@ -9,13 +10,16 @@ import { showPicture, showProblem } from "./picture.js";
 import { showQuantities } from "./quantities.js";
 import { give, saveMenu } from "./save.js";
 import { pack, unpack } from "./state.js";
+import { enter, listenToUndo, showProgress } from "./undo.js";
+import { Zoom, isDark } from "./zoom.js";
 
 /**
  * @typedef {number | "inf"} Value infinity has no number in JSON
  * @typedef {{key: string, start: number, end: number}} Interval
  * @typedef {{parameters: Record<string, Value>, tyre: string}} Wheel
- * @typedef {{wheel: Wheel, x: Interval, y: Interval, along: Interval, shimmy?: boolean, basin?: boolean, report?: boolean}} State
- * what takes long is only computed where it is wanted
+ * @typedef {{wheel: Wheel, x: Interval, y: Interval, along: Interval, shimmy?: boolean, basin?: boolean, report?: boolean,
+ *   steps?: import("./state.js").Step[], hidden?: boolean}} State
+ * what takes long is only computed where it is wanted; `steps` are the curves besides the first one, which may be hidden
  * @typedef {{name: string, symbol: string, unit: string, meaning: string, lowest: number, highest: number, infinite: boolean,
  *   allowed: string, default: Value, of_the_tyre: boolean}} Key
  * @typedef {import("./diagram.js").Picture} Picture
@@ -38,10 +42,14 @@ let state = { wheel: { parameters: {}, tyre: "rigid" }, x: interval("v", 0.1, 12
 let keys = [];
 /** What the numbers on the page belong to; all of it ends when the wheel is another. */
 let abort = new AbortController();
-/** @type {Map<string, {run: string}>} computations that run, with the number that stops each */
+/** @type {Map<string, {run: string, part: number | null}>} computations that run, with the number that stops each */
 const running = new Map();
 /** @type {Record<string, Answer | null>} */
-const answers = { chart: null, cycles: null, shimmy: null, motion: null, basin: null };
+const answers = { chart: null, shimmy: null, motion: null, basin: null };
+/** What the verdict and the report said last. @type {any} */
+let lastVerdict = null;
+/** @type {Answer | null} */
+let lastReport = null;
 /** Whether a slider moves and what it asks for is being computed, and whether it has moved on since. */
 const glide = { isComputing: false, hasMoved: false };
 
@@ -54,6 +62,30 @@ const motions = new Motions({
   },
   wantsBasin: () => state.basin ?? false,
   signal: () => abort.signal,
+});
+
+/** Which part of the chart is seen: its axes, which are computed anew. */
+const chartZoom = new Zoom(() => {
+  const { x, y } = chartZoom.window;
+  const usual = about(state.wheel);
+  const axis = (/** @type {Interval} */ old, /** @type {[number, number]} */ [start, end]) => {
+    const key = keys.find((other) => other.name === old.key);
+    return interval(old.key, Math.max(start, key?.lowest ?? start), Math.min(end, key?.highest ?? end));
+  };
+  void change({ ...state, x: x ? axis(state.x, x) : usual.x, y: y ? axis(state.y, y) : usual.y });
+});
+const branches = new Branches({
+  asked, valueOf, wanted, motions, messageOf,
+  first: () => ({ kind: "cycles", name: "cycles.json", along: state.along, hidden: state.hidden ?? false }),
+  others: () => state.steps ?? [],
+  keep: (steps, hidden) => void change({ ...state, steps, hidden }),
+  range(key) {
+    const known = keys.find((other) => other.name === key);
+    return known ? rangeOf(known) : [0, 1];
+  },
+  names: () => keys.map((key) => key.name),
+  take,
+  changed: showStatus,
 });
 
 /** @param {string} key @param {number} start @param {number} end @returns {Interval} */
@@ -93,7 +125,7 @@ function wanted() {
 function showCommands() {
   const shown = {
     changes: changes(), x: state.x, y: state.y, counts: FINE, along: state.along, at: wanted(), shimmy: state.shimmy ?? false, motion: motions.asked(),
-    basin: state.basin ? motions.basinAsked() : null, report: state.report ?? false,
+    basin: state.basin ? motions.basinAsked() : null, report: state.report ?? false, steps: state.steps ?? [],
   };
   byId("lines").textContent = commandLines(shown);
   byId("python-lines").textContent = pythonLines(shown);
@@ -115,12 +147,19 @@ function field(id) {
 async function compute(name, path, request, signal = abort.signal) {
   /** @type {Answer} */
   const answer = { request, text: "", data: null, picture: null, motions: [], map: null, warnings: [] };
-  const entry = { run: "" };
+  /** @type {{run: string, part: number | null}} */
+  const entry = { run: "", part: null };
   running.set(name, entry);
   showStatus();
   try {
-    await listen(path, { request }, signal, (kind, text) => {
+    // Other routes have no picture.
+    const look = ["chart", "shimmy"].includes(name) ? { look: { dark: isDark() } } : {};
+    await listen(path, { request, ...look }, signal, (kind, text) => {
       if (kind === "run") entry.run = text;
+      else if (kind === "progress") {
+        entry.part = JSON.parse(text);
+        showStatus();
+      }
       else if (kind === "picture") answer.picture = JSON.parse(text);
       else if (kind === "motion") answer.motions.push(JSON.parse(text));
       else if (kind === "map") answer.map = JSON.parse(text);
@@ -139,8 +178,10 @@ async function compute(name, path, request, signal = abort.signal) {
 }
 
 function showStatus() {
-  byId("status").textContent = [...running.keys()].join(", ");
-  byId("stop").hidden = running.size === 0;
+  const texts = [...running.keys(), ...branches.running];
+  byId("status").textContent = texts.join(", ");
+  byId("stop").hidden = texts.length === 0;
+  showProgress([...running.values()].map(({ part }) => part));
 }
 
 /** @param {unknown} error */
@@ -164,17 +205,15 @@ async function change(next, isEntry = true) {
   showStatus();
   showFields();
   showCommands();
-  if (isEntry) {
-    const text = `#${await pack(state)}`;
-    if (signal.aborted) return;
-    if (text !== location.hash) history.pushState(null, "", text);
-  }
+  const text = `#${await pack(state)}`;
+  if (signal.aborted) return;
+  if (text !== location.hash) enter(text, isEntry);
   try {
     await Promise.all([showVerdict(signal), showChart(signal, COARSE)]);
     await new Promise((resolve) => setTimeout(resolve, REST));
     if (signal.aborted) return;
     await showChart(signal, FINE);
-    if (!signal.aborted) await showCycles(signal);
+    if (!signal.aborted) await branches.show(signal);
     if (!signal.aborted && state.shimmy) await showShimmy(signal);
     if (!signal.aborted && state.basin) await motions.showBasin(signal);
     if (!signal.aborted && state.report) await showReport(signal);
@@ -238,6 +277,7 @@ async function showVerdict(signal) {
   if (Infinity === valueOf("r") && critical === null && stable === false && verdict.closed_form) lines[0] = "At every speed, without dry friction.";
   byId("verdict").replaceChildren(html("strong", {}, first), ` ${lines.join(" ")}`);
   byId("numbers").textContent = verdict.text;
+  lastVerdict = verdict;
   motions.rest(verdict, state.wheel.tyre === "rigid");
   showCommands();
 }
@@ -250,7 +290,7 @@ async function showChart(signal, count) {
     const answer = await compute("chart", "/api/wheel/chart", { ...asked(), x: sampled(state.x, count[0]), y: sampled(state.y, count[1]) });
     answers.chart = answer;
     if (!answer.picture) return;
-    showPicture(box, answer.picture, `Stability chart over ${state.x.key} and ${state.y.key}`, [valueOf(state.x.key), valueOf(state.y.key)], (x, y) => {
+    showPicture(box, answer.picture, `Stability chart over ${state.x.key} and ${state.y.key}`, [valueOf(state.x.key), valueOf(state.y.key)], chartZoom, (x, y) => {
       const round = (/** @type {number} */ value) => Number(value.toPrecision(4));
       void change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [state.x.key]: round(x), [state.y.key]: round(y) } } });
     });
@@ -260,31 +300,10 @@ async function showChart(signal, count) {
   }
 }
 
-/** @param {AbortSignal} signal */
-async function showCycles(signal) {
-  const box = byId("diagram-picture");
-  const notes = byId("diagram-notes");
-  try {
-    const answer = await compute("cycles", "/api/wheel/cycles", { ...asked(), along: state.along, at: wanted() === null ? [] : [wanted()] });
-    answers.cycles = answer;
-    if (answer.picture) showPicture(box, answer.picture, `Limit cycles along ${state.along.key}`, null, null);
-    notes.replaceChildren(...labels(answer), ...answer.warnings.map((warning) => html("p", { class: "note" }, warning)));
-    motions.offer("cycles", answer);
-    box.dataset.done = "yes";
-  } catch (error) {
-    if (signal.aborted) return;
-    answers.cycles = null;
-    motions.offer("cycles", null);
-    showProblem(box, messageOf(error));
-    notes.replaceChildren();
-    box.dataset.done = "yes";
-  }
-}
-
-/** Takes the wheel to a point of a branch. @param {any} point */
-function take(point) {
-  const { key } = state.along;
-  void change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [key]: Number(Number(point.value).toPrecision(6)) } } });
+/** Takes the wheel to other values. @param {Record<string, number>} values */
+async function take(values) {
+  const rounded = Object.entries(values).map(([key, value]) => [key, Number(Number(value).toPrecision(6))]);
+  await change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, ...Object.fromEntries(rounded) } } });
 }
 
 /** @param {AbortSignal} signal */
@@ -294,13 +313,13 @@ async function showShimmy(signal) {
   try {
     const answer = await compute("shimmy", "/api/wheel/shimmy", { ...asked(), along: state.along, at: wanted() === null ? [] : [wanted()] });
     answers.shimmy = answer;
-    if (answer.picture) showPicture(box, answer.picture, `Shimmy with sliding along ${state.along.key}`, null, null);
+    if (answer.picture) showPicture(box, answer.picture, `Shimmy with sliding along ${state.along.key}`, null, null, null);
     notes.replaceChildren(...labels(answer), ...answer.warnings.map((warning) => html("p", { class: "note" }, warning)));
-    motions.offer("shimmy", answer);
+    motions.offer("shimmy", answer.motions);
   } catch (error) {
     if (signal.aborted) return;
     answers.shimmy = null;
-    motions.offer("shimmy", null);
+    motions.offer("shimmy", []);
     showProblem(box, messageOf(error));
     notes.replaceChildren();
   }
@@ -312,7 +331,7 @@ function labels(answer) {
   const labelled = answer.data.points.filter((/** @type {any} */ point) => point.label && !/^EP/.test(point.label));
   return labelled.map((/** @type {any} */ point) => {
     const title = `${key} = ${readable(point.value, 7)}, period ${readable(point.period, 5)} s`;
-    return html("button", { type: "button", class: "label", title, click: () => take(point) }, `${point.label}, ${key} = ${readable(point.value, 4)}`);
+    return html("button", { type: "button", class: "label", title, click: () => void take({ [key]: point.value }) }, `${point.label}, ${key} = ${readable(point.value, 4)}`);
   });
 }
 
@@ -321,7 +340,8 @@ async function showReport(signal) {
   const box = byId("findings");
   box.setAttribute("aria-busy", "true");
   try {
-    const { data } = await compute("report", "/api/wheel/report", asked());
+    lastReport = await compute("report", "/api/wheel/report", asked());
+    const { data } = lastReport;
     box.replaceChildren(...data.findings.map((/** @type {any} */ finding) =>
       html("li", { class: finding.undecided ? "undecided" : null }, html("strong", {}, `${finding.subject}. `), finding.text, finding.undecided && html("em", {}, " Undecided."),
         finding.check && html("p", { class: "note" }, `Checked: ${finding.check}`))));
@@ -412,10 +432,24 @@ byId("along").addEventListener("submit", (event) => {
 });
 byId("stop").addEventListener("click", () => {
   for (const { run } of running.values()) if (run) ask("/api/stop", { run: Number(run) }).catch(() => {});
+  branches.stop();
 });
 for (const [id, lines] of /** @type {[string, string][]} */ ([["copy", "lines"], ["copy-python", "python-lines"]])) {
   byId(id).addEventListener("click", () => void navigator.clipboard.writeText(byId(lines).textContent ?? ""));
 }
+listenToUndo();
+byId("verdict-tools").append(saveMenu("the verdict", ["text", "json"], async (format) => {
+  if (!lastVerdict) return;
+  const { above, text, ...numbers } = lastVerdict;
+  if (format === "text") give(new Blob([text], { type: "text/plain" }), "verdict.txt");
+  else give(new Blob([JSON.stringify(numbers)], { type: "application/json" }), "verdict.json");
+}));
+byId("report-tools").append(saveMenu("the report", ["text", "json"], async (format) => {
+  if (!lastReport) return;
+  const told = lastReport.data.findings.map((/** @type {any} */ { subject, text, undecided, check }) => `${subject}. ${text}${undecided ? " Undecided." : ""}${check ? `\n  Checked: ${check}` : ""}`);
+  if (format === "text") give(new Blob([`${told.join("\n")}\n`], { type: "text/plain" }), "report.txt");
+  else give(new Blob([lastReport.text], { type: "application/json" }), "report.json");
+}));
 byId("follow-shimmy").addEventListener("click", () => void change({ ...state, shimmy: true }));
 byId("basin").addEventListener("change", () => void change({ ...state, basin: field("basin").checked }));
 byId("report").addEventListener("toggle", () => {
@@ -439,7 +473,9 @@ field("file").addEventListener("change", async () => {
     byId("wheel-problem").textContent = `${file.name}: ${messageOf(error)}`;
   }
 });
-for (const name of ["chart", "cycles", "shimmy", "motion", "basin"]) {
+byId("chart-tools").append(chartZoom.buttons);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => void change(state, false));
+for (const name of ["chart", "shimmy", "motion", "basin"]) {
   byId(`${name}-tools`).append(saveMenu(name, ["svg", "png", "pdf", "csv", "text", "json"], async (format) => {
     const answer = answers[name];
     if (!answer) return;
@@ -463,7 +499,7 @@ async function begin() {
     list.value = "";
     if (entry) void change(about(entry.wheel));
   });
-  await change(known?.wheel ? known : about(start.wheel));
+  await change(known?.wheel ? known : about(start.wheel), false);
 }
 
 void begin();

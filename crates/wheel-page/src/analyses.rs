@@ -1,8 +1,10 @@
 //! Analyses of a wheel, each with its picture.
 
 use crate::limits::Limited;
-use arclength_analysis::Control;
-use arclength_page::{Answer, Asked, Events, Failure, PictureAnswer, Routes, Work, parse, saved};
+use arclength_analysis::{Control, FilesInMemory, FoundPoint};
+use arclength_page::{
+    Answer, Asked, Events, Failure, Look, PictureAnswer, Routes, Work, drawn, parse, saved,
+};
 use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -10,17 +12,22 @@ use axum::response::Response;
 use kingpin_analysis::basin::{BasinRequest, BasinResult};
 use kingpin_analysis::chart::ChartRequest;
 use kingpin_analysis::cycles::CyclesRequest;
+use kingpin_analysis::diagram::diagram;
+use kingpin_analysis::locus::LocusRequest;
 use kingpin_analysis::report::ReportRequest;
 use kingpin_analysis::shimmy::ShimmyRequest;
 use kingpin_analysis::simulate::SimulateRequest;
 use kingpin_analysis::stability::{StabilityPart, StabilityRequest, StabilityResult};
 use kingpin_analysis::steady::{SteadyRequest, SteadyResult};
-use kingpin_analysis::{Error, Journal, SeenFromAbove, WheelRequest};
+use kingpin_analysis::{Error, Journal, ResultFile, SeenFromAbove, WheelRequest};
 use kingpin_report::{NamedNumbers, Report};
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Samples of a period that is seen from above.
 const PERIOD_SAMPLES: usize = 401;
+/// The same of a cycle without a label, as every cycle of a branch is sent.
+const FEW_SAMPLES: usize = 61;
 
 /// Routes of what can be asked of a wheel.
 pub(crate) fn routes() -> Routes {
@@ -30,6 +37,8 @@ pub(crate) fn routes() -> Routes {
         .post("/api/wheel/chart", chart)
         .post("/api/wheel/cycles", cycles)
         .post("/api/wheel/shimmy", shimmy)
+        .post("/api/wheel/locus", locus)
+        .post("/api/wheel/diagram", draw)
         .post("/api/wheel/simulate", simulate)
         .post("/api/wheel/basin", basin)
         .post("/api/wheel/save", save)
@@ -41,6 +50,31 @@ fn failure(error: Error) -> Failure {
 
 fn broken(message: String) -> Failure {
     Failure::new(StatusCode::INTERNAL_SERVER_ERROR, message)
+}
+
+/// Reads a request that the page waits for, with the results that it starts from.
+fn limited_with_files<R: Limited + serde::de::DeserializeOwned>(
+    body: &Bytes,
+) -> Result<(R, FilesInMemory), Failure> {
+    let Asked { request, files } = parse::<Asked<R>>(body)?;
+    request.check()?;
+    Ok((request, files))
+}
+
+/// A request whose picture is told, with the look of that.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Pictured<R> {
+    request: R,
+    #[serde(default)]
+    look: Look,
+}
+
+/// Reads a request that the page waits for, with the look of its picture.
+fn limited_with_look<R: Limited + serde::de::DeserializeOwned>(body: &Bytes) -> Result<(R, Look), Failure> {
+    let Pictured { request, look } = parse::<Pictured<R>>(body)?;
+    request.check()?;
+    Ok((request, look))
 }
 
 /// Reads a request that the page waits for.
@@ -122,64 +156,133 @@ async fn report(State(work): State<Work>, body: Bytes) -> Result<Response, Failu
 }
 
 /// Tells the picture of a result, then the result.
-fn show<R: Report>(events: &Events, result: &R) -> Result<(), Failure> {
+fn show<R: Report>(events: &Events, look: Look, result: &R) -> Result<(), Failure> {
     if let Some(figure) = result.figure().map_err(|error| broken(error.to_string()))? {
-        events.tell_data("picture", &PictureAnswer::of(&figure)?);
+        events.tell_data("picture", &PictureAnswer::of(&look.of(figure))?);
     }
     events.warn_of(&result.parameters().remarks);
     events.result(result)
 }
 
 async fn chart(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let request: ChartRequest = limited(&body)?;
+    let (request, look) = limited_with_look::<ChartRequest>(&body)?;
     work.stream(move || {
         let analysis = request.validate().map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
             events.warn_of(analysis.warnings());
-            show(events, &analysis.run(control).map_err(failure)?)
+            show(events, look, &analysis.run(control).map_err(failure)?)
         })
     })
     .await
 }
 
-/// A motion to be seen from above: of a labelled point of a branch, or one that was let go.
+/// A motion to be seen from above: of a point of a branch, or one that was let go.
 #[derive(Serialize)]
 struct Motion<'a> {
     label: Option<&'a str>,
+    /// Of a cycle: the value of the parameter and the period, by which its point is known in the result.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at: Option<[f64; 2]>,
     #[serde(flatten)]
     seen: SeenFromAbove,
 }
 
 async fn cycles(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let request: CyclesRequest = limited(&body)?;
+    let (request, files) = limited_with_files::<CyclesRequest>(&body)?;
     work.stream(move || {
-        let analysis = request.validate().map_err(failure)?;
+        let analysis = request.validate_among(&files).map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
             events.warn_of(&analysis.warnings());
-            let result = analysis.run(control).map_err(failure)?;
+            let mut watcher = |point: FoundPoint<'_>| {
+                events.point(FoundPoint { orbit: None, ..point });
+                // What is seen of a cycle that cannot be seen is not missed: its point is there.
+                let seen = point.orbit.and_then(|orbit| {
+                    let at = [point.values[0], orbit.period];
+                    let seen = analysis.seen_from_above(point.values[0], orbit, FEW_SAMPLES).ok()?;
+                    Some(Motion { label: None, at: Some(at), seen })
+                });
+                if let Some(motion) = seen {
+                    events.tell_data("motion", &motion);
+                }
+            };
+            let result = analysis.run_watched(control, &mut watcher).map_err(failure)?;
             for point in &result.points {
                 let label = point.cycle.label.as_deref();
                 if let Some(seen) = result.seen_from_above(point, PERIOD_SAMPLES).map_err(failure)? {
-                    events.tell_data("motion", &Motion { label, seen });
+                    let at = Some([point.cycle.value, point.cycle.period]);
+                    events.tell_data("motion", &Motion { label, at, seen });
                 }
             }
-            show(events, &result)
+            events.warn_of(&result.warnings());
+            events.warn_of(&result.parameters().remarks);
+            events.result(&result)
         })
     })
     .await
 }
 
+async fn locus(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
+    let (request, files) = limited_with_files::<LocusRequest>(&body)?;
+    work.stream(move || {
+        let analysis = request.validate_among(&files).map_err(failure)?;
+        Ok(move |control: &Control<'_>, events: &Events| {
+            let result = analysis.run_watched(control, &mut |point| events.point(point)).map_err(failure)?;
+            events.warn_of(&result.warnings());
+            events.warn_of(&result.parameters().remarks);
+            events.result(&result)
+        })
+    })
+    .await
+}
+
+/// Asks for a picture, or a file, of results that belong together.
+#[derive(Deserialize)]
+struct DiagramRequest {
+    /// The results, by name.
+    results: Vec<PathBuf>,
+    format: String,
+    #[serde(flatten)]
+    look: Look,
+}
+
+async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
+    let Asked { request, files } = parse::<Asked<DiagramRequest>>(&body)?;
+    work.answer(move |_| {
+        let DiagramRequest { results: names, format, look } = request;
+        let wrong = |index: usize, problem: String| {
+            let name = names.get(index).map_or_else(String::new, |name| format!("{}: ", name.display()));
+            Failure::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{name}{problem}"))
+        };
+        let read = |(index, name): (usize, &PathBuf)| {
+            ResultFile::read_among(&files, name).map_err(|problem| wrong(index, problem))
+        };
+        let results: Vec<ResultFile> = names.iter().enumerate().map(read).collect::<Result<_, _>>()?;
+        // A single result is saved as the command that computed it does.
+        if let [one] = &results[..] {
+            return match one {
+                ResultFile::Hopf(result) => saved(&format, look, result),
+                ResultFile::Cycles(result) => saved(&format, look, result),
+                ResultFile::HopfLocus(result) => saved(&format, look, result),
+                ResultFile::CycleLocus(result) => saved(&format, look, result),
+            };
+        }
+        let figure = diagram(&results).map_err(|(index, problem)| wrong(index, problem))?;
+        drawn(&format, look, figure)
+    })
+    .await
+}
+
 async fn shimmy(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let request: ShimmyRequest = limited(&body)?;
+    let (request, look) = limited_with_look::<ShimmyRequest>(&body)?;
     work.stream(move || {
         let analysis = request.validate().map_err(failure)?;
         Ok(move |control: &Control<'_>, events: &Events| {
             let result = analysis.run(control).map_err(failure)?;
             for point in result.points.iter().filter(|point| point.label.is_some()) {
                 let seen = result.seen_from_above(point, PERIOD_SAMPLES, control).map_err(failure)?;
-                events.tell_data("motion", &Motion { label: point.label.as_deref(), seen });
+                events.tell_data("motion", &Motion { label: point.label.as_deref(), at: None, seen });
             }
-            show(events, &result)
+            show(events, look, &result)
         })
     })
     .await
@@ -192,8 +295,10 @@ async fn simulate(State(work): State<Work>, body: Bytes) -> Result<Response, Fai
         Ok(move |control: &Control<'_>, events: &Events| {
             let result = analysis.run(control).map_err(failure)?;
             events.warn_of(&result.warnings());
-            events.tell_data("motion", &Motion { label: None, seen: result.seen_from_above() });
-            show(events, &result)
+            let seen = result.seen_from_above();
+            events.tell_data("motion", &Motion { label: None, at: None, seen });
+            events.warn_of(&result.parameters().remarks);
+            events.result(&result)
         })
     })
     .await
@@ -264,6 +369,8 @@ struct SaveRequest {
     #[serde(flatten)]
     analysis: SavedAnalysis,
     format: String,
+    #[serde(flatten)]
+    look: Look,
 }
 
 #[derive(Deserialize)]
@@ -277,28 +384,44 @@ enum SavedAnalysis {
 }
 
 async fn save(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
-    let SaveRequest { analysis, format } = parse(&body)?;
+    let SaveRequest { analysis, format, look } = parse(&body)?;
     work.answer(move |control| match analysis {
         SavedAnalysis::Chart(request) => {
             request.check()?;
-            saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+            saved(
+                &format,
+                look,
+                &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?,
+            )
         }
         SavedAnalysis::Cycles(request) => {
             request.check()?;
-            saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+            saved(
+                &format,
+                look,
+                &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?,
+            )
         }
         SavedAnalysis::Shimmy(request) => {
             request.check()?;
-            saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+            saved(
+                &format,
+                look,
+                &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?,
+            )
         }
         SavedAnalysis::Motion(request) => {
             request.check()?;
-            saved(&format, &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?)
+            saved(
+                &format,
+                look,
+                &request.validate().and_then(|analysis| analysis.run(control)).map_err(failure)?,
+            )
         }
         SavedAnalysis::Basin(request) => {
             request.check()?;
             let analysis = request.validate().map_err(failure)?;
-            saved(&format, &analysis.run(control, &Journal::none()).map_err(failure)?)
+            saved(&format, look, &analysis.run(control, &Journal::none()).map_err(failure)?)
         }
     })
     .await

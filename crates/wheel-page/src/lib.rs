@@ -14,6 +14,7 @@ const ASSETS: &[Asset] = &[
     Asset { path: "/", text: include_str!("../assets/wheel.html") },
     Asset { path: "/wheel.css", text: include_str!("../assets/wheel.css") },
     Asset { path: "/wheel.js", text: include_str!("../assets/wheel.js") },
+    Asset { path: "/branches.js", text: include_str!("../assets/branches.js") },
     Asset { path: "/above.js", text: include_str!("../assets/above.js") },
     Asset { path: "/plane.js", text: include_str!("../assets/plane.js") },
     Asset { path: "/motions.js", text: include_str!("../assets/motions.js") },

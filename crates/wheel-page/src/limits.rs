@@ -1,11 +1,13 @@
 //! What the page does not ask for: files of the machine, and what would take longer than anybody waits.
 
+use arclength_analysis::CycleSource;
 use arclength_page::Failure;
 use axum::http::StatusCode;
 use kingpin_analysis::WheelRequest;
 use kingpin_analysis::basin::BasinRequest;
 use kingpin_analysis::chart::ChartRequest;
 use kingpin_analysis::cycles::CyclesRequest;
+use kingpin_analysis::locus::LocusRequest;
 use kingpin_analysis::report::ReportRequest;
 use kingpin_analysis::shimmy::ShimmyRequest;
 use kingpin_analysis::simulate::SimulateRequest;
@@ -66,11 +68,18 @@ impl Limited for ChartRequest {
 impl Limited for CyclesRequest {
     fn check(&self) -> Result<(), Failure> {
         self.wheel.check()?;
-        if self.from.is_some() {
+        if let Some(CycleSource::Samples { .. }) = self.from {
             return refused(
-                "from: the page follows the cycles of all Hopf points; allowed: nothing".to_owned(),
+                "from: no files are read; allowed: a labelled point of a result that came with the request"
+                    .to_owned(),
             );
         }
+        at_most("steps", self.steps.steps, MOST_STEPS)
+    }
+}
+
+impl Limited for LocusRequest {
+    fn check(&self) -> Result<(), Failure> {
         at_most("steps", self.steps.steps, MOST_STEPS)
     }
 }

@@ -148,7 +148,8 @@ impl CycleCurve {
         self.drawn_with([|value| value; 2])
     }
 
-    fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
+    /// As it is drawn where the values of both parameters are drawn by these scales.
+    pub fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
         let (name, color): (&'static str, Color) = match self.kind {
             None => ("cycles", palette::VERMILION),
             Some(SpecialKind::FoldOfCycles) => ("folds of cycles", palette::SKY_BLUE),

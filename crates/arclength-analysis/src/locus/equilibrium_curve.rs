@@ -141,7 +141,8 @@ impl EquilibriumCurve {
         self.drawn_with([|value| value; 2])
     }
 
-    fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
+    /// As it is drawn where the values of both parameters are drawn by these scales.
+    pub fn drawn_with(&self, [first, second]: [fn(f64) -> f64; 2]) -> Curve {
         let (name, color): (&'static str, Color) = match self.kind {
             Some(SpecialKind::Fold) => ("folds", palette::BLUE),
             Some(SpecialKind::Hopf) => ("Hopf points", palette::VERMILION),

@@ -1,7 +1,7 @@
 //! The phase plane as a panel of a figure.
 
 use super::plane_field::ARROWS;
-use super::{EquilibriumKind, PhasePlane};
+use super::{Direction, EquilibriumKind, PhasePlane};
 use kingpin_figure::{Axis, Color, Legend, Line, Marker, MarkerShape, Markers, Panel, palette};
 
 /// Length of an arrow in parts of the distance to the next.
@@ -72,9 +72,10 @@ impl PhasePlane {
         let [[left, right], [bottom, top]] = self.window;
         let [across, up] = ARROWS.map(|count| ARROW / count as f64);
         let mut line = Vec::new();
-        for (place, velocity) in &self.directions {
+        for Direction { at: [x, y], velocity } in &self.directions {
+            let place = [(x - left) / (right - left), (y - bottom) / (top - bottom)];
             // In units of the length of an arrow, so that its shape on the page does not depend on its direction.
-            let (dx, dy) = (velocity[0] / across, velocity[1] / up);
+            let (dx, dy) = (velocity[0] / ((right - left) * across), velocity[1] / ((top - bottom) * up));
             let speed = dx.hypot(dy);
             if !(speed > 0.0 && speed.is_finite()) {
                 continue;

@@ -33,9 +33,18 @@ pub struct PhasePlane {
     pub equilibria: Option<Vec<PlaneEquilibrium>>,
     /// The stable and the unstable manifolds of the saddles.
     pub manifolds: Vec<Manifold>,
-    /// Places on a grid with the velocity there.
-    #[serde(skip)]
-    directions: Vec<([f64; 2], [f64; 2])>,
+    /// The direction field on a grid.
+    #[serde(default)]
+    pub directions: Vec<Direction>,
+}
+
+/// The velocity at a place of the phase plane.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Direction {
+    /// The states on both axes.
+    pub at: [f64; 2],
+    /// How fast they change.
+    pub velocity: [f64; 2],
 }
 
 impl PhasePlane {
@@ -59,7 +68,10 @@ impl PhasePlane {
             x_nullclines,
             y_nullclines,
             manifolds: manifolds.collect(),
-            directions: plane_field::places_of_arrows().map(|place| (place, field.velocity(place))).collect(),
+            directions: plane_field::places_of_arrows()
+                .map(|place| Direction { at: field.point(place), velocity: field.speed(place) })
+                .filter(|direction| direction.velocity.iter().all(|speed| speed.is_finite()))
+                .collect(),
             equilibria,
         }
     }

@@ -39,10 +39,15 @@ impl<'a> PlaneField<'a> {
 
     /// The velocity at a point of the square, in the square.
     pub(super) fn velocity(&self, point: [f64; 2]) -> [f64; 2] {
+        let (speed, widths) = (self.speed(point), self.widths());
+        [0, 1].map(|axis| speed[axis] / widths[axis])
+    }
+
+    /// How fast the states on the axes change at a point of the square.
+    pub(super) fn speed(&self, point: [f64; 2]) -> [f64; 2] {
         let mut derivative = [0.0; 2];
         self.chosen.model.evaluate(&self.state(point), &self.chosen.parameters, &mut derivative);
-        let widths = self.widths();
-        [0, 1].map(|axis| derivative[self.axes[axis]] / widths[axis])
+        self.axes.map(|axis| derivative[axis])
     }
 
     /// The derivatives of the velocity: row by row, in the square.

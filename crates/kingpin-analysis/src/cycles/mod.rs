@@ -8,7 +8,7 @@ mod result;
 
 pub use followed::NotFollowed;
 pub(crate) use followed::{Followed, from_hopf_points};
-pub(crate) use picture::{needs_more_friction, stability};
+pub(crate) use picture::{bifurcation_diagram, needs_more_friction, stability};
 pub use point::CyclePointResult;
 pub use request::{CyclesAnalysis, CyclesRequest};
 pub use result::{BranchResult, CyclesResult};

@@ -12,7 +12,7 @@ use kingpin_figure::{
 };
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
-pub(super) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointResult]) -> Figure {
+pub(crate) fn bifurcation_diagram(wheel: &Wheel, along: &Along, points: &[CyclePointResult]) -> Figure {
     let (key, abscissa) = drawn_as(along);
     let (start, end) = along.ends();
     let ends = [abscissa(start), abscissa(end)];

@@ -6,13 +6,16 @@ use crate::along::along;
 use crate::error::Error;
 use crate::hopf::course::course_of;
 use crate::hopf::search::{same_value, search};
+use crate::seen_from_above::SeenFromAbove;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::wheel_request::WheelRequest;
 use arclength::continuation::Settings;
 use arclength::cycle::{Branching, CyclePoint, CycleStart, Orbit};
 use arclength::equilibrium::equilibrium_settings;
 use arclength_analysis::labels::kind;
-use arclength_analysis::{Control, CycleSource, Interval, Mesh, PointReference, Steps, read_orbit};
+use arclength_analysis::{
+    Control, CycleSource, Disk, Files, FoundPoint, Interval, Mesh, PointReference, Steps, read_orbit,
+};
 use kingpin::branches::{Along, CycleOptions};
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_report::numbers::readable;
@@ -87,13 +90,21 @@ impl CyclesRequest {
     /// # Errors
     /// What is wrong with the wheel, the point, the samples or a field.
     pub fn validate(&self) -> Result<CyclesAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine, of which samples of an orbit are still read.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<CyclesAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
         let along = along(&self.along)?;
         self.along.check_values(&self.at)?;
         let (wheel, start) = match &self.from {
             None => (self.wheel.read()?, Start::HopfPoints),
-            Some(CycleSource::Point(reference)) => self.start(reference, along)?,
+            Some(CycleSource::Point(reference)) => self.start(reference, along, files)?,
             Some(CycleSource::Samples { samples }) => self.start_at_samples(samples, along)?,
         };
         let options = CycleOptions::default()
@@ -104,13 +115,18 @@ impl CyclesRequest {
     }
 
     /// What starts at a labelled point.
-    fn start(&self, reference: &PointReference, along: Along) -> Result<(Wheel, Start), Error> {
+    fn start(
+        &self,
+        reference: &PointReference,
+        along: Along,
+        files: &dyn Files,
+    ) -> Result<(Wheel, Start), Error> {
         if let Some(file) = &self.wheel.wheel {
             let given = file.display().to_string();
             let problem = "the labelled point has its own wheel";
             return Err(Error::invalid(&["wheel", "from"], given, problem, "one of them"));
         }
-        let LabelledPoint { wheel, solution } = LabelledPoint::read(reference)?;
+        let LabelledPoint { wheel, solution } = LabelledPoint::read(reference, files)?;
         let wheel = self.wheel.change(wheel)?;
         check_within(&wheel, along)?;
         let start = match solution {
@@ -188,6 +204,18 @@ impl CyclesAnalysis {
     /// [`Error::NothingFound`] where there is no Hopf point to start from, [`Error::NoBranch`] where none has a branch;
     /// [`Error::Wheel`].
     pub fn run(&self, control: &Control<'_>) -> Result<CyclesResult, Error> {
+        self.run_watched(control, &mut |_| {})
+    }
+
+    /// The same under the eyes of somebody who is told every cycle as it is found.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_watched(
+        &self,
+        control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
+    ) -> Result<CyclesResult, Error> {
         let along = self.along;
         // The most steps are those along a branch of cycles.
         let search_steps = Steps { steps: Steps::default().steps, ..self.steps };
@@ -197,6 +225,14 @@ impl CyclesAnalysis {
             found += 1;
             let (value, period) = (readable(point.value), readable(point.period));
             control.at(&format!("{found} cycles, {} = {value}, period {period} s", along.key()));
+            watcher(FoundPoint {
+                values: &[point.value],
+                max: &point.max,
+                min: &point.min,
+                stable: point.stable,
+                label: point.label,
+                orbit: Some(&point.orbit),
+            });
             control.flow()
         };
         let mut course = Vec::new();
@@ -231,6 +267,14 @@ impl CyclesAnalysis {
         };
         let missed = self.missed(&followed.branches);
         Ok(CyclesResult { course, ..CyclesResult::new(self.wheel, along, followed, missed)? })
+    }
+
+    /// A cycle that was found, over one period as it is seen from above, at so many times.
+    ///
+    /// # Errors
+    /// [`Error::Wheel`].
+    pub fn seen_from_above(&self, value: f64, orbit: &Orbit, samples: usize) -> Result<SeenFromAbove, Error> {
+        SeenFromAbove::of_cycle(&self.wheel.with(self.along.key(), value)?, orbit, samples)
     }
 
     /// The values asked for at which there is no cycle.

@@ -12,7 +12,7 @@ use arclength::continuation::Settings;
 use arclength::cycle::Orbit;
 use arclength::equilibrium::equilibrium_settings;
 use arclength_analysis::labels::kind;
-use arclength_analysis::{Control, Interval, Mesh, Origin, PointReference, Steps};
+use arclength_analysis::{Control, Disk, Files, FoundPoint, Interval, Mesh, Origin, PointReference, Steps};
 use kingpin::branches::{Along, CurveOptions, HopfPoint};
 use kingpin::{KingpinError, Wheel};
 use kingpin_report::numbers::readable;
@@ -70,12 +70,20 @@ impl LocusRequest {
     /// # Errors
     /// What is wrong with the point or a field.
     pub fn validate(&self) -> Result<LocusAnalysis, Error> {
+        self.validate_among(&Disk)
+    }
+
+    /// The same with other files than those of this machine.
+    ///
+    /// # Errors
+    /// Those of [`validate`](Self::validate).
+    pub fn validate_among(&self, files: &dyn Files) -> Result<LocusAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
         let [first, second] = &self.plane;
         let plane = [along(first)?, along(second)?];
         first.check_values(&self.at)?;
-        let LabelledPoint { wheel, solution } = LabelledPoint::read(&self.from)?;
+        let LabelledPoint { wheel, solution } = LabelledPoint::read(&self.from, files)?;
         for axis in plane {
             let (key, value, (start, end)) = (axis.key(), wheel.get(axis.key()), axis.ends());
             if !axis.contains(value) {
@@ -120,13 +128,35 @@ impl LocusAnalysis {
     /// # Errors
     /// [`Error::Wheel`]; [`Error::NothingFound`] where the point is no Hopf point.
     pub fn run(&self, control: &Control<'_>) -> Result<LocusResult, Error> {
+        self.run_watched(control, &mut |_| {})
+    }
+
+    /// The same under the eyes of somebody who is told every point as it is found.
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run).
+    pub fn run_watched(
+        &self,
+        control: &Control<'_>,
+        watcher: &mut dyn FnMut(FoundPoint<'_>),
+    ) -> Result<LocusResult, Error> {
         let options = |settings: Settings| {
             CurveOptions::default()
                 .at(&self.at)
                 .resolution(self.mesh.resolution())
                 .settings(self.steps.settings(settings))
         };
-        let observer = |values: [f64; 2]| self.tell(control, values);
+        let observer = |values: [f64; 2]| {
+            watcher(FoundPoint {
+                values: &values,
+                max: &[],
+                min: &[],
+                stable: None,
+                label: None,
+                orbit: None,
+            });
+            self.tell(control, values)
+        };
         let origin = |how: &str| Origin::labelled(&self.label, how);
         match &self.start {
             Start::Hopf(found) => {

@@ -1,8 +1,11 @@
 // The page for any model, as somebody uses it.
 
 import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { after, before, test } from "node:test";
-import { launch, open, serve } from "./page.mjs";
+import { PROGRAMS, launch, open, serve } from "./page.mjs";
 
 let server;
 let browser;
@@ -19,7 +22,7 @@ after(async () => {
 
 /** Presses a label in a diagram and chooses what starts there. */
 async function start(opened, label, title) {
-  await opened.page.locator(`.target[data-label="${label}"]`).first().press("Enter");
+  await opened.page.locator(`.target[data-label="${label}"]`).first().click();
   await opened.page.locator("dialog").getByRole("button", { name: title, exact: true }).click();
   await opened.settled();
 }
@@ -143,10 +146,124 @@ test("a point is picked with the pointer, walked from, and the phase plane start
   await page.locator("#point .curve.motion").waitFor({ state: "attached" });
   await page.getByRole("button", { name: "Nullclines" }).click();
   await page.locator("#point .nullcline-x").first().waitFor({ state: "attached" });
+  await page.getByRole("button", { name: "Directions" }).click();
+  await page.locator("#point .curve.direction").nth(50).waitFor({ state: "attached" });
   await opened.picture("nerve");
   const before = await page.locator("#point h2").textContent();
   await page.getByRole("button", { name: "one point back" }).click();
   assert.notEqual(await page.locator("#point h2").textContent(), before);
+  await opened.close();
+});
+
+test("a Hopf point tells its normal form, orbits their direction, and named sets are a menu", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  await page.locator("#gallery").selectOption("morris_lecar.ode");
+  await page.waitForFunction(() => document.querySelector("#model-name").textContent === "morris_lecar.ode");
+  await opened.settled();
+  await page.locator("#steps button.label", { hasText: "HB1" }).click();
+  const told = await page.locator("#point dl").textContent();
+  assert.match(told, /frequency0\.079779784/);
+  assert.match(told, /first Lyapunov coefficient0\.006543187criticalitysubcritical/);
+  // w goes from 0 to 1, and so does its axis.
+  const ticks = await page.locator("#point .plot.pickable .value").allTextContents();
+  assert.ok(ticks.includes("0.2") && !ticks.includes("-0.5"), ticks.join());
+  await start(opened, "equilibria.json:HB1", "Cycles that are born there");
+  await page.locator("#steps li[data-step='cycles.json'] button.label", { hasText: "LPC1" }).click();
+  await page.locator("#point .arrow.cycle").nth(2).waitFor({ state: "attached" });
+  await page.locator("#steps li[data-step='cycles.json'] button.quiet").click();
+  await page.locator("#named-set").selectOption("snic");
+  await page.waitForFunction(() => /--named-set snic --along/.test(document.querySelector("#lines").textContent));
+  await opened.settled();
+  assert.equal(await page.locator("#quantity-phi").inputValue(), "0.06667");
+  assert.match(await page.locator("#python-lines").textContent(), /named_set="snic"/);
+  await page.locator('.target[data-label="equilibria.json:LP1"]').first().waitFor({ state: "attached" });
+  await opened.close();
+});
+
+test("diagrams are zoomed by the wheel, moved by dragging, and by keys", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  const place = () => page.locator('.target[data-label="equilibria.json:HB1"]').first().getAttribute("cx");
+  const drawn = () => page.locator("#diagrams .drawn desc").textContent();
+  const first = [await place(), await drawn()];
+  const box = await page.locator("#diagrams .overlay").first().boundingBox();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.4 * box.height);
+  await page.mouse.wheel(0, -100);
+  await page.waitForFunction((before) => document.querySelector("#diagrams .drawn desc")?.textContent !== before, first[1]);
+  await opened.settled();
+  await opened.picture("zoomed");
+  const zoomed = await drawn();
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.45 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((before) => document.querySelector("#diagrams .drawn desc")?.textContent !== before, zoomed);
+  await opened.settled();
+  // What was dragged was not pressed.
+  assert.equal(await page.locator("dialog").count(), 0);
+  await page.mouse.dblclick(box.x + 0.5 * box.width, box.y + 0.2 * box.height);
+  await page.waitForFunction((before) => document.querySelector("#diagrams .drawn desc")?.textContent === before, first[1]);
+  await opened.settled();
+  assert.equal(await place(), first[0]);
+  await page.locator("#diagrams .picture").first().focus();
+  await page.keyboard.press("+");
+  await page.waitForFunction((before) => document.querySelector("#diagrams .drawn desc")?.textContent !== before, first[1]);
+  await opened.settled();
+  await page.keyboard.press("0");
+  await page.waitForFunction((before) => document.querySelector("#diagrams .drawn desc")?.textContent === before, first[1]);
+  await opened.close();
+});
+
+test("what takes long is stopped, and what there is of it stays", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  await page.locator("#source").fill("par a=1\nx' = y\ny' = -a*x\ninit x=1\n@ total=1e7\n");
+  await page.waitForFunction(() => document.querySelector("#quantity-a"));
+  await opened.settled();
+  await page.getByText("Initial values").click();
+  await page.locator("#simulate").click();
+  await page.locator('#steps li[data-state="running"]').waitFor();
+  await page.locator("#stop").click();
+  await page.waitForFunction(() => document.querySelector("#steps li[data-step='simulate.json']")?.dataset.state === "done");
+  assert.match(await page.locator("#steps li[data-step='simulate.json']").textContent(), /simulate\s*\d+ points/);
+  assert.equal(await page.locator("#stop").isVisible(), false);
+  await opened.close();
+});
+
+/** What a menu saves. */
+async function saved(page, menu, format) {
+  const download = page.waitForEvent("download");
+  await menu.selectOption(format);
+  const file = await download;
+  return { name: file.suggestedFilename(), contents: readFileSync(await file.path()) };
+}
+
+test("pictures and numbers are saved, of the page's own plots too, and undo is a button", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  assert.equal(await page.locator("#undo").isDisabled(), true);
+  await start(opened, "equilibria.json:HB1", "Cycles that are born there");
+  const svg = await saved(page, page.getByLabel("Save this diagram"), "svg");
+  assert.match(String(svg.contents), /^<svg [^]*<title>[^]*<desc>Horizontal axis: alpha/);
+  const csv = await saved(page, page.getByLabel("Save cycles.json"), "csv");
+  assert.equal(csv.name, "cycles.csv");
+  assert.match(String(csv.contents), /^label,value,period,/);
+  await page.locator("#steps li[data-step='cycles.json'] button.label", { hasText: "PD1" }).click();
+  const plane = await saved(page, page.getByLabel("Save the phase plane"), "png");
+  assert.deepEqual([...plane.contents.subarray(1, 4)], [...Buffer.from("PNG")]);
+  const multipliers = await saved(page, page.getByLabel("Save Floquet multipliers"), "csv");
+  assert.match(String(multipliers.contents), /^re,im\n(-?[\d.e-]+,-?[\d.e-]+\n){3}$/);
+  const drawn = await saved(page, page.getByLabel("Save the time history"), "svg");
+  assert.match(String(drawn.contents), /^<svg [^]*stroke="rgb\(/);
+  await page.locator("#undo").click();
+  await page.waitForFunction(() => document.querySelectorAll("#steps li").length === 1);
+  await page.keyboard.press("Control+y");
+  await page.waitForFunction(() => document.querySelectorAll("#steps li").length === 2);
+  await opened.settled();
   await opened.close();
 });
 
@@ -156,6 +273,7 @@ test("it fits a phone, and keys are enough", async () => {
   await opened.settled();
   assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
   await opened.picture("phone");
+  await opened.documented("page-phone");
   // Whatever can be pressed has a name.
   const nameless = await page.evaluate(() =>
     [...document.querySelectorAll("button, input, select, textarea, [role=button]")]
@@ -177,9 +295,31 @@ for (const colorScheme of ["light", "dark"]) {
     await page.locator("dialog").waitFor();
     assert.deepEqual(await opened.obstacles(), []);
     await opened.picture(colorScheme);
+    await page.keyboard.press("Escape");
+    if (colorScheme === "dark") await opened.documented("page-dark");
     await opened.close();
   });
 }
+
+test("many at once get the bytes of the command line", async () => {
+  const file = new URL("../../../../gallery/models/lure.ode", import.meta.url).pathname;
+  const folder = mkdtempSync(`${tmpdir()}/page-`);
+  try {
+    execFileSync(`${PROGRAMS}/arclength`, ["equilibria", file, "--along", "alpha=-1:2.5", "-o", `${folder}/a.json`, "--quiet"], { stdio: "ignore" });
+    const expected = readFileSync(`${folder}/a.json`, "utf8");
+    const source = readFileSync(file, "utf8");
+    const request = { model: { source: { text: { name: "lure.ode", source } } }, along: { key: "alpha", start: -1, end: 2.5 } };
+    const asked = async () => {
+      const answer = await fetch(`${server.url}api/equilibria`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ request }) });
+      const event = (await answer.text()).split("\n\n").find((text) => text.startsWith("event: result\n"));
+      return event.split("\n").slice(1).map((line) => line.replace(/^data: /, "")).join("\n");
+    };
+    const answers = await Promise.all(Array.from({ length: 40 }, asked));
+    for (const answer of answers) assert.equal(answer, expected);
+  } finally {
+    rmSync(folder, { recursive: true });
+  }
+});
 
 test("the whole page is small", async () => {
   let bytes = 0;

@@ -6,7 +6,7 @@ import { mkdirSync, readFileSync } from "node:fs";
 import { once } from "node:events";
 import { chromium } from "playwright-core";
 
-const PROGRAMS = process.env.PROGRAMS ?? new URL("../../../../target/debug", import.meta.url).pathname;
+export const PROGRAMS = process.env.PROGRAMS ?? new URL("../../../../target/debug", import.meta.url).pathname;
 /** Where pictures of the page are kept; nowhere unless asked for. */
 const PICTURES = process.env.PICTURES;
 /** Whether the pictures of the documentation are made again. */
@@ -82,6 +82,10 @@ export async function open(browser, url, { expected, ...options } = {}) {
       if (!DOCUMENTATION) return;
       // Nothing is pointed at.
       await page.evaluate(() => document.activeElement?.blur());
+      // A column that scrolls by itself is shown whole.
+      const { width } = page.viewportSize();
+      const height = await page.evaluate(() => Math.max(document.documentElement.scrollHeight, (document.querySelector("#point")?.scrollHeight ?? 0) + 120));
+      await page.setViewportSize({ width, height: Math.max(height, page.viewportSize().height) });
       await page.screenshot({ path: new URL(`../../../../docs/${name}.png`, import.meta.url).pathname, fullPage: true });
     },
     async close() {

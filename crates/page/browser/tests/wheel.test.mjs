@@ -22,7 +22,8 @@ async function done(page) {
   await page.waitForFunction(() => {
     const chart = document.querySelector("#chart-picture");
     return chart?.dataset.points === String(240 * 141) && document.querySelector("#status").textContent === ""
-      && document.querySelector("#diagram-picture")?.dataset.done === "yes";
+      && ["done", "failed"].includes(document.querySelector('#steps li[data-step="cycles.json"]')?.dataset.state)
+      && [...document.querySelectorAll("#diagrams .picture")].every((picture) => picture.getAttribute("aria-busy") !== "true");
   }, null, { timeout: 120_000 });
 }
 
@@ -32,7 +33,7 @@ test("the paper's wheel: verdict, chart, cycles, and a press on the chart takes 
   await done(page);
   assert.match(await page.locator("#verdict").textContent(), /Stable: small motions die out\..*8\.431 m\/s/);
   assert.match(await page.locator("#numbers").textContent(), /critical speed 8\.431037 m\/s/);
-  await page.locator("#diagram-notes button", { hasText: "HB1" }).waitFor();
+  await page.locator("#steps button.label", { hasText: "HB1" }).waitFor();
   assert.deepEqual(await opened.obstacles(), []);
   await opened.picture("wheel");
   const before = await page.locator("#quantity-v").inputValue();
@@ -65,6 +66,82 @@ test("the caster is dragged aside and let go", async () => {
   await page.locator("#motion-note", { hasText: "In the last tenth" }).waitFor();
   assert.notEqual(await page.locator("#kick").inputValue(), "0.2");
   await opened.picture("let-go");
+  await opened.close();
+});
+
+test("branches grow point by point, labels offer what starts there, and every point is seen", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await page.evaluate(() => {
+    window.grown = 0;
+    new MutationObserver(() => {
+      if (document.querySelector("#diagrams .growing .dot.cycle")) window.grown++;
+    }).observe(document.querySelector("#diagrams"), { childList: true, subtree: true });
+  });
+  await done(page);
+  await page.locator("#steps button.label", { hasText: "HB1" }).click();
+  await page.locator("#branch-point dl", { hasText: "first lyapunov" }).waitFor();
+  // The pointer alone: a label, what starts there.
+  await page.locator('#diagrams .target[data-label="cycles.json:HB1"]').first().click();
+  await page.locator("dialog").getByRole("button", { name: "Curve of Hopf points in two parameters" }).click();
+  await done(page);
+  await page.locator('#steps li[data-step="locus.json"][data-state="done"]').waitFor();
+  assert.equal(await page.locator("#diagrams .diagram").count(), 2);
+  assert.match(await page.locator("#lines").textContent(), /^kingpin locus --from cycles\.json:HB1 --in v=0\.2:9,l=\S+ -o locus\.json -o locus\.svg$/m);
+  assert.match(await page.locator("#python-lines").textContent(), /^locus = cycles\["HB1"\]\.locus\(\("v", 0\.2, 9\), \("l", /m);
+  // A point without a label: its multipliers, and its motion.
+  await page.locator("#steps button.label", { hasText: "AT1" }).click();
+  await page.getByRole("button", { name: "one point on" }).click();
+  await page.locator("#branch-point h2", { hasText: /^Point \d+ of cycles/ }).waitFor();
+  assert.equal(await page.locator("#branch-point .cross").count(), 5);
+  await page.locator("#history .plot").waitFor();
+  await page.locator("#plane .curve.cycle").waitFor({ state: "attached" });
+  // The slider along the branch.
+  const title = await page.locator("#branch-point h2").textContent();
+  await page.locator("#along-branch").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction((before) => document.querySelector("#branch-point h2").textContent !== before, title);
+  assert.deepEqual(await opened.obstacles(), []);
+  await opened.picture("wheel-branches");
+  // Hidden, and removed.
+  await page.getByLabel("show cycles.json").uncheck();
+  await done(page);
+  assert.equal(await page.locator("#diagrams .diagram").first().locator(".drawn").count(), 0);
+  await page.getByLabel("show cycles.json").check();
+  await page.getByRole("button", { name: "remove locus.json" }).click();
+  await done(page);
+  assert.equal(await page.locator("#steps li").count(), 1);
+  assert.ok(await page.evaluate(() => window.grown) > 0);
+  await opened.close();
+});
+
+test("a motion starts at a cycle", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.locator('#diagrams .target[data-label="cycles.json:AT1"]').first().press("Enter");
+  await page.locator("dialog").getByRole("button", { name: "A motion from there" }).click();
+  await page.locator("#motion-note", { hasText: "it was let go" }).waitFor();
+  assert.match(await page.locator("#lines").textContent(), /--perturb u=\S+ --perturb q=\S+ --perturb psi=\S+ --perturb V=\S+ --perturb Omega=\S+/);
+  await opened.close();
+});
+
+test("the chart is zoomed and dragged, and back is undo", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  const ends = () => page.evaluate(() => ["x-start", "x-end"].map((id) => Number(document.getElementById(id).value)));
+  const width = ([from, to]) => to - from;
+  const before = await ends();
+  const box = await page.locator("#chart-picture .overlay").boundingBox();
+  await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.4 * box.height);
+  await page.mouse.wheel(0, -100);
+  await page.waitForFunction((end) => Number(document.getElementById("x-end").value) < end, before[1]);
+  assert.ok(width(await ends()) < width(before));
+  await done(page);
+  await page.goBack();
+  await page.waitForFunction((end) => Number(document.getElementById("x-end").value) === end, before[1]);
+  await done(page);
   await opened.close();
 });
 

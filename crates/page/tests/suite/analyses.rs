@@ -95,6 +95,12 @@ fn a_diagram_says_where_its_axes_are() {
     assert_eq!(ask("csv").body.as_bytes(), table);
     assert_eq!(ask("svg").body, result.figure().unwrap().unwrap().to_svg().unwrap());
     assert!(ask("text").body.contains("HB1"));
+    // A part of it, on dark paper, with text.
+    let request = json!({"results": ["equilibria.json"], "states": ["y"], "format": "svg", "window": {"x": [-0.5, 0.25]}, "dark": true, "text": true});
+    let part = server.post("/api/diagram", &json!({"request": request, "files": files})).body;
+    assert!(
+        part.contains("from -0.5 to 0.25") && part.contains("fill=\"#16181a\"") && part.contains("</text>")
+    );
 }
 
 #[test]
@@ -108,6 +114,12 @@ fn the_text_of_a_model_is_understood_or_its_mistake_has_a_place() {
     let answer = model("par p=1\n@ parmin=-2, parmax=3\nx' = p + sin(t)\n").json();
     assert_eq!(answer["along"], json!({"key": "p", "start": -2.0, "end": 3.0}));
     assert_eq!(answer["time"], json!({"line": 3, "column": 14, "length": 1}));
+
+    let answer = model("par p=1\nx' = -p*x\ninit x=1\nset fast {p=2,x=3}\n").json();
+    assert_eq!(
+        answer["named_sets"],
+        json!([{"name": "fast", "states": {"x": 3.0}, "parameters": {"p": 2.0}}])
+    );
 
     let answer = model("par gamma=1\nx' = -gama*x\n");
     let error = &answer.json()["mistake"];

@@ -1,7 +1,18 @@
 //! What is refused, and how that is told.
 
-use crate::client::{Running, equilibria};
+use crate::client::{RADIAL, Running, equilibria};
 use serde_json::json;
+
+#[test]
+fn motions_have_a_limit_of_samples() {
+    let server = Running::start();
+    let model = json!({"source": {"text": {"name": "radial.ode", "source": RADIAL}}});
+    let body = |points: u64| json!({"request": {"model": model, "duration": 1.0, "points": points}});
+    let answer = server.post("/api/simulate", &body(200_001));
+    assert_eq!(answer.status, 422);
+    assert!(answer.body.contains("allowed: up to 200000"), "{}", answer.body);
+    assert_eq!(server.post("/api/simulate", &body(3)).status, 200);
+}
 
 #[test]
 fn only_pages_of_this_server_are_answered() {

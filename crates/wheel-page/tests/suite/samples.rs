@@ -90,6 +90,9 @@ pub(crate) fn samples() -> Vec<Sample> {
     let mut of_wheel = cycles::CyclesRequest::new(interval("v"));
     of_wheel.wheel = wheel();
     of_wheel.at = vec![1.0];
+    of_wheel.from = Some(CycleSource::Point(point()));
+    let mut curve = kingpin_analysis::locus::LocusRequest::new(point(), [interval("v"), interval("l")]);
+    curve.at = vec![1.0];
     let mut shimmy = ShimmyRequest::new(interval("v"));
     shimmy.wheel = wheel();
     shimmy.at = vec![1.0];
@@ -114,6 +117,7 @@ pub(crate) fn samples() -> Vec<Sample> {
         sample("/api/wheel/report", &report),
         sample("/api/wheel/chart", &ChartRequest { wheel: wheel(), overlay, ..ChartRequest::default() }),
         sample("/api/wheel/cycles", &of_wheel),
+        sample("/api/wheel/locus", &curve),
         sample("/api/wheel/shimmy", &shimmy),
         sample("/api/wheel/simulate", &history),
         sample("/api/wheel/basin", &basin),
@@ -131,6 +135,10 @@ pub(crate) fn bodies() -> Vec<(&'static str, Value)> {
         (
             "/api/diagram",
             json!({"request": {"results": ["a.json"], "states": ["x"], "format": "page"}, "files": {"a.json": "{}"}}),
+        ),
+        (
+            "/api/wheel/diagram",
+            json!({"request": {"results": ["a.json"], "format": "page", "window": {"x": [1.0, 2.0]}, "dark": true}, "files": {"a.json": "{}"}}),
         ),
         ("/api/wheel", json!({"text": "v = 3\n"})),
         ("/api/wheel/save", json!({"analysis": "chart", "request": chart, "format": "csv"})),

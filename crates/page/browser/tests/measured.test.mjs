@@ -1,0 +1,123 @@
+// How fast the pages are: told, not asserted, since a machine that builds beside it is slower.
+
+import { after, before, test } from "node:test";
+import { launch, open, serve } from "./page.mjs";
+
+let servers;
+let browser;
+
+before(async () => {
+  servers = { arclength: await serve("arclength"), kingpin: await serve("kingpin") };
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  for (const server of Object.values(servers ?? {})) await server.end();
+});
+
+/** Prints a line of the table. */
+function tell(what, value, unit) {
+  console.log(`measured: ${what}: ${value < 10 ? value.toFixed(1) : value.toFixed(0)} ${unit}`);
+}
+
+/** Bytes of a page with everything that it loads. */
+async function sizeOf(server, names) {
+  const seen = new Set();
+  let bytes = 0;
+  const queue = [...names];
+  while (queue.length) {
+    const name = queue.pop();
+    if (seen.has(name)) continue;
+    seen.add(name);
+    const text = await (await fetch(server.url + name)).text();
+    bytes += Buffer.byteLength(text);
+    for (const [, module] of text.matchAll(/from "\.\/(\w+\.js)"/g)) queue.push(module);
+  }
+  return bytes;
+}
+
+test("sizes of both pages", async () => {
+  tell("page for any model", await sizeOf(servers.arclength, ["", "style.css", "icon.svg", "model.js"]) / 1000, "kB");
+  tell("page for a wheel", await sizeOf(servers.kingpin, ["", "style.css", "wheel.css", "icon.svg", "wheel.js"]) / 1000, "kB");
+});
+
+test("the page for any model: ready, a slider", async () => {
+  const start = performance.now();
+  const opened = await open(browser, servers.arclength.url);
+  const { page } = opened;
+  await page.locator("#diagrams svg.drawn").waitFor();
+  tell("any model, from the address to its diagram", performance.now() - start, "ms");
+  await opened.settled();
+  const slid = await page.evaluate(() => new Promise((resolve) => {
+    const began = performance.now();
+    const before = document.querySelector("#diagrams .drawn");
+    new MutationObserver(() => {
+      if (document.querySelector("#diagrams .drawn") !== before) resolve(performance.now() - began);
+    }).observe(document.querySelector("#diagrams"), { childList: true, subtree: true });
+    const slider = document.querySelector("#parameters input[type=range]:nth-of-type(1)");
+    slider.value = String(Number(slider.value) * 1.1 + 0.1);
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+  }));
+  tell("any model, from a slider to its diagram", slid, "ms");
+  await opened.settled();
+  await opened.settled();
+  await opened.close();
+});
+
+test("the first point of a branch comes before its end", async () => {
+  const source = "par p=-.5\nx' = p*x - y - x*(x^2+y^2)\ny' = x + p*y - y*(x^2+y^2)\n";
+  const ask = (kind, body) => fetch(`${servers.arclength.url}api/${kind}`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+  const along = { key: "p", start: -1, end: 1 };
+  const events = await (await ask("equilibria", { request: { model: { source: { text: { name: "m.ode", source } } }, along } })).text();
+  const result = events.split("\n\n").find((text) => text.startsWith("event: result\n")).split("\n").slice(1).map((line) => line.replace(/^data: /, "")).join("\n");
+  const start = performance.now();
+  const answer = await ask("cycles", { request: { from: { path: "a.json", label: "HB1" }, along }, files: { "a.json": result } });
+  let [text, first] = ["", 0];
+  for await (const part of answer.body.pipeThrough(new TextDecoderStream())) {
+    text += part;
+    if (text.includes("event: point")) first ||= performance.now() - start;
+  }
+  tell("from the question for cycles to the first one", first, "ms");
+  tell("from the question for cycles to the result", performance.now() - start, "ms");
+});
+
+test("the page for a wheel: verdict, coarse and fine chart, frames a second", async () => {
+  const start = performance.now();
+  const opened = await open(browser, servers.kingpin.url);
+  const { page } = opened;
+  await page.locator("#verdict strong").waitFor();
+  tell("a wheel, from the address to its verdict", performance.now() - start, "ms");
+  await page.waitForFunction(() => document.querySelector("#chart-picture").dataset.points === String(240 * 141));
+  tell("a wheel, from the address to its fine chart", performance.now() - start, "ms");
+  await page.waitForFunction(() => document.querySelector("#status").textContent === "", null, { timeout: 120_000 });
+  const times = await page.evaluate(() => new Promise((resolve) => {
+    const began = performance.now();
+    const picture = document.querySelector("#chart-picture");
+    let coarse = 0;
+    new MutationObserver(() => {
+      if (picture.dataset.points === String(48 * 30)) coarse ||= performance.now() - began;
+      if (coarse && picture.dataset.points === String(240 * 141)) resolve([coarse, performance.now() - began]);
+    }).observe(picture, { attributes: true });
+    const slider = document.querySelector('[aria-label="l, slider"]');
+    slider.value = "0.09";
+    slider.dispatchEvent(new Event("input", { bubbles: true }));
+    slider.dispatchEvent(new Event("change", { bubbles: true }));
+  }));
+  tell("a wheel, from a slider to the coarse chart", times[0], "ms");
+  tell("a wheel, from a slider to the fine chart", times[1], "ms");
+  await page.locator("#let-go").click();
+  await page.locator("#motion-note", { hasText: "In the last tenth" }).waitFor();
+  const rate = await page.evaluate(() => new Promise((resolve) => {
+    let [count, from] = [0, 0];
+    const tick = (now) => {
+      from ||= now;
+      if (now - from > 2000) resolve((count * 1000) / (now - from));
+      else requestAnimationFrame(tick);
+      count++;
+    };
+    requestAnimationFrame(tick);
+  }));
+  tell("a wheel that plays", rate, "frames a second");
+  await opened.close();
+});
