@@ -77,11 +77,13 @@ pub fn stability(stable: Option<bool>, bifurcation: bool) -> &'static str {
     }
 }
 
+/// Where something is by its other parameters, with a blank before; nothing where there are none.
+pub fn at_parameters(named: &[(String, f64)]) -> String {
+    if named.is_empty() { String::new() } else { format!(" at {}", parameters(named)) }
+}
+
 /// Parameters as a line of text.
 pub fn parameters(named: &[(String, f64)]) -> String {
-    if named.is_empty() {
-        return "no other parameters".to_owned();
-    }
     let texts: Vec<String> =
         named.iter().map(|(name, value)| format!("{name} = {}", readable(*value))).collect();
     texts.join(", ")

@@ -2,7 +2,7 @@
 
 use super::cycle::{AlongCycle, CycleResult};
 use super::story::tell;
-use crate::branch::{Origin, parameters, stability};
+use crate::branch::{Origin, at_parameters, stability};
 use crate::end::End;
 use crate::interval::Interval;
 use crate::labels::{self, is_bifurcation};
@@ -129,7 +129,7 @@ impl Report for CyclesResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "limit cycles of {} at {}", self.model.name, parameters(&self.parameters.0))?;
+        writeln!(out, "limit cycles of {}{}", self.model.name, at_parameters(&self.parameters.0))?;
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
         writeln!(out, "  first: {}\n  last:  {}", self.ends[0].text(), self.ends[1].text())?;
         if self.points.iter().any(|point| point.neutral) {

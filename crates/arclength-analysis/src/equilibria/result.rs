@@ -1,6 +1,6 @@
 //! A branch of equilibria as a result.
 
-use crate::branch::{Origin, pairs, parameters, stability, tests};
+use crate::branch::{Origin, at_parameters, pairs, stability, tests};
 use crate::course::{self, ToldPoint};
 use crate::end::End;
 use crate::interval::Interval;
@@ -173,7 +173,7 @@ impl Report for EquilibriaResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "equilibria of {} at {}", self.model.name, parameters(&self.parameters.0))?;
+        writeln!(out, "equilibria of {}{}", self.model.name, at_parameters(&self.parameters.0))?;
         writeln!(out, "{} points, from {}", self.points.len(), self.from.text())?;
         writeln!(out, "  first: {}\n  last:  {}", self.ends[0].text(), self.ends[1].text())?;
         if !self.conserved.is_empty() {

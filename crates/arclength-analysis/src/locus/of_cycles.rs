@@ -2,7 +2,7 @@
 
 use super::cycle_curve::CycleCurve;
 use super::quantities::Quantities;
-use crate::branch::{Origin, parameters};
+use crate::branch::{Origin, at_parameters};
 use crate::interval::Interval;
 use crate::model::ChosenModel;
 use crate::stored_model::StoredModel;
@@ -72,7 +72,7 @@ impl Report for CycleLocusResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let (what, model) = (self.curve.name(), &self.model.name);
-        let heading = format!("curve: {what}, of {model} at {}", parameters(&self.parameters.0));
+        let heading = format!("curve: {what}, of {model}{}", at_parameters(&self.parameters.0));
         self.curve.write_table(&heading, out)
     }
 

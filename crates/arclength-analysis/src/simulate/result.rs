@@ -2,7 +2,7 @@
 
 use super::picture::{self, DrawnPlot};
 use super::section::SectionDirection;
-use crate::branch::parameters;
+use crate::branch::at_parameters;
 use crate::model::ChosenModel;
 use crate::phase_plane::PhasePlane;
 use crate::stored_model::StoredModel;
@@ -174,7 +174,7 @@ impl Report for HistoryResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "motion of {} at {}", self.model.name, parameters(&self.parameters.0))?;
+        writeln!(out, "motion of {}{}", self.model.name, at_parameters(&self.parameters.0))?;
         match &self.section {
             Some(SectionResult { expression, direction }) => {
                 let direction = match direction {

@@ -13,7 +13,7 @@ use super::solution::{Bound, Solution};
 /// Relative agreement of signatures that makes a curve closed.
 const CLOSURE_TOLERANCE: f64 = 1e-6;
 /// A curve has left its start when it has been this many times that away from it.
-const AWAY: f64 = 10.0;
+const AWAY: f64 = 2.0;
 /// Part of a step to which the place of the start is narrowed down.
 const PLACE: f64 = 1e-9;
 /// Components of the signature that are tried.

@@ -21,6 +21,8 @@ const SMALL_RESIDUAL: f64 = f64::EPSILON;
 const ACCEPTABLE_RESIDUAL: f64 = 1e-14;
 /// A balanced entry below this part of the largest is no influence: the square root of rounding.
 const NO_INFLUENCE: f64 = 1e-8;
+/// A balanced component below this part of the largest is its rounding.
+const NO_PART: f64 = 32.0 * f64::EPSILON;
 /// Components whose modulus is within this part of the largest count as largest; the first of them becomes
 /// real.
 const TIE: f64 = 1e-6;
@@ -96,7 +98,7 @@ pub fn right_eigenvector(
 /// iteration leaves less of it, and what is left, however small, would have a sign.
 fn drop_rounding(vector: &mut [Complex64]) {
     let largest = vector.iter().fold(0.0_f64, |largest, entry| largest.max(entry.norm()));
-    for entry in vector.iter_mut().filter(|entry| entry.norm() < f64::EPSILON * largest) {
+    for entry in vector.iter_mut().filter(|entry| entry.norm() < NO_PART * largest) {
         *entry = Complex64::ZERO;
     }
 }

@@ -31,6 +31,9 @@ const VANISHING: f64 = 1e-3;
 /// What lies between two solutions is no farther from either of them than this many times their distance and this far in the
 /// metric, as solutions are known no better.
 const BETWEEN: f64 = 1.2;
+/// Part of that distance by which it may lie outside in the direction from one to the other: Newton's method may lead to a point of the
+/// same kind that lies just before.
+const OUTSIDE: f64 = 1e-3;
 const LEAST_DISTANCE: f64 = 2e-6;
 
 /// Changes in one step that are tried in vain before the others are only told.
@@ -280,7 +283,10 @@ impl<'s, C: Curve> Scan<'s, C> {
     ) -> bool {
         let length = distance(self.curve, &before.unknown, &after.unknown);
         let ends = [before, after].map(|end| distance(self.curve, &end.unknown, &solution.unknown));
+        let from_middle =
+            (ends[0] * ends[0] - ends[1] * ends[1]).abs() / (2.0 * length.max(f64::MIN_POSITIVE));
         ends[0].max(ends[1]) <= BETWEEN * length + LEAST_DISTANCE
+            && from_middle <= (0.5 + OUTSIDE) * length + LEAST_DISTANCE
     }
 
     /// A point between two solutions that has been found and at which the test function of `kind` may vanish too.

@@ -330,6 +330,20 @@ proptest! {
     }
 }
 
+#[test]
+fn two_doublings_in_one_step_are_both_found() {
+    // A step ends so close behind the first that Newton's method led back to it from there.
+    let zeros = vec![vec![0.33940972329766694, 0.38517186374404966], vec![0.0], vec![0.20232405099982625]];
+    let field = Circle(Beside { zeros, factors: vec![0.3; 3] });
+    let branch = Cycles::of(&field, CycleStart::Orbit(circle(7)))
+        .parameters(&[-1.0])
+        .along("m", -1.0..=1.0)
+        .run()
+        .unwrap();
+    let (found, expected) = (found(&branch), field.0.expected(&CIRCLE));
+    assert!(same(&found, &expected, 1e-8), "{found:?}, expected {expected:?}");
+}
+
 /// Cases of a property test; `EVENT_CASES` asks for so many times as many.
 fn cases(count: u32) -> u32 {
     let times = std::env::var("EVENT_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(1);

@@ -1,6 +1,7 @@
 //! Curves of special equilibria in two parameters against closed forms and published values.
 
 mod branch_points;
+mod closed_and_degenerate;
 mod codimension_two;
 mod models;
 mod random_fields;
