@@ -211,7 +211,7 @@ impl<'a> EquilibriumLocus<'a> {
         let mut followed = run.from(start, state, &request, &mut *observe)?;
         drop(observe);
         followed.mark_requested(at, |solution| ordered.bounds[0].value(&solution.unknown));
-        let place = (&run.parameters[..], &active[..]);
+        let place = (&run.parameters[..], active);
         let branch = Branch::assemble(&run.field, place, followed, |solution, label| point(&solution, label));
         Ok(Branch { kind: start.kind(), ..branch })
     }
