@@ -1,14 +1,42 @@
-//! Wheels in words: one line, however much there is to say.
+//! Wheels in words: all that is to be said, for a table on lines that are not too long.
 
 use kingpin::{Key, Tyre, Wheel};
 use kingpin_report::numbers::readable;
 
-/// Characters that the parameters may take; what does not fit is counted.
+/// Characters that the parameters may take on one line of a heading, and with the file.
 const LONGEST: usize = 110;
+const LONGEST_WITH_FILE: usize = 150;
+/// What begins a further line of a heading.
+const FURTHER: &str = "\n    ";
 
 /// Speed, caster length and radius; what was changed of the wheel of a file, or is not the paper's where there is no file; all that
 /// the wheel has and need not have, such as dampers and a load; and the file. Without those that vary.
 pub(crate) fn of(wheel: &Wheel, varying: &[Key]) -> String {
+    let [parameters, file] = parts(wheel, varying);
+    [parameters.join(", "), file.join(" ")]
+        .into_iter()
+        .filter(|part| !part.is_empty())
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// The same as the end of a heading, on further lines where it is long.
+pub(crate) fn on_lines(wheel: &Wheel, varying: &[Key]) -> String {
+    let [parameters, file] = parts(wheel, varying);
+    let lines = wrapped(&parameters.iter().map(|item| format!("{item},")).collect::<Vec<_>>(), LONGEST);
+    let told = lines.join(FURTHER).trim_end_matches(',').to_owned();
+    let last = lines.last().map_or(0, |line| line.chars().count());
+    let (whole, fits) = (file.join(" "), last + file.join(" ").chars().count() <= LONGEST_WITH_FILE);
+    match (told.is_empty(), whole.is_empty()) {
+        (_, true) => told,
+        (true, _) => whole,
+        _ if fits => format!("{told} {whole}"),
+        _ => format!("{told}{FURTHER}{}", wrapped(&file, LONGEST).join(FURTHER)),
+    }
+}
+
+/// What is told of the parameters, and the file, in pieces.
+fn parts(wheel: &Wheel, varying: &[Key]) -> [Vec<String>; 2] {
     let always = [Key::V, Key::L, Key::TurningRadius];
     let is_extra = |key: Key, value: f64| {
         let from_nothing = key.default_value() == 0.0 && !key.is_of_the_tyre();
@@ -22,12 +50,13 @@ pub(crate) fn of(wheel: &Wheel, varying: &[Key]) -> String {
     let tyre = tyre.map(|tyre| format!("{} = {tyre}", Tyre::KEY));
     let quantities = |list: Vec<(Key, f64)>| list.into_iter().map(|(key, value)| quantity(key, value));
     let all = quantities(first).chain(tyre).chain(quantities(changed)).chain(quantities(extra.collect()));
-    let parameters = shortened(all.collect());
-    match wheel.file_name() {
-        Some(file) if parameters.is_empty() => file.to_owned(),
-        Some(file) => format!("{parameters} ({})", of_file(wheel, file, varying)),
-        None => parameters,
-    }
+    let parameters: Vec<String> = all.collect();
+    let file = match wheel.file_name() {
+        Some(file) if parameters.is_empty() => vec![file.to_owned()],
+        Some(file) => format!("({})", of_file(wheel, file, varying)).split(' ').map(str::to_owned).collect(),
+        None => Vec::new(),
+    };
+    [parameters, file]
 }
 
 /// The file, and that something was changed in it.
@@ -43,17 +72,19 @@ fn of_file(wheel: &Wheel, file: &str, varying: &[Key]) -> String {
     }
 }
 
-/// As many quantities as fit, and how many more there are.
-fn shortened(quantities: Vec<String>) -> String {
-    let mut text = String::new();
-    for (index, quantity) in quantities.iter().enumerate() {
-        let joined = if text.is_empty() { quantity.clone() } else { format!("{text}, {quantity}") };
-        if joined.chars().count() > LONGEST && index > 0 {
-            return format!("{text} and {} more", quantities.len() - index);
+/// Words on lines of at most so many characters.
+fn wrapped(words: &[String], longest: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= longest => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.clone()),
         }
-        text = joined;
     }
-    text
+    lines
 }
 
 /// `v = 4 m/s`.
@@ -89,17 +120,23 @@ mod tests {
     }
 
     #[test]
-    fn many_changes_stay_on_one_line() {
+    fn many_changes_are_all_told_on_lines_that_are_not_too_long() {
         let mut wheel = Wheel::default();
         for (key, _) in Wheel::default().parameters() {
             let value = wheel.get(key);
             wheel.set_value(key, 1.5 * value + f64::from(u8::from(value == 0.0))).unwrap();
         }
-        let told = of(&wheel, &[]);
-        assert!(
-            told.starts_with("v = 6 m/s, l = 0.12 m, r = 1.5 m, m_w = ") && told.ends_with(" more"),
-            "{told}"
-        );
-        assert!(told.len() < 130, "{told}");
+        for wheel in [wheel, wheel.from_file("cart.toml").with(Key::L, 0.3).unwrap()] {
+            let told = on_lines(&wheel, &[]);
+            assert!(
+                told.lines().count() > 2 && told.lines().all(|line| line.chars().count() < 160),
+                "{told}"
+            );
+            assert_eq!(told.replace(FURTHER, " "), of(&wheel, &[]));
+        }
+        let told = on_lines(&wheel, &[]);
+        for (key, _) in wheel.parameters() {
+            assert!(told.contains(&format!("{key} = ")), "{key}: {told}");
+        }
     }
 }

@@ -8,6 +8,7 @@ mod along;
 pub mod axis;
 mod axis_label;
 pub mod basin;
+mod blow_out_of_rest;
 pub mod chart;
 mod classification;
 pub mod cycles;
@@ -44,6 +45,7 @@ mod uniform_curve;
 mod up_to;
 mod wheel_request;
 
+pub use blow_out_of_rest::BlowOutOfRestResult;
 pub use classification::{Classification, Contact, NamedFate};
 pub use disturbance::{DisturbanceKind, DisturbanceRequest, Edge};
 pub use error::Error;

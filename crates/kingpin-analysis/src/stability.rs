@@ -1,5 +1,6 @@
 //! Eigenvalues of the uniform motion and its critical speed.
 
+use crate::blow_out_of_rest::BlowOutOfRestResult;
 use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
@@ -53,6 +54,10 @@ impl StabilityRequest {
             resting_angles: wheel.resting_angles()?,
             resting_deflections: if wheel.get(Key::MF) > 0.0 { wheel.resting_deflections()? } else { None },
             largest_resting_angle_while_sliding: wheel.largest_resting_angle_while_sliding(),
+            blow_out_of_rest: wheel.blow_out_of_rest(&Control::none())?.map(Into::into),
+            blow_out_of_rest_while_sliding: wheel
+                .blow_out_of_rest_while_sliding(&Control::none())?
+                .map(Into::into),
             wheel,
         })
     }
@@ -115,6 +120,13 @@ pub struct StabilityResult {
     /// The largest caster angle in rad that dry friction about the king pin holds while the wheel slides sideways, towed straight.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_resting_angle_while_sliding: Option<f64>,
+    /// With dry friction about the king pin, the smallest blow after which the caster of the rolling wheel does not rest where its first
+    /// swing ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blow_out_of_rest: Option<BlowOutOfRestResult>,
+    /// The same beyond the largest angle that dry friction holds while the wheel slides sideways.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blow_out_of_rest_while_sliding: Option<BlowOutOfRestResult>,
 }
 
 impl Report for StabilityResult {
@@ -128,7 +140,7 @@ impl Report for StabilityResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let verdict = stability(self.stable, false);
-        writeln!(out, "uniform motion at {}: {verdict}\n", description::of(&self.wheel, &[]))?;
+        writeln!(out, "uniform motion at {}: {verdict}\n", description::on_lines(&self.wheel, &[]))?;
         let mut table = Table::new(["eigenvalue", "real part (1/s)", "imaginary part (rad/s)"]);
         for (number, [real, imaginary]) in (1..).zip(&self.eigenvalues) {
             table.row([format!("{number}").into(), (*real).into(), (*imaginary).into()]);
@@ -232,6 +244,9 @@ impl StabilityResult {
                     readable(high)
                 )?;
             }
+            if let Some(edge) = &self.blow_out_of_rest {
+                writeln!(out, "{}", edge.while_rolling())?;
+            }
             if let Some(angle) = self.largest_resting_angle_while_sliding {
                 let held = if angle < PI {
                     format!("angles up to {} rad", readable(angle))
@@ -239,6 +254,9 @@ impl StabilityResult {
                     "any angle".to_owned()
                 };
                 writeln!(out, "while it slides sideways the caster is held at {held}")?;
+                if let Some(edge) = &self.blow_out_of_rest_while_sliding {
+                    writeln!(out, "{}", edge.while_sliding())?;
+                }
             }
         }
         let Some(factor) = self.swing_factor else { return Ok(()) };

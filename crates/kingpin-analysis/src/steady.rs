@@ -1,10 +1,12 @@
 //! The uniform motion at one parameter point.
 
+use crate::blow_out_of_rest::BlowOutOfRestResult;
 use crate::description;
 use crate::error::Error;
 use crate::parameters::parameters_of;
 use crate::states::{self, named_state};
 use crate::wheel_request::WheelRequest;
+use arclength_analysis::Control;
 use kingpin::{Key, UniformMotion, Wheel};
 use kingpin_report::numbers::readable;
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Table};
@@ -30,6 +32,7 @@ impl SteadyRequest {
         if wheel.get(Key::MF) > 0.0 {
             result.resting_deflections = wheel.resting_deflections()?;
             result.resting_angles = wheel.resting_angles()?;
+            result.blow_out_of_rest = wheel.blow_out_of_rest(&Control::none())?.map(Into::into);
         }
         Ok(result)
     }
@@ -59,6 +62,9 @@ pub struct SteadyResult {
     /// With a tyre and dry friction about the king pin, the smallest and largest caster angle in rad at which it rests.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resting_angles: Option<[f64; 2]>,
+    /// With dry friction about the king pin, the smallest blow after which the caster does not rest where its first swing ends.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub blow_out_of_rest: Option<BlowOutOfRestResult>,
 }
 
 impl SteadyResult {
@@ -73,6 +79,7 @@ impl SteadyResult {
             rolls: contact.rolls(),
             resting_deflections: None,
             resting_angles: None,
+            blow_out_of_rest: None,
         }
     }
 }
@@ -87,7 +94,7 @@ impl Report for SteadyResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "uniform motion at {}\n", description::of(&self.wheel, &[]))?;
+        writeln!(out, "uniform motion at {}\n", description::on_lines(&self.wheel, &[]))?;
         let limit = self.wheel.get(Key::MuS) * self.normal_force;
         let rolling = if self.rolls {
             format!("yes: the ground can supply {} N", readable(limit))
@@ -108,13 +115,14 @@ impl Report for SteadyResult {
         writeln!(out, "rolls           {rolling}")?;
         let moment = self.wheel.get(Key::MF);
         if let Some([low, high]) = self.resting_angles {
-            return writeln!(
+            writeln!(
                 out,
                 "\ndry friction about the king pin, M_f = {} N m, lets it rest with any psi from {} to {} rad",
                 readable(moment),
                 readable(low),
                 readable(high)
-            );
+            )?;
+            return self.write_blow(out);
         }
         match self.resting_deflections {
             Some([low, high]) => writeln!(
@@ -130,7 +138,8 @@ impl Report for SteadyResult {
                 readable(moment)
             ),
             None => Ok(()),
-        }
+        }?;
+        self.write_blow(out)
     }
 
     fn columns(&self) -> Columns {
@@ -144,5 +153,12 @@ impl Report for SteadyResult {
             .numbers("normal_force", [self.normal_force])
             .unit("N")
             .booleans("rolls", [self.rolls])
+    }
+}
+
+impl SteadyResult {
+    /// What a blow does to the wheel at rest.
+    fn write_blow(&self, out: &mut dyn Write) -> io::Result<()> {
+        self.blow_out_of_rest.iter().try_for_each(|edge| writeln!(out, "{}", edge.while_rolling()))
     }
 }

@@ -121,7 +121,7 @@ impl Report for SteadyAlongResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let key = self.interval.key();
-        writeln!(out, "uniform motion at {}\n", description::of(&self.wheel, &[key]))?;
+        writeln!(out, "uniform motion at {}\n", description::on_lines(&self.wheel, &[key]))?;
         let unit = |unit: &str| if unit.is_empty() { String::new() } else { format!(" ({unit})") };
         let mut headings = vec![format!("{key}{}", unit(key.unit()))];
         headings.extend(self.state_names().iter().map(|name| format!("{name}{}", unit(states::unit(name)))));

@@ -47,6 +47,27 @@ impl Wheel {
         Ok(boundary)
     }
 
+    /// The curves in the plane on which small motions of the wheel that is towed straight just die out with dry friction about the king
+    /// pin, however little: the [factor of a swing](Self::swing_factor) has the modulus one. None on a circle and with a tyre.
+    ///
+    /// # Errors
+    /// [`Interrupted`].
+    ///
+    /// ```
+    /// use arclength::control::Control;
+    /// use kingpin::{Axis, Key, Plane, Wheel};
+    /// let wheel = Wheel::default().with(Key::Curvature, 0.0)?;
+    /// let plane = Plane::new(Axis::new(Key::V, 0.1..=10.0)?, Axis::new(Key::L, 0.03..=0.05)?)?;
+    /// for [v, l] in &wheel.swing_boundary(&plane, &Control::none())?[0].points {
+    ///     let critical = wheel.with(Key::L, *l)?.critical_speed_with_friction().unwrap();
+    ///     assert!((v - critical).abs() < 1e-6);
+    /// }
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn swing_boundary(&self, plane: &Plane, control: &Control<'_>) -> Result<Vec<Curve>, Interrupted> {
+        self.zero_set(plane, |wheel| wheel.swing_factor().map(|factor| factor.abs() - 1.0), control)
+    }
+
     /// The curves in the plane on which the ground can just hold the wheel in its uniform motion, `F_f = mu_s N`.
     ///
     /// # Errors

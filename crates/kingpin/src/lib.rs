@@ -20,6 +20,7 @@
 mod active;
 mod arithmetic;
 pub mod basin;
+mod blow_out_of_rest;
 mod body;
 pub mod boundary;
 mod bounded;
@@ -56,6 +57,7 @@ pub mod tyre;
 pub mod uniform_motion;
 pub mod wheel;
 
+pub use blow_out_of_rest::BlowOutOfRest;
 pub use boundary::Curve;
 pub use chart::{GrowthRateChart, StabilityChart};
 pub use contact::ContactForce;

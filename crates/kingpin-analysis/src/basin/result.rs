@@ -5,6 +5,7 @@ use crate::description;
 use crate::parameters::parameters_of;
 use crate::states;
 use kingpin::basin::{Axis, Destinations, Fate, Fraction, Tile};
+use kingpin::{Key, Wheel};
 use kingpin_figure::{
     CategoryMap, Figure, FigureError, Grid, Legend, LegendEntry, Marker, MarkerShape, Markers, Panel,
 };
@@ -152,9 +153,9 @@ impl BasinResult {
         self.fractions.iter().filter(|fraction| fraction.count > 0).map(|fraction| fraction.fate.0).collect()
     }
 
-    fn description(&self) -> String {
+    fn described(&self, wheel: impl Fn(&Wheel, &[Key]) -> String) -> String {
         let how = contact_in_words(self.destinations.wheel(), self.contact);
-        format!("{how} at {}", description::of(self.destinations.wheel(), &[]))
+        format!("{how} at {}", wheel(self.destinations.wheel(), &[]))
     }
 
     fn write_map(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -200,7 +201,7 @@ impl Report for BasinResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "{}", self.description())?;
+        writeln!(out, "{}", self.described(description::on_lines))?;
         let count = self.fates.len();
         let [x, y] = self.ends.map(|[from, to]| format!("{} to {}", readable(from), readable(to)));
         let (x_name, y_name) = (self.x.state, self.y.state);
@@ -300,7 +301,7 @@ impl Report for BasinResult {
             "Where motions end depending on {} and {} at the start: {}",
             self.x.state,
             self.y.state,
-            self.description()
+            self.described(description::of)
         );
         Ok(Some(Figure::single_column().description(description).panel(panel)))
     }

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
 use arclength_analysis::Control;
-use kingpin::{Axis, GrowthRateChart, Plane, Wheel};
+use kingpin::{Axis, GrowthRateChart, Key, Plane, Wheel};
 use kingpin_figure::{
     CategoryMap, ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette,
 };
@@ -62,6 +62,10 @@ pub struct ChartResult {
     pub stability_boundary: Vec<Vec<[f64; 2]>>,
     /// The limit of rolling, as curves of points.
     pub rolling_limit: Vec<Vec<[f64; 2]>>,
+    /// Towed straight over the speed, the limit up to which small motions die out with dry friction about the king pin, where there is
+    /// some, as curves of points; its moment does not matter.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_boundary: Vec<Vec<[f64; 2]>>,
     /// The limits with other values of a third parameter.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overlays: Vec<Overlay>,
@@ -82,6 +86,11 @@ impl ChartResult {
         overlays: Vec<Overlay>,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
+        let over_speed = [plane.x().key(), plane.y().key()].contains(&Key::V);
+        let friction_boundary = match wheel.get(Key::MF) > 0.0 && over_speed {
+            true => points_of(wheel.swing_boundary(&plane, control)?),
+            false => Vec::new(),
+        };
         let GrowthRateChart { x, y, growth_rate, stable, rolls } = chart;
         Ok(Self {
             wheel,
@@ -92,13 +101,14 @@ impl ChartResult {
             rolls,
             stability_boundary: points_of(wheel.stability_boundary(&plane, control)?),
             rolling_limit: points_of(wheel.rolling_limit(&plane, control)?),
+            friction_boundary,
             overlays,
             dry_friction: NeglectedDryFriction::of(&wheel, &[plane.x().key(), plane.y().key()]),
             plane,
         })
     }
 
-    fn keys(&self) -> [kingpin::Key; 2] {
+    fn keys(&self) -> [Key; 2] {
         [self.plane.x().key(), self.plane.y().key()]
     }
 
@@ -137,7 +147,7 @@ impl Report for ChartResult {
         let undecided = self.stable.iter().filter(|stable| stable.is_none()).count();
         let points = self.growth_rate.len();
         let exists = self.growth_rate.iter().flatten().count();
-        writeln!(out, "uniform motion at {}", description::of(&self.wheel, &self.keys()))?;
+        writeln!(out, "uniform motion at {}", description::on_lines(&self.wheel, &self.keys()))?;
         writeln!(
             out,
             "{points} points: it exists at {exists}, is stable at {}, rolls at {}\n",
@@ -171,7 +181,8 @@ impl Report for ChartResult {
             writeln!(out, "? undecided, at {undecided}: rounding could make it stable or unstable")?;
         }
         self.write_overlays(out)?;
-        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
+        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)?;
+        self.write_friction_boundary(out)
     }
 
     /// The grid row by row, then the points of the limits of every overlay.
@@ -250,7 +261,7 @@ impl ChartResult {
             let line = Line::new(curve.iter().copied()).dashed().color(palette::BLACK);
             panel = panel.curve(if index == 0 { line.legend("limit of rolling") } else { line });
         }
-        Ok(panel)
+        Ok(self.with_friction_boundary(panel))
     }
 
     /// The limits of every overlay, over where the wheel itself is stable.
@@ -274,7 +285,35 @@ impl ChartResult {
             self.overlays.iter().any(|overlay| !curves(overlay).is_empty())
         };
         let drawn = [any(|overlay| &overlay.stability_boundary), any(|overlay| &overlay.rolling_limit)];
-        Ok(Overlay::legend(drawn[0], drawn[1]).fold(panel, Panel::legend_entry))
+        let panel = Overlay::legend(drawn[0], drawn[1]).fold(panel, Panel::legend_entry);
+        Ok(self.with_friction_boundary(panel))
+    }
+
+    /// The limit of small motions with dry friction about the king pin besides.
+    fn with_friction_boundary(&self, mut panel: Panel) -> Panel {
+        for (index, curve) in self.friction_boundary.iter().enumerate() {
+            let line = Line::new(curve.iter().copied()).color(palette::VERMILION);
+            panel = panel.curve(if index == 0 {
+                line.legend("with dry friction small motions die out up to here")
+            } else {
+                line
+            });
+        }
+        panel
+    }
+
+    /// Over which speeds the limit of small motions with dry friction runs.
+    fn write_friction_boundary(&self, out: &mut dyn Write) -> io::Result<()> {
+        let place = usize::from(self.plane.x().key() != Key::V);
+        let speeds = || self.friction_boundary.iter().flatten().map(|point| point[place]);
+        let [low, high] =
+            [speeds().fold(f64::INFINITY, f64::min), speeds().fold(f64::NEG_INFINITY, f64::max)];
+        if low > high {
+            return Ok(());
+        }
+        let [low, high] = [low, high].map(|speed| significant(speed, 4));
+        let over = if low == high { format!("at {low} m/s") } else { format!("at {low} to {high} m/s") };
+        writeln!(out, "over the chart the limit up to which they die out is {over} (`friction_boundary`)")
     }
 
     /// How far the limits of every overlay reach.

@@ -243,7 +243,7 @@ impl Report for CyclesResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "limit cycles at {}", description::of(&self.wheel, &[self.interval.key()]))?;
+        writeln!(out, "limit cycles at {}", description::on_lines(&self.wheel, &[self.interval.key()]))?;
         for sentence in &self.course {
             writeln!(out, "{sentence}")?;
         }

@@ -352,7 +352,7 @@ impl Report for DamperResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let ranges = self.ranges();
-        let wheel = description::of(&self.wheel, &self.replaced());
+        let wheel = description::on_lines(&self.wheel, &self.replaced());
         let up_to = readable(self.up_to);
         writeln!(out, "dampers for stability up to v = {up_to} m/s{} at {wheel}\n", ranges.in_words())?;
         if self.load.is_some() && !ranges.loads_enter {

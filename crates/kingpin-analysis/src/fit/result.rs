@@ -169,7 +169,11 @@ impl Report for FitResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let records = counted(self.records.len(), "record", "records");
-        writeln!(out, "parameters from {records} at {}", description::of(&self.wheel, &self.of_records))?;
+        writeln!(
+            out,
+            "parameters from {records} at {}",
+            description::on_lines(&self.wheel, &self.of_records)
+        )?;
         writeln!(
             out,
             "{}, {}: {}\n",

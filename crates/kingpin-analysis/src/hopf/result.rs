@@ -304,7 +304,7 @@ impl Report for HopfResult {
         let key = self.interval.key();
         let (low, high) = self.interval.ends();
         let [low, high] = [low, high].map(readable);
-        writeln!(out, "uniform motion at {}", description::of(&self.wheel, &[key]))?;
+        writeln!(out, "uniform motion at {}", description::on_lines(&self.wheel, &[key]))?;
         writeln!(out, "Hopf points for {key} from {low} to {high} {}\n", key.unit())?;
         let mut table = Table::new([
             "label".to_owned(),

@@ -3,6 +3,7 @@
 use super::course::{ends, unlocated_changes};
 use crate::description;
 use crate::error::{Error, unless_stopped};
+use crate::neglected_dry_friction::NeglectedDryFriction;
 use arclength::continuation::Settings;
 use arclength::equilibrium::EquilibriumPoint;
 use arclength_analysis::Control;
@@ -64,10 +65,11 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
     if !changes.is_empty() {
         return format!("{message}; {}", changes.join("; "));
     }
-    if let Some(always) = always(wheel, along.key(), [low_stable, high_stable]) {
-        return message + &always;
-    }
-    message += &if does_not_act(wheel, along.key(), [low, high]) {
+    message += &if let Some(always) = always(wheel, along.key(), [low_stable, high_stable]) {
+        always
+    } else if let Some(elsewhere) = elsewhere(wheel, along) {
+        elsewhere
+    } else if does_not_act(wheel, along.key(), [low, high]) {
         format!(
             "; {} does not act on the stability of this wheel: the eigenvalues stay the same",
             along.key()
@@ -75,7 +77,37 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
     } else {
         "; try a wider interval, or see with `kingpin chart` where the stability changes".to_owned()
     };
+    let mut neglected = Vec::new();
+    if NeglectedDryFriction::tell(NeglectedDryFriction::of(wheel, &[along.key()]).as_ref(), &mut neglected)
+        .is_ok()
+    {
+        let told = String::from_utf8_lossy(&neglected);
+        told.lines().filter(|line| !line.is_empty()).for_each(|line| message += &format!("; {line}"));
+    }
     message
+}
+
+/// At which speeds outside the interval the stability changes, where the speed varies, as `stability` finds them; or that it finds none.
+fn elsewhere(wheel: &Wheel, along: Along) -> Option<String> {
+    if along.key() != Key::V {
+        return None;
+    }
+    let over_speed = wheel.stability_over_speed(&Control::none()).ok()?;
+    let (start, end) = along.ends();
+    let outside: Vec<String> = over_speed
+        .changes
+        .iter()
+        .filter(|speed| !(start..=end).contains(*speed))
+        .map(|speed| readable(*speed))
+        .collect();
+    let [low, high] = over_speed.searched.map(readable);
+    match outside.as_slice() {
+        [] if over_speed.changes.is_empty() => {
+            Some(format!("; no change of its stability was found from {low} to {high} m/s"))
+        }
+        [] => None,
+        speeds => Some(format!("; its stability changes at {} m/s", speeds.join(", "))),
+    }
 }
 
 /// That a wheel has one stability at every speed, where that is known in closed form and the speed varies; an unstable one with what
@@ -92,7 +124,8 @@ fn always(wheel: &Wheel, key: Key, ends: [Option<bool>; 2]) -> Option<String> {
         return Some("; it is stable at every speed".to_owned());
     }
     let with_friction = match wheel.critical_speed_with_friction() {
-        _ if !wheel.get(Key::TurningRadius).is_infinite() => String::new(),
+        // With a moment of its own it is told at the end.
+        _ if !wheel.get(Key::TurningRadius).is_infinite() || wheel.get(Key::MF) > 0.0 => String::new(),
         Some(0.0) => {
             "; with dry friction about the king pin small motions grow at every speed all the same".to_owned()
         }

@@ -80,7 +80,7 @@ impl Report for CycleLocusResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let kind = self.curve.name();
-        let heading = format!("curve: {kind}, at {}", description::of(&self.wheel, &self.plane.keys()));
+        let heading = format!("curve: {kind}, at {}", description::on_lines(&self.wheel, &self.plane.keys()));
         self.curve.write_table(&heading, out)?;
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }

@@ -77,7 +77,8 @@ impl Report for HopfLocusResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        let heading = format!("curve of Hopf points at {}", description::of(&self.wheel, &self.plane.keys()));
+        let heading =
+            format!("curve of Hopf points at {}", description::on_lines(&self.wheel, &self.plane.keys()));
         self.curve.write_table(&heading, out)?;
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }

@@ -181,9 +181,9 @@ impl MarginResult {
         }
     }
 
-    fn description(&self) -> String {
+    fn described(&self, wheel: impl Fn(&Wheel, &[Key]) -> String) -> String {
         let how = if self.contact == "rolling" { "ideal rolling" } else { "rolling and sliding" };
-        format!("{how} at {}", description::of(&self.wheel, &[self.interval.key()]))
+        format!("{how} at {}", wheel(&self.wheel, &[self.interval.key()]))
     }
 
     fn curve(&self, of: impl Fn(&MarginPoint) -> Option<f64>) -> Vec<(f64, f64)> {
@@ -210,7 +210,7 @@ impl Report for MarginResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let (key, unit) = (self.interval.key(), self.unit);
-        writeln!(out, "{}", self.description())?;
+        writeln!(out, "{}", self.described(description::on_lines))?;
         writeln!(out, "largest safe {} in either direction, and the unstable limit cycle\n", self.kind)?;
         let mut table = Table::new([
             format!("{key} ({})", key.unit()),
@@ -296,7 +296,7 @@ impl Report for MarginResult {
             "Largest safe {} and amplitude of the unstable limit cycle against {}: {}",
             self.kind,
             self.interval.key(),
-            self.description()
+            self.described(description::of)
         );
         let figure = Figure::single_column().columns(1).height_mm(110.0).description(description);
         Ok(Some(figure.panel(kicks).panel(cycles)))

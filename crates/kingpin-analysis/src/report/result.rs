@@ -35,7 +35,11 @@ impl Report for ReportResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let up_to = readable(self.up_to);
-        writeln!(out, "the wheel at {}, and up to v = {up_to} m/s\n", description::of(&self.wheel, &[]))?;
+        writeln!(
+            out,
+            "the wheel at {}, and up to v = {up_to} m/s\n",
+            description::on_lines(&self.wheel, &[])
+        )?;
         for Finding { subject, text, undecided, .. } in &self.findings {
             writeln!(out, "{subject}{}\n  {text}", if *undecided { " (undecided)" } else { "" })?;
         }

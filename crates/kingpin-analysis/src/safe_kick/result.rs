@@ -205,9 +205,9 @@ impl SafeKickResult {
         }
     }
 
-    fn description(&self) -> String {
+    fn described(&self, wheel: impl Fn(&Wheel, &[Key]) -> String) -> String {
         let how = contact_in_words(&self.wheel, self.contact);
-        format!("{how} at {}", description::of(&self.wheel, self.replaced()))
+        format!("{how} at {}", wheel(&self.wheel, self.replaced()))
     }
 }
 
@@ -260,7 +260,7 @@ impl Report for SafeKickResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let (kind, unit) = (self.kind, self.unit);
-        writeln!(out, "{}", self.description())?;
+        writeln!(out, "{}", self.described(description::on_lines))?;
         let speed_change = self.largest_speed_change.map(|change| {
             format!(" (which changes the speed of wheel and caster by {} m/s)", readable(change))
         });
@@ -426,7 +426,8 @@ impl Report for SafeKickResult {
             let line = Line::new(drawn(&motion.t, &motion.psi)).color(color).width(0.6);
             panel = panel.curve(line.legend(text(motion, how)));
         }
-        let description = format!("Caster angle over time after {}: {}", self.shown(), self.description());
+        let description =
+            format!("Caster angle over time after {}: {}", self.shown(), self.described(description::of));
         Ok(Some(Figure::single_column().description(description).panel(panel)))
     }
 }

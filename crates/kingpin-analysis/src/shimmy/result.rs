@@ -219,7 +219,11 @@ impl Report for ShimmyResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "shimmy with sliding at {}", description::of(&self.wheel, &[self.interval.key()]))?;
+        writeln!(
+            out,
+            "shimmy with sliding at {}",
+            description::on_lines(&self.wheel, &[self.interval.key()])
+        )?;
         for branch in &self.branches {
             let points = self.points_of(branch);
             let count = counted(points.len(), "point", "points");

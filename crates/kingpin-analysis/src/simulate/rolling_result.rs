@@ -140,7 +140,7 @@ impl Report for RollingHistory {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let duration = self.t.last().copied().unwrap_or(0.0);
-        writeln!(out, "motion at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "motion at {}", description::on_lines(&self.wheel, &[]))?;
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
         let states = self.states().map(|(name, values, unit, _)| (name, values, unit));
         let force = ("friction_force", &self.friction_force, "N");

@@ -139,7 +139,7 @@ impl Report for SlidingHistory {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let duration = self.t.last().copied().unwrap_or(0.0);
-        writeln!(out, "motion with rolling and sliding at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "motion with rolling and sliding at {}", description::on_lines(&self.wheel, &[]))?;
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(duration))?;
         let more = [
             ("slip", &self.slip, "m/s"),

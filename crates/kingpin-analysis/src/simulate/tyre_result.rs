@@ -166,7 +166,7 @@ impl Report for TyreHistoryResult {
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
-        writeln!(out, "motion at {}", description::of(&self.wheel, &[]))?;
+        writeln!(out, "motion at {}", description::on_lines(&self.wheel, &[]))?;
         let reached = self.stopped_at.unwrap_or(self.duration);
         writeln!(out, "{} samples over {} s\n", self.t.len(), readable(reached))?;
         let force = ("friction_force", &self.friction_force, "N");

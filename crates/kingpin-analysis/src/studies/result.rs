@@ -62,7 +62,7 @@ impl Report for StudyResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         if let Some(wheel) = &self.wheel {
-            writeln!(out, "wheel at {}\n", description::of(wheel, &[]))?;
+            writeln!(out, "wheel at {}\n", description::on_lines(wheel, &[]))?;
         }
         let mut study = None;
         let mut table = Table::new(["", "", ""]);

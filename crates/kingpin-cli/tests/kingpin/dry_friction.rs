@@ -146,3 +146,64 @@ fn margins_follow_the_moment_and_vanish_where_swings_grow() {
     assert!(lines[4].ends_with("all that were tried return"), "{along_speed}");
     assert!(lines[5].ends_with("small motions grow in spite of dry friction"), "{along_speed}");
 }
+
+/// On a tyre: simulated just below the blow that is told the caster swings once, just above it again.
+#[test]
+fn the_blow_that_leaves_the_rest_is_told_by_steady_and_stability() {
+    let folder = Folder::new();
+    let tyre = "TROLLEY -s tyre=brush -s sigma=0.05 -s a=0.02 -s C_alpha=3000 -s M_f=1";
+    let edge = folder.json(&trolley(&format!("stability {tyre}")))["blow_out_of_rest"].clone();
+    assert_eq!(folder.json(&trolley(&format!("steady {tyre}")))["blow_out_of_rest"], edge);
+    assert_eq!(edge["method"], "simulation");
+    assert_eq!(edge["ends_in"], "rest");
+    let blow = edge["blow"].as_f64().unwrap();
+    assert!(edge["resolution"].as_f64().unwrap() <= 1e-6 * blow, "{edge}");
+    for (part, once) in [(0.99, true), (1.01, false)] {
+        let replay = format!("simulate {tyre} --blow {} --duration 30", part * blow);
+        let motion = folder.json(&trolley(&replay));
+        let phases = motion["phases"].as_array().unwrap();
+        let swings = phases.iter().filter(|phase| phase["king_pin"] == "swinging").count();
+        assert_eq!(swings == 1, once, "{part}: {}", motion["phases"]);
+    }
+    // A rigid wheel that rolls rests at one angle only; without friction nothing is told.
+    let rigid = folder.json(&trolley("stability TROLLEY -s M_f=1"));
+    assert_eq!(rigid["blow_out_of_rest"]["blow"], 0.0);
+    assert_eq!(rigid["blow_out_of_rest"]["method"], "closed form");
+    assert!(folder.json(&trolley("steady TROLLEY")).get("blow_out_of_rest").is_none());
+    // Held at any angle while it slides.
+    let held = folder.json("stability -s M_f=0.6 -s F_Az=-3 -s v=1 -s r=inf");
+    assert!(held["blow_out_of_rest_while_sliding"]["blow"].is_null());
+}
+
+/// On axes with the speed a chart has the limit with dry friction as a curve, which is the critical speed of `stability`.
+#[test]
+fn a_chart_over_the_speed_has_the_limit_with_friction() {
+    let folder = Folder::new();
+    let chart = "chart TROLLEY -s c_psi=0 -s M_f=0.05 -q";
+    for axes in ["--x v=1:15:5 --y l=0.03:0.1:5", "--y v=1:15:5 --x l=0.03:0.1:5"] {
+        let speed = usize::from(axes.starts_with("--y"));
+        let result = folder.json(&trolley(&format!("{chart} {axes}")));
+        let curves = result["friction_boundary"].as_array().unwrap();
+        let points: Vec<[f64; 2]> = curves
+            .iter()
+            .flat_map(|curve| curve.as_array().unwrap())
+            .map(|point| [0, 1].map(|place| point[place].as_f64().unwrap()))
+            .collect();
+        assert!(points.len() > 10, "{result}");
+        for point in points.iter().step_by(points.len() / 3) {
+            let stability = format!("stability TROLLEY -s c_psi=0 -s l={}", point[1 - speed]);
+            let told = folder.json(&trolley(&stability))["critical_speed_with_friction"].as_f64().unwrap();
+            assert!((told - point[speed]).abs() < 1e-6 * told, "{point:?} {told}");
+        }
+        let run = folder.succeed(&trolley(&format!("{chart} {axes}")));
+        assert!(
+            run.output.contains("over the chart the limit up to which they die out is at "),
+            "{}",
+            run.output
+        );
+    }
+    for without in ["chart TROLLEY -s M_f=0.05 --x k=1e4:2e4:3 --y l=0.03:0.1:3", "chart TROLLEY --x v=1:9:3"]
+    {
+        assert!(folder.json(&trolley(without)).get("friction_boundary").is_none(), "{without}");
+    }
+}

@@ -114,3 +114,30 @@ fn a_load_that_does_not_enter_decides_nothing() {
         run.output
     );
 }
+
+/// Where `stability` knows at which speed the stability changes, no interval has to be guessed.
+#[test]
+fn where_the_stability_changes_is_told_where_no_hopf_point_is_found() {
+    let folder = Folder::new();
+    let critical = folder.json("stability")["critical_speed"].as_f64().unwrap();
+    let dolly = format!("--wheel {}/../kingpin/examples/wheels/dolly.toml", env!("CARGO_MANIFEST_DIR"));
+    for command in ["hopf", "cycles"] {
+        let run = folder.run(&format!("{command} --along v=0.5:2 -q"));
+        assert_eq!(run.exit_code, 1);
+        let told = run.messages.split("its stability changes at ").nth(1).unwrap_or_default();
+        let speed: f64 = told.split([' ', ',']).next().unwrap().parse().unwrap();
+        assert!((speed - critical).abs() < 1e-6 && !run.messages.contains("wider"), "{}", run.messages);
+        // With dry friction the speed up to which small motions die out stands beside.
+        let run = folder.run(&format!("{command} {dolly} -s M_f=1 --along v=2:5 -q"));
+        let told =
+            ["its stability changes at 1.13", "M_f = 1 N m was left out", "small motions die out up to 11.8"];
+        assert!(told.iter().all(|told| run.messages.contains(told)), "{}", run.messages);
+    }
+    let tyre = "-s r=inf -s tyre=linear -s C_alpha=100 -s sigma=0.02";
+    let run = folder.run(&format!("hopf --along v=0.5:2 {tyre} -q"));
+    assert!(
+        run.messages.contains("no change of its stability was found from 0.001 to 10000 m/s"),
+        "{}",
+        run.messages
+    );
+}

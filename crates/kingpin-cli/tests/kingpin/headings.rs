@@ -109,3 +109,20 @@ fn unknown_keys_are_sought_by_what_they_mean() {
         }
     }
 }
+
+/// However much is changed, all of it is told.
+#[test]
+fn a_heading_hides_no_key() {
+    let folder = Folder::new();
+    let keys = "m_w=1 m_c=2 R=0.1 l_c=0.03 k_u=300 k_q=200 c_u=2 c_q=1 mu_s=0.5 J_Cz=1e-5 J_wxi=1e-3 c_psi=0.1 k_psi=0.2";
+    let set: String = keys.split(' ').map(|key| format!(" -s {key}")).collect();
+    for command in ["steady", "stability", "chart --x v=1:2:3", "safe-kick --duration 1 --largest 1e-3"] {
+        let output = folder.succeed(&format!("{command}{set} -q")).output;
+        let heading = output.split("\n\n").next().unwrap();
+        for key in keys.split(' ') {
+            let key = key.split('=').next().unwrap();
+            assert!(heading.contains(&format!(" {key} = ")), "{key}: {heading}");
+        }
+        assert!(heading.lines().all(|line| line.len() < 150), "{heading}");
+    }
+}
