@@ -19,11 +19,23 @@ const FIRST_SAMPLE: f64 = 0.37;
 const RESTING: f64 = 1e-5;
 
 impl Orbit {
-    /// The orbit of the first of several turns that differ by less than `closeness` of the size of each state; `None` where it has one.
+    /// The orbit of the first of several turns that differ by less than `closeness` of the size of each state; `None` where it has one, or
+    /// rests.
     pub(super) fn traversed_once(&self, closeness: f64) -> Option<Self> {
+        if self.rests() {
+            return None;
+        }
         let count = TURNS.into_iter().find(|&count| self.repeats(count, closeness))?;
         let part = self.first_of(count);
         Some(part.traversed_once(closeness).unwrap_or(part))
+    }
+
+    /// Whether all states move by no more than what may be rounding.
+    fn rests(&self) -> bool {
+        (0..self.dimension).all(|component| {
+            let (low, high) = extent(&self.states, self.dimension, component);
+            high - low <= RESTING * high.abs().max(low.abs())
+        })
     }
 
     /// Whether the states are the same again after one of several parts of equal length, within `closeness` of the size of each.
@@ -99,6 +111,15 @@ mod tests {
                 assert!((state[0] - (TAU * phase).cos()).abs() < 1e-3, "{turns}: {state:?}");
             }
         }
+    }
+
+    #[test]
+    fn an_orbit_that_rests_has_no_turns() {
+        let mut resting = orbit(1, 0.0);
+        for state in resting.states.chunks_exact_mut(3) {
+            state.copy_from_slice(&[1.0, 1.0 + 1e-7 * state[1], 2.0]);
+        }
+        assert_eq!(resting.traversed_once(1e-3), None);
     }
 
     #[test]
