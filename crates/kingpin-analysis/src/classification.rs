@@ -35,8 +35,8 @@ impl Contact {
 pub struct Classification {
     /// Whether the wheel may slide, where that is said.
     pub contact: Option<Contact>,
-    /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled (irregular ones only where they may return); 12 times the
-    /// decay time of small disturbances, 30 to 300, where it is not given.
+    /// Time in s for which motions are followed, up to ten times as long while they swing to and fro unsettled (irregular ones only
+    /// where they may return); 12 times the decay time of small disturbances, 30 to 300, where it is not given.
     pub duration: Option<f64>,
 }
 

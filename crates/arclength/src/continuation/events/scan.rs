@@ -31,10 +31,10 @@ const VANISHING: f64 = 1e-3;
 /// What lies between two solutions is no farther from either of them than this many times their distance and this far in the
 /// metric, as solutions are known no better.
 const BETWEEN: f64 = 1.2;
+const LEAST_DISTANCE: f64 = 2e-6;
 /// Part of that distance by which it may lie outside in the direction from one to the other: Newton's method may lead to a point of the
 /// same kind that lies just before.
 const OUTSIDE: f64 = 1e-3;
-const LEAST_DISTANCE: f64 = 2e-6;
 
 /// Changes in one step that are tried in vain before the others are only told.
 const MOST_FAILURES: usize = 10;
