@@ -47,6 +47,28 @@ fn names(text: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
+/// What becomes of a name in a text.
+pub(crate) enum Named {
+    /// It stays.
+    Kept,
+    /// Another one stands in its place.
+    Replaced(String),
+}
+
+/// A text with some of its names replaced.
+pub(crate) fn replace_names(text: &str, mut replacement: impl FnMut(&str) -> Named) -> String {
+    let (mut replaced, mut copied) = (String::new(), 0);
+    for (start, name) in names(text) {
+        if let Named::Replaced(other) = replacement(name) {
+            replaced.push_str(&text[copied..start]);
+            replaced.push_str(&other);
+            copied = start + name.len();
+        }
+    }
+    replaced.push_str(&text[copied..]);
+    replaced
+}
+
 /// Whether one of the names in an expression is meant; they are given in small letters.
 pub(crate) fn mentions(text: &str, is_meant: impl Fn(&str) -> bool) -> bool {
     names(text).any(|(_, name)| is_meant(&name.to_ascii_lowercase()))

@@ -148,6 +148,14 @@ impl Error {
         let (given, problem, allowed) = (given.into(), problem.into(), allowed.into());
         InvalidField { fields, given, problem, allowed }.into()
     }
+
+    /// The same with other fields at fault, where fields are.
+    pub fn in_fields(self, fields: &'static [&'static str]) -> Self {
+        match self {
+            Self::Invalid(invalid) => Self::Invalid(InvalidField { fields, ..invalid }),
+            other => other,
+        }
+    }
 }
 
 impl AnalysisError for Error {

@@ -6,7 +6,7 @@
 
 use crate::calls::{Call, Part, arguments_of, divide, mentions, part_name};
 use crate::error::Error;
-use crate::model::ChosenModel;
+use crate::vocabulary::Vocabulary;
 use arclength::cycle::Orbit;
 use arclength_ode::{OdeError, Quantity};
 use kingpin_report::NamedNumbers;
@@ -67,18 +67,25 @@ impl Monitored {
     }
 
     fn wrong(&self, problem: String, allowed: &str) -> Error {
-        Error::invalid(&["monitor"], self.expression.clone(), problem, allowed)
+        let field: &[_] = if self.until.is_empty() { &["monitor"] } else { &["until"] };
+        Error::invalid(field, self.expression.clone(), problem, allowed)
     }
 
     /// The monitor on equilibria.
     ///
     /// # Errors
     /// An expression that cannot be read, or that depends on the time.
-    pub(crate) fn on_equilibria(&self, chosen: &ChosenModel) -> Result<Quantity, Error> {
-        let quantity = chosen.model.quantity(&self.expression, &[]);
-        let quantity = quantity.map_err(|error| self.wrong(reason(&error), EQUILIBRIA))?;
-        if mentions(&self.expression, |name| name == "t") {
-            return Err(self.wrong("the time has no value on a branch".to_owned(), EQUILIBRIA));
+    pub fn on_equilibria(&self, vocabulary: &Vocabulary<'_>) -> Result<Quantity, Error> {
+        let allowed = || match vocabulary.sizes()[2] {
+            0 => EQUILIBRIA.to_owned(),
+            _ => format!("an expression in {}", vocabulary.names().collect::<Vec<_>>().join(", ")),
+        };
+        let expression = vocabulary.translate(&self.expression);
+        let expression = expression.map_err(|problem| self.wrong(problem, &allowed()))?;
+        let quantity = vocabulary.quantity(&expression, &[]);
+        let quantity = quantity.map_err(|error| self.wrong(reason(&error), &allowed()))?;
+        if mentions(&expression, |name| name == "t") {
+            return Err(self.wrong("the time has no value on a branch".to_owned(), &allowed()));
         }
         Ok(quantity)
     }
@@ -87,16 +94,15 @@ impl Monitored {
     ///
     /// # Errors
     /// An expression that cannot be read, or in which a state stands that has no value of its own on a cycle.
-    pub(crate) fn on_cycles(&self, chosen: &ChosenModel) -> Result<CycleMonitor, Error> {
+    pub fn on_cycles(&self, vocabulary: &Vocabulary<'_>) -> Result<CycleMonitor, Error> {
+        let expression = vocabulary.translate(&self.expression);
+        let expression = expression.map_err(|problem| self.wrong(problem, CYCLES))?;
         // A model may have a function of its own by that name.
-        let phases = chosen.model.quantity("at(0, 0)", &[]).is_err();
-        let (outer, parts) = divide(&self.expression, phases);
-        let state = chosen
-            .model
-            .states()
-            .iter()
-            .find(|state| mentions(&outer, |name| state.eq_ignore_ascii_case(name)));
-        if let Some(state) = state {
+        let phases = vocabulary.quantity("at(0, 0)", &[]).is_err();
+        let (outer, parts) = divide(&expression, phases);
+        let state =
+            vocabulary.varying().find(|(state, _)| mentions(&outer, |name| state.eq_ignore_ascii_case(name)));
+        if let Some((_, state)) = state {
             return Err(self.wrong(
                 format!("the state {state} has no single value on a cycle"),
                 &format!(
@@ -104,18 +110,18 @@ impl Monitored {
                 ),
             ));
         }
-        if mentions(&self.expression, |name| name == "t") {
+        if mentions(&expression, |name| name == "t") {
             return Err(self.wrong("the time has no value on a branch".to_owned(), CYCLES));
         }
         let names: Vec<String> = (1..=parts.len()).map(part_name).collect();
         let mut others: Vec<&str> = names.iter().map(String::as_str).collect();
         others.push(PERIOD);
-        let read = chosen.model.quantity(&outer, &others);
+        let read = vocabulary.quantity(&outer, &others);
         let (outer, has_period) = match read {
             // The model has something of its own by that name.
             Err(OdeError::NameTaken { name, .. }) if name.eq_ignore_ascii_case(PERIOD) => {
                 others.pop();
-                (chosen.model.quantity(&outer, &others), false)
+                (vocabulary.quantity(&outer, &others), false)
             }
             read => (read, true),
         };
@@ -126,30 +132,52 @@ impl Monitored {
                 Call::Smallest => (Taken::Smallest, argument),
                 Call::Mean => (Taken::Mean, argument),
                 Call::At => {
-                    let (expression, phase) = self.phase(&argument, chosen)?;
+                    let (expression, phase) = self.phase(&argument, vocabulary)?;
                     (Taken::At(phase), expression)
                 }
             };
-            let quantity = chosen.model.quantity(&expression, &[]);
+            let quantity = vocabulary.quantity(&expression, &[]);
             Ok((taken, quantity.map_err(|error| self.wrong(reason(&error), CYCLES))?))
         });
-        Ok(CycleMonitor { outer, parts: parts.collect::<Result<_, Error>>()?, has_period })
+        let [states, _, further] = vocabulary.sizes();
+        let parts = parts.collect::<Result<_, Error>>()?;
+        Ok(CycleMonitor { outer, states, further, parts, has_period })
+    }
+
+    /// The value to be held: the one that is given, or the one `here`, where the curve starts at a label.
+    ///
+    /// # Errors
+    /// No value there, or several values given.
+    pub fn value_to_hold(&self, here: Option<f64>, label: &str) -> Result<f64, Error> {
+        let wrong = |problem: String, allowed: &str| {
+            Error::invalid(&["hold"], self.expression.clone(), problem, allowed)
+        };
+        match (&self.at[..], here) {
+            (_, None) => {
+                Err(wrong(format!("it has no value at {label}"), "an expression that has a value there"))
+            }
+            ([], Some(here)) => Ok(here),
+            ([value], Some(_)) => Ok(*value),
+            _ => Err(wrong(
+                "several values are given".to_owned(),
+                "one value, or none for the one where the curve starts",
+            )),
+        }
     }
 
     /// The expression and the phase of a call of `at`.
-    fn phase(&self, arguments: &str, chosen: &ChosenModel) -> Result<(String, f64), Error> {
+    fn phase(&self, arguments: &str, vocabulary: &Vocabulary<'_>) -> Result<(String, f64), Error> {
         let wrong = |problem: String| self.wrong(problem, PHASES);
         let [expression, phase] = arguments_of(arguments)[..] else {
             return Err(wrong(format!("at({arguments}) does not have an expression and a phase")));
         };
         let phase = phase.trim();
-        let quantity = chosen.model.quantity(phase, &[]).map_err(|error| wrong(reason(&error)))?;
+        let quantity = vocabulary.quantity(phase, &[]).map_err(|error| wrong(reason(&error)))?;
         // What is not constant is not a number here.
-        let [states, parameters] =
-            [chosen.model.states(), chosen.model.parameters()].map(|names| vec![f64::NAN; names.len()]);
-        let value = quantity.value(&states, &parameters, &[]);
-        let named = chosen.model.states().iter().chain(chosen.model.parameters());
-        let varies = named.into_iter().any(|name| mentions(phase, |word| name.eq_ignore_ascii_case(word)));
+        let [states, parameters, further] = vocabulary.sizes().map(|count| vec![f64::NAN; count]);
+        let value = quantity.value(&states, &parameters, &further);
+        let varies =
+            vocabulary.variables().any(|name| mentions(phase, |word| name.eq_ignore_ascii_case(word)));
         if varies || value.is_nan() {
             return Err(wrong(format!("the phase {phase} is not constant")));
         }
@@ -167,13 +195,13 @@ const PHASES: &str = "at(EXPRESSION, PHASE), such as at(x, 0.25), where the phas
 const PERIOD: &str = "period";
 
 /// Values of monitors by name, where they exist.
-pub(crate) fn named(names: &[String], values: &[f64]) -> NamedNumbers {
+pub fn named(names: &[String], values: &[f64]) -> NamedNumbers {
     let known = names.iter().cloned().zip(values.iter().copied());
     NamedNumbers(known.filter(|(_, value)| value.is_finite()).collect())
 }
 
 /// Names of the monitors that exist anywhere, in their order.
-pub(crate) fn monitored<'a>(points: impl Iterator<Item = &'a NamedNumbers>) -> Vec<&'a str> {
+pub fn monitored<'a>(points: impl Iterator<Item = &'a NamedNumbers>) -> Vec<&'a str> {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in points.flat_map(|monitors| &monitors.0) {
         if !names.contains(&name.as_str()) {
@@ -204,31 +232,42 @@ enum Taken {
 
 /// A monitor on cycles.
 #[derive(Clone, Debug)]
-pub(crate) struct CycleMonitor {
+pub struct CycleMonitor {
     outer: Quantity,
+    /// Number of states of what the expression is about.
+    states: usize,
+    /// Number of further quantities.
+    further: usize,
     parts: Vec<(Taken, Quantity)>,
     has_period: bool,
 }
 
 impl CycleMonitor {
-    /// Its value on a cycle.
-    pub(crate) fn value(&self, orbit: &Orbit, parameters: &[f64]) -> f64 {
-        let mut others: Vec<f64> = self
-            .parts
-            .iter()
-            .map(|(taken, quantity)| {
-                let function = |state: &[f64]| quantity.value(state, parameters, &[]);
-                match taken {
-                    Taken::Largest => orbit.maximum(function),
-                    Taken::Smallest => orbit.minimum(function),
-                    Taken::Mean => orbit.mean(function),
-                    Taken::At(phase) => orbit.at_phase(*phase, function),
-                }
-            })
-            .collect();
+    /// Its value on a cycle of a model.
+    pub fn value(&self, orbit: &Orbit, parameters: &[f64]) -> f64 {
+        self.value_by(orbit, parameters, &|quantity, state| quantity.value(state, parameters, &[]))
+    }
+
+    /// Its value on a cycle, where `value_at` gives the value of a quantity at a state of the orbit.
+    pub fn value_by(
+        &self,
+        orbit: &Orbit,
+        parameters: &[f64],
+        value_at: &dyn Fn(&Quantity, &[f64]) -> f64,
+    ) -> f64 {
+        let mut others = vec![f64::NAN; self.further];
+        others.extend(self.parts.iter().map(|(taken, quantity)| {
+            let function = |state: &[f64]| value_at(quantity, state);
+            match taken {
+                Taken::Largest => orbit.maximum(function),
+                Taken::Smallest => orbit.minimum(function),
+                Taken::Mean => orbit.mean(function),
+                Taken::At(phase) => orbit.at_phase(*phase, function),
+            }
+        }));
         others.extend(self.has_period.then_some(orbit.period));
         // What depends on a state in the end, through a quantity of the model, is not a number.
-        self.outer.value(&vec![f64::NAN; orbit.dimension], parameters, &others)
+        self.outer.value(&vec![f64::NAN; self.states], parameters, &others)
     }
 }
 

@@ -1,11 +1,12 @@
 //! `arclength cycles`: a branch of limit cycles from a labelled point of an earlier result or from samples of an orbit.
 
 use crate::model_options::ParameterOptions;
-use crate::monitor_options::MonitorOptions;
 use arclength_analysis::cycles::CyclesRequest;
 use arclength_analysis::{Along, CycleSource, ModelSource, Values};
 use clap::Args;
-use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
+use kingpin_terminal::{
+    Failure, MeshOptions, MonitorOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values,
+};
 use std::path::PathBuf;
 
 /// Limit cycles along a parameter, from a point of an earlier result or from samples of an orbit

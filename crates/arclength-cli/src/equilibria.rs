@@ -1,11 +1,12 @@
 //! `arclength equilibria`: a branch of equilibria of a model, from its initial state or from a labelled point.
 
 use crate::model_options::ModelOptions;
-use crate::monitor_options::MonitorOptions;
 use arclength_analysis::equilibria::EquilibriaRequest;
 use arclength_analysis::{Along, Assignment, ModelRequest, Values};
 use clap::Args;
-use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, StepOptions, requested_values};
+use kingpin_terminal::{
+    Failure, MonitorOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values,
+};
 
 /// Equilibria along a parameter, with folds, branch points and Hopf points
 ///

@@ -4,7 +4,6 @@ mod cycles;
 mod equilibria;
 mod locus;
 mod model_options;
-mod monitor_options;
 mod serve;
 mod show;
 mod simulate;

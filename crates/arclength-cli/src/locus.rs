@@ -1,11 +1,11 @@
 //! `arclength locus`: a curve of special points in two parameters.
 
-use crate::monitor_options::MonitorOptions;
 use arclength_analysis::locus::LocusRequest;
 use arclength_analysis::{Monitored, PointReference, Values};
 use clap::Args;
 use kingpin_terminal::{
-    Failure, MeshOptions, OutputOptions, PlaneOptions, ProgressDisplay, StepOptions, requested_values,
+    Failure, MeshOptions, MonitorOptions, OutputOptions, PlaneOptions, ProgressDisplay, StepOptions,
+    requested_values,
 };
 
 /// The curve of special points in two parameters, with its points of codimension two

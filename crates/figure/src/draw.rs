@@ -16,17 +16,50 @@ use crate::text::TextLayout;
 
 /// Draws the panel into the rectangle of its axes.
 pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plot: &Rect, margins: &Margins) {
-    let (x, y) = (frame.x.scale, frame.y.scale);
-    let place = Place { x, y, plot: *plot };
-    match &panel.map {
-        Some(Map::Heat(map)) => {
-            scene.items.push(Item::Raster { frame: *plot, raster: map.raster(&x, &y) });
-        }
-        Some(Map::Category(map)) => {
-            scene.items.push(Item::Raster { frame: *plot, raster: map.raster(&x, &y) });
-        }
-        None => {}
+    let place = Place { x: frame.x.scale, y: frame.y.scale, plot: *plot };
+    draw_ground(scene, panel, &place);
+    // Everything is placed before anything is drawn, since a name interrupts its curve.
+    let mut obstacles = Obstacles::default();
+    let curves: Vec<PlacedCurve<'_>> =
+        panel.curves.iter().map(|curve| PlacedCurve::new(curve, &place, &mut obstacles)).collect();
+    let points: Vec<(Point, &PointLabel)> = panel
+        .points
+        .iter()
+        .map(|label| (place.point(label.at), label))
+        .filter(|(at, _)| place.shows(at))
+        .collect();
+    let markers = placed_markers(panel, &place, &points);
+    for (at, marker) in &markers {
+        obstacles.add_box(around(*at, 0.5 * marker.size));
     }
+    let mut texts = Texts { on_map: panel.map.is_some(), texts: Vec::new() };
+    place_notes(panel, &place, &mut obstacles, &mut texts);
+    for (index, curve) in curves.iter().enumerate() {
+        curve.draw(scene, panel.curve_color(index), &mut obstacles, &mut texts, plot);
+    }
+    // The frame is drawn over curves that end at it, and under markers that lie on it.
+    frame.draw(scene, plot, margins);
+    for (at, marker) in markers {
+        draw_marker(scene, marker, at);
+    }
+    if let Some((legend, corner)) = frame.take_legend(plot) {
+        let inside = corner.is_none();
+        let corner = corner.unwrap_or_else(|| obstacles.emptiest(legend.width, legend.height, plot));
+        legend.draw(scene, corner, inside);
+    }
+    draw_point_labels(scene, &points, &mut obstacles, &mut texts, plot);
+    scene.items.extend(texts.texts);
+}
+
+/// What lies under everything: the map and the regions.
+fn draw_ground(scene: &mut Scene, panel: &Panel, place: &Place) {
+    let Place { x, y, plot } = place;
+    let raster = match &panel.map {
+        Some(Map::Heat(map)) => Some(map.raster(x, y)),
+        Some(Map::Category(map)) => Some(map.raster(x, y)),
+        None => None,
+    };
+    scene.items.extend(raster.map(|raster| Item::Raster { frame: *plot, raster }));
     for region in &panel.regions {
         let corners: Vec<Point> = region.corners.iter().map(|p| place.point(*p)).collect();
         let corners = clip_polygon(&corners, plot);
@@ -44,29 +77,20 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
             draw_hatching(scene, &corners, color, degrees);
         }
     }
+}
 
-    // Everything is placed before anything is drawn, since a name interrupts its curve.
-    let mut obstacles = Obstacles::default();
-    let mut curves = Vec::with_capacity(panel.curves.len());
-    for curve in &panel.curves {
-        let pieces: Vec<_> = place.pieces(curve).into_iter().zip(&curve.pieces).collect();
-        let all: Vec<Vec<Point>> = pieces.iter().flat_map(|(points, _)| points).cloned().collect();
-        let number = obstacles.add_curve(&all);
-        curves.push((curve, pieces, all, number));
-    }
-    let shown = |p: &Point| p.is_finite() && plot.expanded(0.01).contains(*p);
-    let mut markers: Vec<(Point, Marker)> = Vec::new();
-    for series in &panel.markers {
-        markers.extend(series.points.iter().map(|p| (place.point(*p), series.marker)));
-    }
-    let points: Vec<(Point, &PointLabel)> =
-        panel.points.iter().map(|label| (place.point(label.at), label)).filter(|(at, _)| shown(at)).collect();
-    markers.extend(points.iter().filter_map(|(at, label)| Some((*at, label.marker?))));
-    markers.retain(|(at, _)| shown(at));
-    for (at, marker) in &markers {
-        obstacles.add_box(around(*at, 0.5 * marker.size));
-    }
-    let mut texts = Texts { on_map: panel.map.is_some(), texts: Vec::new() };
+/// The markers that are seen: those of the series, and those of the points that have a label.
+fn placed_markers(panel: &Panel, place: &Place, points: &[(Point, &PointLabel)]) -> Vec<(Point, Marker)> {
+    let of_series = panel
+        .markers
+        .iter()
+        .flat_map(|series| series.points.iter().map(|p| (place.point(*p), series.marker)));
+    let of_points = points.iter().filter_map(|(at, label)| Some((*at, label.marker?)));
+    of_series.chain(of_points).filter(|(at, _)| place.shows(at)).collect()
+}
+
+/// Places the notes of the panel.
+fn place_notes(panel: &Panel, place: &Place, obstacles: &mut Obstacles, texts: &mut Texts) {
     for note in &panel.notes {
         let at = place.point(note.at);
         if at.is_finite() {
@@ -77,13 +101,61 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
             texts.add(layout, origin, 0.0, note.color, covers);
         }
     }
+}
 
-    for (index, (curve, pieces, all, number)) in curves.iter().enumerate() {
-        let color = panel.curve_color(index);
+/// Draws the labels of points beside them, at a leader line where there is no room.
+fn draw_point_labels(
+    scene: &mut Scene,
+    points: &[(Point, &PointLabel)],
+    obstacles: &mut Obstacles,
+    texts: &mut Texts,
+    plot: &Rect,
+) {
+    for (at, label) in points {
+        let radius = label.marker.map_or(0.0, |marker| 0.5 * marker.size);
+        let layout = TextLayout::new(&label.text, SMALL_SIZE);
+        let label = obstacles.beside_point(*at, radius, &layout, plot);
+        if let Some((from, to)) = label.leader {
+            let line = Stroke { color: palette::BLACK, width: LEADER_WIDTH, dash: Dash::Solid };
+            scene.stroke(Path::polyline(&[from, to]), line);
+        }
+        let covers = obstacles.covers_curve(&layout.bounds(label.origin));
+        texts.add(layout, label.origin, 0.0, palette::BLACK, covers);
+    }
+}
+
+/// A curve on the page, with its place among the obstacles.
+struct PlacedCurve<'a> {
+    curve: &'a Curve,
+    /// What is seen of each of its pieces.
+    pieces: Vec<(Vec<Vec<Point>>, &'a CurvePiece)>,
+    /// What is seen of all of them.
+    all: Vec<Vec<Point>>,
+    number: usize,
+}
+
+impl<'a> PlacedCurve<'a> {
+    fn new(curve: &'a Curve, place: &Place, obstacles: &mut Obstacles) -> Self {
+        let pieces: Vec<_> = place.pieces(curve).into_iter().zip(&curve.pieces).collect();
+        let all: Vec<Vec<Point>> = pieces.iter().flat_map(|(points, _)| points).cloned().collect();
+        let number = obstacles.add_curve(&all);
+        Self { curve, pieces, all, number }
+    }
+
+    /// Draws the curve; its name, if it has one, interrupts it.
+    fn draw(
+        &self,
+        scene: &mut Scene,
+        color: Color,
+        obstacles: &mut Obstacles,
+        texts: &mut Texts,
+        plot: &Rect,
+    ) {
+        let style = &self.curve.style;
         let mut hole = None;
-        if !curve.style.name.is_empty() {
-            let layout = TextLayout::new(&curve.style.name, SMALL_SIZE);
-            if let Some(name) = obstacles.along_curve(*number, all, curve.style.name_at, &layout, plot) {
+        if !style.name.is_empty() {
+            let layout = TextLayout::new(&style.name, SMALL_SIZE);
+            if let Some(name) = obstacles.along_curve(self.number, &self.all, style.name_at, &layout, plot) {
                 let (sine, cosine) = name.angle.sin_cos();
                 // From the centre of the text to the start of its baseline, turned with the text.
                 let (dx, dy) =
@@ -95,7 +167,7 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
                 texts.add(layout, origin, name.angle.to_degrees(), color, false);
             }
         }
-        for (visible, piece) in pieces {
+        for (visible, piece) in &self.pieces {
             let mut path = Path::default();
             for points in visible {
                 match hole {
@@ -105,32 +177,10 @@ pub(crate) fn draw_panel(scene: &mut Scene, panel: &Panel, mut frame: Frame, plo
                     None => path.add_polyline(points),
                 }
             }
-            let (color, width) = (piece.color.unwrap_or(color), curve.style.width);
+            let (color, width) = (piece.color.unwrap_or(color), style.width);
             scene.stroke(path, Stroke { color, width, dash: piece.dash });
         }
     }
-    // The frame is drawn over curves that end at it, and under markers that lie on it.
-    frame.draw(scene, plot, margins);
-    for (at, marker) in markers {
-        draw_marker(scene, marker, at);
-    }
-    if let Some((legend, corner)) = frame.take_legend(plot) {
-        let inside = corner.is_none();
-        let corner = corner.unwrap_or_else(|| obstacles.emptiest(legend.width, legend.height, plot));
-        legend.draw(scene, corner, inside);
-    }
-    for (at, label) in points {
-        let radius = label.marker.map_or(0.0, |marker| 0.5 * marker.size);
-        let layout = TextLayout::new(&label.text, SMALL_SIZE);
-        let label = obstacles.beside_point(at, radius, &layout, plot);
-        if let Some((from, to)) = label.leader {
-            let line = Stroke { color: palette::BLACK, width: LEADER_WIDTH, dash: Dash::Solid };
-            scene.stroke(Path::polyline(&[from, to]), line);
-        }
-        let covers = obstacles.covers_curve(&layout.bounds(label.origin));
-        texts.add(layout, label.origin, 0.0, palette::BLACK, covers);
-    }
-    scene.items.extend(texts.texts);
 }
 
 /// Texts to be drawn last, with a rim where they lie on something.
@@ -159,6 +209,11 @@ struct Place {
 }
 
 impl Place {
+    /// Whether something at a point of the page is seen.
+    fn shows(&self, at: &Point) -> bool {
+        at.is_finite() && self.plot.expanded(0.01).contains(*at)
+    }
+
     fn point(&self, p: Point) -> Point {
         Point::new(
             self.plot.left + self.x.fraction(p.x) * self.plot.width(),

@@ -15,7 +15,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
     let keys = |result: &ResultFile| match result {
         ResultFile::Hopf(result) => vec![result.interval.key()],
         ResultFile::Cycles(result) => vec![result.interval.key()],
-        ResultFile::HopfLocus(result) => result.plane.keys().to_vec(),
+        ResultFile::MotionLocus(result) => result.plane.keys().to_vec(),
         ResultFile::CycleLocus(result) => result.plane.keys().to_vec(),
     };
     let problem = |index: usize, text: &str| Err((index, text.to_owned()));
@@ -26,7 +26,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
         return problem(index, "it is over other parameters; allowed: results over the same ones");
     }
     let (wheel, plane) = match first {
-        ResultFile::HopfLocus(one) => (&one.wheel, one.plane),
+        ResultFile::MotionLocus(one) => (&one.wheel, one.plane),
         ResultFile::CycleLocus(one) => (&one.wheel, one.plane),
         ResultFile::Cycles(one) => {
             let mut points: Vec<CyclePointResult> = Vec::new();
@@ -48,7 +48,7 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
     };
     let scales = plane.scales();
     let curve = |result: &ResultFile| match result {
-        ResultFile::HopfLocus(result) => Some(result.curve.drawn_with(scales)),
+        ResultFile::MotionLocus(result) => Some(result.curve.drawn_with(scales)),
         ResultFile::CycleLocus(result) => Some(result.curve.drawn_with(scales)),
         ResultFile::Hopf(_) | ResultFile::Cycles(_) => None,
     };

@@ -25,6 +25,7 @@ mod journal;
 mod last_fold;
 pub mod locus;
 pub mod margin;
+mod monitors;
 mod neglected_dry_friction;
 mod page;
 pub mod paper;

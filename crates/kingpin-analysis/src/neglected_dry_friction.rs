@@ -54,23 +54,30 @@ impl NeglectedDryFriction {
         format!("this is the wheel without dry friction about the king pin: M_f = {moment} N m was left out")
     }
 
-    /// Tells of it, where there is any.
-    pub(crate) fn tell(neglected: Option<&Self>, out: &mut dyn Write) -> io::Result<()> {
-        let Some(neglected) = neglected else { return Ok(()) };
-        writeln!(out, "\n{}", neglected.in_words())?;
-        let Self { critical_speed_with_friction, is_told, own, .. } = neglected;
+    /// All that is known of it, in sentences.
+    pub(crate) fn sentences(&self) -> Vec<String> {
+        let mut sentences = vec![self.in_words()];
+        let Self { critical_speed_with_friction, is_told, own, .. } = self;
         if !is_told {
-            writeln!(out, "`simulate`, `basin`, `safe-kick` and `margin` take it into account")?;
+            sentences.push("`simulate`, `basin`, `safe-kick` and `margin` take it into account".to_owned());
         }
         let (at, speed) = match own {
             Some((place, speed)) => (format!("at {place} "), speed),
             None if *is_told => (String::new(), critical_speed_with_friction),
-            None => return Ok(()),
+            None => return sentences,
         };
-        match speed {
-            Some(0.0) => writeln!(out, "{at}with it small motions grow at every speed all the same"),
-            Some(speed) => writeln!(out, "{at}with it small motions die out up to {} m/s", readable(*speed)),
-            None => writeln!(out, "{at}with it small motions die out at every speed"),
-        }
+        sentences.push(match speed {
+            Some(0.0) => format!("{at}with it small motions grow at every speed all the same"),
+            Some(speed) => format!("{at}with it small motions die out up to {} m/s", readable(*speed)),
+            None => format!("{at}with it small motions die out at every speed"),
+        });
+        sentences
+    }
+
+    /// Tells of it, where there is any.
+    pub(crate) fn tell(neglected: Option<&Self>, out: &mut dyn Write) -> io::Result<()> {
+        let Some(neglected) = neglected else { return Ok(()) };
+        writeln!(out)?;
+        neglected.sentences().iter().try_for_each(|sentence| writeln!(out, "{sentence}"))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::cycles::CyclesResult;
 use crate::hopf::HopfResult;
-use crate::locus::{CycleLocusResult, HopfLocusResult};
+use crate::locus::{CycleLocusResult, MotionLocusResult};
 use arclength_analysis::{Disk, Files};
 use kingpin_report::Schema;
 use serde::Deserialize;
@@ -17,7 +17,7 @@ pub enum ResultFile {
     /// Of `cycles`.
     Cycles(CyclesResult),
     /// Of `locus`, of Hopf points.
-    HopfLocus(HopfLocusResult),
+    MotionLocus(MotionLocusResult),
     /// Of `locus`, of cycles.
     CycleLocus(CycleLocusResult),
 }
@@ -55,7 +55,7 @@ impl ResultFile {
         match (name.as_str(), version) {
             (HopfResult::SCHEMA, 1) => parse(&text).map(Self::Hopf),
             (CyclesResult::SCHEMA, 1) => parse(&text).map(Self::Cycles),
-            (HopfLocusResult::SCHEMA, 1) => parse(&text).map(Self::HopfLocus),
+            (MotionLocusResult::SCHEMA, 1) => parse(&text).map(Self::MotionLocus),
             (CycleLocusResult::SCHEMA, 1) => parse(&text).map(Self::CycleLocus),
             _ => Err(format!("it is of {name}, version {version}; {ALLOWED}")),
         }
@@ -68,7 +68,7 @@ impl ResultFile {
             Self::Cycles(result) => {
                 result.points.iter().filter_map(|point| point.cycle.label.clone()).collect()
             }
-            Self::HopfLocus(result) => {
+            Self::MotionLocus(result) => {
                 result.curve.points.iter().filter_map(|point| point.label.clone()).collect()
             }
             Self::CycleLocus(result) => {

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::result_file::ResultFile;
+use arclength::branch::SpecialKind;
 use arclength::cycle::{Branching, Orbit};
 use arclength_analysis::{Files, PointReference};
 use kingpin::branches::Along;
@@ -64,11 +65,18 @@ impl LabelledPoint {
                 let branching = cycle.branching.clone().map(|branching| (branching, result.interval.key()));
                 Self::cycle(reference, wheel, orbit, branching)
             }
-            ResultFile::HopfLocus(result) => {
+            ResultFile::MotionLocus(result) => {
                 let point = result.curve.points.iter().find(|point| is_wanted(&point.label));
                 let [one, two] = point.ok_or_else(missing)?.values;
                 let [first, second] = result.plane.keys();
                 let wheel = at(result.wheel, &[(first, one), (second, two)])?;
+                if result.curve.kind != Some(SpecialKind::Hopf) {
+                    let label = &reference.label;
+                    let problem = format!(
+                        "{label} is a uniform motion, at which nothing can be started; allowed: Hopf points (HB), cycles"
+                    );
+                    return Err(reference.failure(problem).into());
+                }
                 Ok(Self { wheel, solution: LabelledSolution::Hopf(result.plane.0[0]) })
             }
             ResultFile::CycleLocus(result) => {

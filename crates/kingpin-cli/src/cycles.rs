@@ -4,12 +4,17 @@ use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::{CycleSource, Interval, Values};
 use clap::Args;
 use kingpin_analysis::cycles::CyclesRequest;
-use kingpin_terminal::{Failure, MeshOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values};
+use kingpin_terminal::{
+    Failure, MeshOptions, MonitorOptions, OutputOptions, ProgressDisplay, StepOptions, requested_values,
+};
 
 const EXAMPLE: &str = "kingpin cycles --along v=0.5:9 --at 1,2,4 -o cycles.json -o cycles.svg
          kingpin cycles --from cycles.json:AT3 --along r=1:inf";
 
 /// Limit cycles along a parameter, from Hopf points, a labelled point of an earlier result or samples of an orbit
+///
+/// An expression of --monitor or --until may name the states, the parameters and friction_force, king_pin_force (N) and damper_power (W);
+/// capital letters count: v is the towing speed, V that of the wheel.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Cycles {
@@ -30,6 +35,9 @@ pub(crate) struct Cycles {
     /// At a period doubling or a branch point follow the branch of the point itself, not the one that leaves there
     #[arg(long, requires = "from")]
     stay: bool,
+
+    #[command(flatten)]
+    monitors: MonitorOptions,
 
     /// Tell the story of the run after the table
     #[arg(long)]
@@ -58,6 +66,7 @@ impl Cycles {
             at: requested_values(&self.at, &self.along.key, |given, key| given == key)?,
             from: self.from.clone(),
             stay: self.stay,
+            monitors: self.monitors.asked(),
             steps: self.steps.into(),
             mesh: self.mesh.into(),
         };

@@ -87,7 +87,10 @@ impl ActiveParameters {
 
     /// The wheel at other values of the active keys.
     pub(crate) fn wheel_at(&self, parameters: &[f64]) -> Result<Wheel, KingpinError> {
-        self.keys.iter().zip(parameters).try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, value))
+        // A solution at the end of what a parameter may be lies beyond it by rounding.
+        let nearest = |key: Key, value: f64| key.allowed().nearest(value);
+        let pairs = self.keys.iter().zip(parameters);
+        pairs.into_iter().try_fold(self.wheel, |wheel, (&key, &value)| wheel.with(key, nearest(key, value)))
     }
 
     /// Whether the parameter is active or not zero.

@@ -71,6 +71,11 @@ impl Allowed {
     const fn or_infinite(lowest: f64, highest: f64) -> Self {
         Self { lowest, highest, infinite: true }
     }
+    /// The value itself where it may be taken, else the nearest that may be.
+    pub(crate) fn nearest(&self, value: f64) -> f64 {
+        if self.contains(value) || value.is_nan() { value } else { value.clamp(self.lowest, self.highest) }
+    }
+
     /// Whether the value may be taken.
     pub fn contains(&self, value: f64) -> bool {
         (self.lowest <= value && value <= self.highest) || (self.infinite && value == f64::INFINITY)

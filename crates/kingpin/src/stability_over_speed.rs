@@ -4,13 +4,12 @@
 //! Hopf points of the motion that is followed, which also tell windows that are narrower than the distance of the scan. Between
 //! them the speeds of the scan say which stability is certain.
 
-use crate::branches::Along;
+use crate::branches::{Along, MotionOptions};
 use crate::critical_speed::SLOWEST;
 use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
 use arclength::control::Control;
-use arclength::equilibrium::equilibrium_settings;
 
 /// The motion is followed from each speed to so many times as much, so that steps suit slow motions too.
 const DECADE: f64 = 10.0;
@@ -84,7 +83,7 @@ impl Wheel {
         while slow < fastest {
             let fast = (DECADE * slow).min(fastest);
             let along = Along::new(Key::V, slow, fast)?;
-            match self.motion_branch(along, equilibrium_settings(), |_| control.flow()) {
+            match self.motion_branch(along, &MotionOptions::default(), |_| control.flow()) {
                 Ok(branch) => changes.extend(
                     branch
                         .hopf_points

@@ -140,7 +140,7 @@ fn of_wheels(analysis: &str, request: &str, task: Task<'_>) -> Result<Outcome, F
             let result = request.validate()?.run(control)?;
             let warnings = result.warnings();
             Ok(match result {
-                LocusResult::HopfPoints(curve) => Finished::new(curve, warnings),
+                LocusResult::Motions(curve) => Finished::new(curve, warnings),
                 LocusResult::Cycles(curve) => Finished::new(curve, warnings),
             })
         }),

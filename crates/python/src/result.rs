@@ -118,7 +118,7 @@ pub(crate) fn read_result(py: Python<'_>, path: PathBuf) -> PyResult<NativeResul
             match ResultFile::read(&path).map_err(wrong)? {
                 ResultFile::Hopf(result) => Box::new(result),
                 ResultFile::Cycles(result) => Box::new(result),
-                ResultFile::HopfLocus(result) => Box::new(result),
+                ResultFile::MotionLocus(result) => Box::new(result),
                 ResultFile::CycleLocus(result) => Box::new(result),
             }
         } else {

@@ -6,6 +6,7 @@
 mod exit;
 mod failure;
 mod interruption;
+mod monitor_options;
 mod options;
 mod output;
 mod progress;
@@ -17,6 +18,7 @@ mod streams;
 pub use exit::run;
 pub use failure::Failure;
 pub use interruption::Interruption;
+pub use monitor_options::MonitorOptions;
 pub use options::{
     MOST_THREADS, MeshOptions, OutputOptions, PlaneOptions, StepOptions, requested_values, start_threads,
 };

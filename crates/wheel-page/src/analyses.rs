@@ -262,7 +262,7 @@ async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure
             return match one {
                 ResultFile::Hopf(result) => saved(&format, look, result),
                 ResultFile::Cycles(result) => saved(&format, look, result),
-                ResultFile::HopfLocus(result) => saved(&format, look, result),
+                ResultFile::MotionLocus(result) => saved(&format, look, result),
                 ResultFile::CycleLocus(result) => saved(&format, look, result),
             };
         }

@@ -16,6 +16,7 @@ use crate::point_reference::PointReference;
 use crate::simulate::settled_orbit;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
+use crate::vocabulary::Vocabulary;
 use arclength::VectorField;
 use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
@@ -136,7 +137,10 @@ impl CyclesRequest {
                 return Err(Error::invalid(&["model"], given, "samples of an orbit have no model", allowed));
             }
         };
-        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_cycles(&chosen)?)));
+        let monitors = self
+            .monitors
+            .iter()
+            .map(|asked| Ok((asked.clone(), asked.on_cycles(&Vocabulary::of(&chosen.model))?)));
         let along = chosen.interval(&self.along)?;
         Ok(CyclesAnalysis {
             monitors: monitors.collect::<Result<_, Error>>()?,

@@ -11,6 +11,7 @@ use crate::model_request::{ModelRequest, OpenedModel};
 use crate::monitor::Monitored;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::Steps;
+use crate::vocabulary::Vocabulary;
 use arclength::branch::Monitor;
 use arclength::control::Control;
 use arclength::equilibrium::{BranchPoint, Equilibria, EquilibriumPoint, SpecialPoint, equilibrium_settings};
@@ -84,7 +85,10 @@ impl EquilibriaRequest {
         if let Some(point) = &point {
             chosen.starts_within(&["along"], &along, &point.label)?;
         }
-        let monitors = self.monitors.iter().map(|asked| Ok((asked.clone(), asked.on_equilibria(&chosen)?)));
+        let monitors = self
+            .monitors
+            .iter()
+            .map(|asked| Ok((asked.clone(), asked.on_equilibria(&Vocabulary::of(&chosen.model))?)));
         Ok(EquilibriaAnalysis {
             monitors: monitors.collect::<Result<_, Error>>()?,
             active,

@@ -93,7 +93,8 @@ impl CycleCurve {
         unlocated: &[Unlocated],
         named: impl Fn(&[f64]) -> NamedNumbers,
     ) -> Self {
-        let Quantities { plane, monitors } = quantities.into();
+        let Quantities { plane, monitors, ends } = quantities.into();
+        let ends = ends.unwrap_or(monitors);
         let count = points.len();
         let points: Vec<CycleCurvePoint> = (0..)
             .zip(points)
@@ -112,8 +113,8 @@ impl CycleCurve {
             NamedNumbers(values.unwrap_or_default())
         };
         let ends = [
-            End::monitored(stops[0].as_ref(), &plane, monitors, last(points.first())),
-            End::monitored(stops[1].as_ref(), &plane, monitors, last(points.last())),
+            End::monitored(stops[0].as_ref(), &plane, ends, last(points.first())),
+            End::monitored(stops[1].as_ref(), &plane, ends, last(points.last())),
         ];
         let unlocated = unlocated.iter().map(UnlocatedChangeResult::from).collect();
         Self { kind, held: NamedNumbers::default(), plane, from, ends, unlocated, points }

@@ -43,7 +43,7 @@ impl CycleLocusResult {
             model: chosen.stored.clone(),
             curve: CycleCurve::new(
                 branch.kind,
-                Quantities { plane: plane.map(VaryingParameter::from), monitors },
+                Quantities { plane: plane.map(VaryingParameter::from), monitors, ends: None },
                 from,
                 branch.points,
                 &branch.stops,

@@ -43,7 +43,7 @@ impl EquilibriumLocusResult {
             model: chosen.stored.clone(),
             curve: EquilibriumCurve::new(
                 branch.kind,
-                Quantities { plane: plane.map(VaryingParameter::from), monitors },
+                Quantities { plane: plane.map(VaryingParameter::from), monitors, ends: None },
                 from,
                 &branch.points,
                 &branch.stops,

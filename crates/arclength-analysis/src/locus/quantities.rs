@@ -9,10 +9,12 @@ pub struct Quantities<'a> {
     pub plane: [VaryingParameter; 2],
     /// The monitors, in the order of their values.
     pub monitors: &'a [String],
+    /// Words for what the curve may end at, in the order in which the engine counts it; without them the monitors.
+    pub ends: Option<&'a [String]>,
 }
 
 impl From<[VaryingParameter; 2]> for Quantities<'_> {
     fn from(plane: [VaryingParameter; 2]) -> Self {
-        Self { plane, monitors: &[] }
+        Self { plane, monitors: &[], ends: None }
     }
 }

@@ -13,6 +13,7 @@ use crate::monitor::{CycleMonitor, Monitored};
 use crate::point_reference::PointReference;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::steps::{Mesh, Steps};
+use crate::vocabulary::Vocabulary;
 use arclength::branch::{Monitor, SpecialKind};
 use arclength::continuation::Settings;
 use arclength::control::Control;
@@ -140,11 +141,12 @@ impl LocusRequest {
         })?;
         let is_of_cycles = matches!(start, Start::Cycle(..) | Start::HeldCycle(..));
         let mut monitors = Monitors::default();
+        let vocabulary = Vocabulary::of(&chosen.model);
         for asked in &self.monitors {
             if is_of_cycles {
-                monitors.on_cycles.push((asked.clone(), asked.on_cycles(chosen)?));
+                monitors.on_cycles.push((asked.clone(), asked.on_cycles(&vocabulary)?));
             } else {
-                monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(chosen)?));
+                monitors.on_equilibria.push((asked.clone(), asked.on_equilibria(&vocabulary)?));
             }
         }
         Ok(LocusAnalysis {
@@ -165,9 +167,11 @@ impl LocusRequest {
     /// The start of a curve on which a quantity keeps its value.
     fn held(&self, asked: &Monitored, point: &LabelledPoint) -> Result<Start, Error> {
         let (name, parameters) = (&asked.expression, &point.chosen.parameters);
+        let vocabulary = Vocabulary::of(&point.chosen.model);
         match &point.solution {
             LabelledSolution::Equilibrium(_) => {
-                let quantity = asked.on_equilibria(&point.chosen)?;
+                let quantity =
+                    asked.on_equilibria(&vocabulary).map_err(|error| error.in_fields(&["hold"]))?;
                 let held = Held::of_state(name, move |state, parameters| {
                     Some(quantity.value(state, parameters, &[]))
                 });
@@ -175,7 +179,7 @@ impl LocusRequest {
                 Ok(Start::HeldEquilibrium(held.at(asked.value_to_hold(here, &point.label)?)))
             }
             LabelledSolution::Cycle { orbit, .. } => {
-                let monitor = asked.on_cycles(&point.chosen)?;
+                let monitor = asked.on_cycles(&vocabulary).map_err(|error| error.in_fields(&["hold"]))?;
                 let held = Held::new(name, move |orbit, parameters| Some(monitor.value(orbit, parameters)));
                 let here = held.of(orbit, parameters);
                 let held = held.at(asked.value_to_hold(here, &point.label)?);
@@ -185,26 +189,6 @@ impl LocusRequest {
                 "nothing can be held from {}; allowed: equilibria and cycles, special or not",
                 point.label
             ))),
-        }
-    }
-}
-
-impl Monitored {
-    /// The value to be held: the one that is given, or the one `here`, where the curve starts at a label.
-    fn value_to_hold(&self, here: Option<f64>, label: &str) -> Result<f64, Error> {
-        let wrong = |problem: String, allowed: &str| {
-            Error::invalid(&["hold"], self.expression.clone(), problem, allowed)
-        };
-        match (&self.at[..], here) {
-            (_, None) => {
-                Err(wrong(format!("it has no value at {label}"), "an expression that has a value there"))
-            }
-            ([], Some(here)) => Ok(here),
-            ([value], Some(_)) => Ok(*value),
-            _ => Err(wrong(
-                "several values are given".to_owned(),
-                "one value, or none for the one where the curve starts",
-            )),
         }
     }
 }

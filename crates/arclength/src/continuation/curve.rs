@@ -238,6 +238,11 @@ pub trait Curve: Equations {
         true
     }
 
+    /// What hinders a curve from getting on at a solution, where the problem knows.
+    fn hindrance(&mut self, _solution: &Solution<Self::Point>) -> Option<Self::Reason> {
+        None
+    }
+
     /// A reason, special to the problem, to end the curve between two consecutive solutions or at the second.
     fn ending(
         &mut self,

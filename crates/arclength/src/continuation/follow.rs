@@ -59,6 +59,10 @@ pub type FollowedCurve<C> = Followed<<C as Curve>::Point, <C as Curve>::Kind, <C
 /// Somebody who is told every solution that becomes part of a run, special ones too, and may end it.
 pub type Observer<'o, P, K> = dyn FnMut(&Solution<P>, Origin<K>) -> ControlFlow<()> + 'o;
 
+/// Steps in a row, each shorter than this part of the initial one, after which a curve does not get on. Behind a narrow feature they would
+/// have grown a thousand times.
+const CREEPING_STEPS: usize = 20;
+const CREEPING: f64 = 1e-4;
 /// Special points this close to the start, in the metric, to which a closed curve comes back are that start.
 const AT_START: f64 = 1e-8;
 /// Part of its range by which a parameter of the start may move by rounding.
@@ -139,6 +143,7 @@ impl<C: Curve> Run<'_, '_, C> {
         }
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut length = settings.initial_step;
+        let mut creeping = 0;
         for _ in 0..settings.most_steps {
             let bounds = &self.request.bounds;
             let kept = keep(self.curve, &current, &previous);
@@ -152,7 +157,15 @@ impl<C: Curve> Run<'_, '_, C> {
                     Err(stop) => return stop,
                 };
             match self.step(&current, advanced) {
-                Step::To(next) => current = next,
+                Step::To(next) => {
+                    let way = along(self.curve, &current, &next.unknown).abs();
+                    current = next;
+                    creeping = if way < CREEPING * settings.initial_step { creeping + 1 } else { 0 };
+                    if creeping == CREEPING_STEPS {
+                        let hindrance = self.curve.hindrance(&current);
+                        return hindrance.map_or(Stop::Creeping { steps: CREEPING_STEPS }, Stop::Problem);
+                    }
+                }
                 Step::Into(next) => {
                     // Nothing of the piece before says anything about this one.
                     self.search.restart();
@@ -173,10 +186,13 @@ impl<C: Curve> Run<'_, '_, C> {
         Stop::MostSteps
     }
 
-    /// Adds solutions to the run, telling the observer.
+    /// Adds solutions to the run, telling the observer. Those that lie on an end of a range but for rounding are told there.
     fn accept(&mut self, solutions: Between<C>) -> ControlFlow<()> {
         let mut flow = ControlFlow::Continue(());
-        for (solution, origin) in solutions {
+        for (mut solution, origin) in solutions {
+            for bound in &self.request.bounds {
+                bound.keep_within(&mut solution.unknown);
+            }
             if flow.is_continue() {
                 flow = (self.observer)(&solution, origin);
             }

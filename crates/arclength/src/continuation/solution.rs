@@ -39,7 +39,7 @@ pub struct Bound {
     pub upper: f64,
 }
 
-/// Part of its range by which a parameter may lie outside by rounding where a curve starts: at a special point at the end of the range.
+/// Part of its range by which a parameter may lie outside by rounding: at a special point at the end of the range.
 pub(crate) const START_ROUNDING: f64 = 1e-9;
 
 impl Bound {
@@ -52,6 +52,14 @@ impl Bound {
     pub(crate) fn holds(&self, value: f64, margin: f64) -> bool {
         let margin = margin * self.width();
         (self.lower - margin..=self.upper + margin).contains(&value)
+    }
+
+    /// Moves a solution that lies outside by rounding onto the end of the range.
+    pub(crate) fn keep_within(&self, unknown: &mut [f64]) {
+        let place = unknown.len() - self.from_end;
+        if self.holds(unknown[place], START_ROUNDING) {
+            unknown[place] = unknown[place].clamp(self.lower, self.upper);
+        }
     }
 
     /// Length of the range.

@@ -30,6 +30,11 @@ pub enum Stop<R = Infallible> {
         /// Why the last correction failed.
         cause: CorrectionFailure,
     },
+    /// So many steps in a row were much shorter than the first one is asked to be: the curve does not get on.
+    Creeping {
+        /// How many.
+        steps: usize,
+    },
     /// The most steps allowed were taken.
     MostSteps,
     /// A reason special to the problem.
@@ -164,6 +169,10 @@ impl<R: Reason> Stop<R> {
                     "shorter steps from the start (--finer 10); if they end here too, the field may not be smooth here, or \
                      the curve turns more sharply than double precision tells",
                 ),
+            Self::Creeping { steps } => Explanation::of(format!(
+                "the curve does not get on: {steps} steps in a row had to be shorter than a ten-thousandth of the first one"
+            ))
+            .try_this("other coordinates, such as logarithms of what comes near zero; a smaller --tolerance"),
             Self::MostSteps => Explanation::of("the most steps allowed were taken")
                 .try_this("allow more with --steps, or start again from this end"),
             Self::Problem(reason) => reason.explain(wording),

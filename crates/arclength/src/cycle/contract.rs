@@ -2,7 +2,7 @@
 
 use super::curve::{CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
-use super::extrema::extremes;
+use super::extrema::{Extremes, extremes};
 use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::special;
@@ -17,6 +17,8 @@ use crate::continuation::{Adaptation, Curve, Discretised, Ending, Solution, Stop
 use crate::error::{CorrectionFailure, Error};
 use std::borrow::Cow;
 
+/// Part of its largest value below which double precision does not resolve how near to zero a state comes.
+const UNRESOLVED_PART: f64 = 1e-11;
 /// The mesh is made finer than the tolerance asks for where the trivial multiplier is wrong by more than this part of the root
 /// of the tolerance: next to a canard errors of the cycle are multiplied by large multipliers.
 const MULTIPLIER_PART: f64 = 0.1;
@@ -288,6 +290,28 @@ impl Curve for CycleCurve<'_> {
     fn turns_at(&self, point: &CycleInspection) -> Option<bool> {
         let known = point.branching.as_ref()?.known.as_ref()?;
         Some(known.parameter == 0.0)
+    }
+
+    fn hindrance(&mut self, solution: &Solution<CycleInspection>) -> Option<CycleEnd> {
+        let of_state = |extremes: &Extremes| {
+            let (one, other) = (extremes.smallest.abs(), extremes.largest.abs());
+            let passes = extremes.smallest <= 0.0 && extremes.largest >= 0.0;
+            // One that passes zero is resolved as well as its size.
+            (!passes || one.min(other) < UNRESOLVED_PART * one.max(other))
+                .then_some([one.min(other), one.max(other)])
+        };
+        let names = self.collocation.problem.field.state_names();
+        let near = names.into_iter().zip(solution.point.extremes.iter().map(of_state));
+        let near = near.filter_map(|(name, sizes)| Some((name, sizes?)));
+        let (state, [smallest, largest]) =
+            near.min_by(|(_, one), (_, other)| (one[0] / one[1]).total_cmp(&(other[0] / other[1])))?;
+        let parameter = *solution.unknown.last()?;
+        (smallest < UNRESOLVED_PART * largest).then_some(CycleEnd::NearZero {
+            state,
+            smallest,
+            largest,
+            parameter,
+        })
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {

@@ -30,6 +30,9 @@ const ROUNDING_TURN: f64 = 1e-12;
 /// be one there.
 pub(super) const STANDING: f64 = 1e-8;
 const NEUTRAL: f64 = 1e-4;
+/// That logarithm over the errors of multiplier and cycle: one that is certainly not zero is none of a family, however slowly the
+/// parameter changes beside a branch point.
+const NEUTRAL_ERRORS: f64 = 100.0;
 /// The same along a family that was followed so far: large cycles of it may not resolve it better, and from mesh to mesh the
 /// parameter changes by its error. What stands still on an analytic curve does so all along.
 const STILL_STANDING: f64 = 1e-5;
@@ -235,8 +238,12 @@ impl<'a> CycleCurve<'a> {
     /// cycle it is a family for one parameter value (Munoz-Almaraz, Freire, Galan, Doedel and Vanderbauwhede, "Continuation of
     /// periodic orbits in conservative and Hamiltonian systems" (2003)).
     pub(super) fn is_neutral(&self, tangent: &[f64], floquet: &Floquet) -> bool {
-        let (standing, near) =
-            if self.follows_neutral_family { (STILL_STANDING, STILL_NEUTRAL) } else { (STANDING, NEUTRAL) };
+        let (standing, near) = if self.follows_neutral_family {
+            (STILL_STANDING, STILL_NEUTRAL)
+        } else {
+            let error = floquet.margin().max(floquet.defect()).max(self.error_estimate);
+            (STANDING, NEUTRAL.min(NEUTRAL_ERRORS * error))
+        };
         let one = |multiplier: &Multiplier| multiplier.argument == 0.0 && multiplier.log_modulus.abs() < near;
         self.turn(tangent).abs() < standing && floquet.nontrivial.iter().any(one)
     }

@@ -3,7 +3,7 @@
 use super::slow_passage::SlowPassage;
 use crate::branch::WithParameters;
 use crate::continuation::{Explanation, Reason, Wording};
-use crate::numbers::readable;
+use crate::numbers::{readable, significant};
 use serde::{Deserialize, Serialize};
 
 /// The reason of its own for which a branch of cycles ends.
@@ -48,6 +48,17 @@ pub enum CycleEnd {
         /// Whether it was located; otherwise it is where the last cycles lead.
         located: bool,
     },
+    /// A state comes so near to zero that double precision does not resolve the cycles any further.
+    NearZero {
+        /// Its name.
+        state: String,
+        /// Its absolute value nearest to zero on the last cycle.
+        smallest: f64,
+        /// Its largest absolute value there.
+        largest: f64,
+        /// Parameter value of the last cycle.
+        parameter: f64,
+    },
     /// The amplitude grows without bound while the parameter tends to a value.
     AmplitudeUnbounded {
         /// Period of the last cycle.
@@ -76,6 +87,7 @@ impl WithParameters for CycleEnd {
             Self::HopfPoint { parameter, .. }
             | Self::PeriodDoubling { parameter, .. }
             | Self::Grazing { parameter, .. }
+            | Self::NearZero { parameter, .. }
             | Self::AmplitudeUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
             Self::PeriodUnbounded { parameter, beside, .. } => {
                 *parameter = convert(0, *parameter);
@@ -139,6 +151,14 @@ impl Reason for CycleEnd {
                 ))
                 .try_this("simulate beyond, and cycles from the end of that motion")
             }
+            Self::NearZero { state, smallest, largest, parameter } => Explanation::of(format!(
+                "the branch does not get on at {}: {state} comes as near to zero as {} on cycles on which it reaches {}, and double \
+                 precision does not resolve that",
+                wording.at(0, *parameter),
+                significant(*smallest, 2),
+                readable(*largest)
+            ))
+            .try_this("the model with the logarithm of that state in its place"),
             Self::AmplitudeUnbounded { period, parameter } => Explanation::of(format!(
                 "the amplitude grows without bound while {} tends to {}; the last period is {}",
                 wording.name(0),

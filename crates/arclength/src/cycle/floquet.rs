@@ -185,7 +185,7 @@ impl Floquet {
         Some(Self { nontrivial, ..self.clone() })
     }
 
-    fn margin(&self) -> f64 {
+    pub(super) fn margin(&self) -> f64 {
         self.trivial_error.max(self.measured_error).max(f64::EPSILON)
     }
 

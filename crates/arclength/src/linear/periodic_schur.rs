@@ -25,6 +25,9 @@ const MAXIMUM_SWEEPS: usize = 300;
 /// After this many sweeps an entry counts as negligible when it is as small as the rounding errors of all factors together: in
 /// a cluster of equal multipliers it gets no smaller.
 const PATIENCE: usize = 30;
+/// Where that does not suffice, because every sweep adds its own rounding errors, as many sweeps later it may be so many times larger: the
+/// multipliers are those of factors that differ by it.
+const INDULGENCE: usize = 4;
 /// Rounding errors grow where columns are nearly dependent, and a factor passes for singular below what they
 /// may have grown to, but not by more than this: the backward error of the decision stays below about 1e-13.
 const LARGEST_AMPLIFICATION: f64 = 256.0;
@@ -246,7 +249,10 @@ impl PeriodicSchur {
     /// First row of the window that ends in row `last`: the entry left of it is negligible, and made zero.
     fn window_start(&mut self, last: usize, sweeps: usize) -> usize {
         let n = self.n;
-        let errors = if sweeps < PATIENCE { 1 } else { n * (self.count + 1) };
+        let errors = match (sweeps / PATIENCE) as u32 {
+            0 => 1,
+            times => n * (self.count + 1) * INDULGENCE.pow(times - 1),
+        };
         let negligible = errors as f64 * f64::EPSILON;
         let hessenberg = &mut self.factors[..n * n];
         for k in (1..=last).rev() {

@@ -141,8 +141,8 @@ pub(super) fn at_hopf(branch: u64, hopf: &HopfPoint, label: String) -> Result<Cy
     })
 }
 
-/// Its row in a table.
-pub(super) fn cells(point: &CyclePointResult) -> [Cell; 10] {
+/// Its row in a table, with what is monitored by these names.
+pub(super) fn cells(point: &CyclePointResult, monitors: &[&str]) -> Vec<Cell> {
     let cycle = &point.cycle;
     // All but the trivial multiplier, which is the nearest to 1.
     let multipliers: Vec<Complex64> = cycle
@@ -159,7 +159,7 @@ pub(super) fn cells(point: &CyclePointResult) -> [Cell; 10] {
         _ if point.is_hopf_point() => String::new(),
         _ => cycle.remark(),
     };
-    [
+    let mut cells: Vec<Cell> = vec![
         cycle.label.clone().into(),
         cycle.value.into(),
         cycle.period.into(),
@@ -168,7 +168,8 @@ pub(super) fn cells(point: &CyclePointResult) -> [Cell; 10] {
         largest.into(),
         Cell::Text(significant(cycle.error_estimate, 2)),
         point.forces.cell(),
-        stability(cycle.stable, point.is_bifurcation()).into(),
-        remark.into(),
-    ]
+    ];
+    cells.extend(monitors.iter().map(|name| Cell::from(cycle.monitors.named(name))));
+    cells.extend([stability(cycle.stable, point.is_bifurcation()).into(), Cell::from(remark)]);
+    cells
 }

@@ -6,6 +6,7 @@ use crate::along::along;
 use crate::error::Error;
 use crate::hopf::course::course_of;
 use crate::hopf::search::{same_value, search};
+use crate::monitors::on_cycles;
 use crate::seen_from_above::SeenFromAbove;
 use crate::start::{LabelledPoint, LabelledSolution};
 use crate::wheel_request::WheelRequest;
@@ -14,9 +15,10 @@ use arclength::cycle::{Branching, CyclePoint, CycleStart, Orbit};
 use arclength::equilibrium::equilibrium_settings;
 use arclength_analysis::labels::kind;
 use arclength_analysis::{
-    Control, CycleSource, Disk, Files, FoundPoint, Interval, Mesh, PointReference, Steps, read_orbit,
+    Control, CycleSource, Disk, Files, FoundPoint, Interval, Mesh, Monitored, PointReference, Steps,
+    read_orbit,
 };
-use kingpin::branches::{Along, CycleOptions};
+use kingpin::branches::{Along, CycleOptions, MotionOptions};
 use kingpin::{Key, KingpinError, Wheel};
 use kingpin_report::numbers::readable;
 use serde::{Deserialize, Serialize};
@@ -41,6 +43,9 @@ pub struct CyclesRequest {
     /// there.
     #[serde(default)]
     pub stay: bool,
+    /// What is recorded along the branches, with values at which cycles are wanted or a branch ends.
+    #[serde(default)]
+    pub monitors: Vec<Monitored>,
     /// How steps are taken.
     #[serde(flatten)]
     pub steps: Steps,
@@ -80,6 +85,7 @@ impl CyclesRequest {
             at: Vec::new(),
             from: None,
             stay: false,
+            monitors: Vec::new(),
             steps: Steps::default(),
             mesh: Mesh::default(),
         }
@@ -107,10 +113,13 @@ impl CyclesRequest {
             Some(CycleSource::Point(reference)) => self.start(reference, along, files)?,
             Some(CycleSource::Samples { samples }) => self.start_at_samples(samples, along)?,
         };
-        let options = CycleOptions::default()
+        let mut options = CycleOptions::default()
             .at(&self.at)
             .resolution(self.mesh.resolution())
             .settings(self.steps.settings(Settings::default()));
+        for asked in &self.monitors {
+            options = options.monitor(on_cycles(asked, &wheel)?);
+        }
         Ok(CyclesAnalysis { wheel, along, start, stay: self.stay, steps: self.steps, options })
     }
 
@@ -219,7 +228,7 @@ impl CyclesAnalysis {
         let along = self.along;
         // The most steps are those along a branch of cycles.
         let search_steps = Steps { steps: Steps::default().steps, ..self.steps };
-        let settings = search_steps.settings(equilibrium_settings());
+        let settings = MotionOptions::default().settings(search_steps.settings(equilibrium_settings()));
         let mut found = 0;
         let mut observer = |point: &CyclePoint| {
             found += 1;
@@ -244,7 +253,7 @@ impl CyclesAnalysis {
                 Followed { branches, not_followed: Vec::new() }
             }
             Start::HopfPoints => {
-                let branch = search(&self.wheel, along, settings, control)?;
+                let branch = search(&self.wheel, along, &settings, control)?;
                 course = course_of(&branch);
                 from_hopf_points(&branch.hopf_points, None, along, &self.options, &mut observer)?
             }
@@ -253,7 +262,7 @@ impl CyclesAnalysis {
                 // a search that starts at the point itself would not see the growth rate change its sign.
                 let value = self.wheel.get(along.key());
                 let wheel = self.wheel.with(along.key(), along.ends().0)?;
-                let points = search(&wheel, along, settings, control)?.hopf_points;
+                let points = search(&wheel, along, &settings, control)?.hopf_points;
                 let place = points.iter().position(|point| same_value(point.value, value));
                 let only = place.ok_or_else(|| {
                     Error::NothingFound(format!(
@@ -266,7 +275,8 @@ impl CyclesAnalysis {
             }
         };
         let missed = self.missed(&followed.branches);
-        Ok(CyclesResult { course, ..CyclesResult::new(self.wheel, along, followed, missed)? })
+        let monitors = &self.options.monitors;
+        Ok(CyclesResult { course, ..CyclesResult::new(self.wheel, along, followed, missed, monitors)? })
     }
 
     /// A cycle that was found, over one period as it is seen from above, at so many times.

@@ -7,14 +7,17 @@ use crate::along::{along, varying};
 use crate::description;
 use crate::error::Error;
 use crate::forces::{self, ForcesResult};
+use crate::monitors::names;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states;
 use arclength::branch::LabelCounter;
+use arclength::cycle::Orbit;
 use arclength_analysis::cycles::{CycleResult, UnlocatedResult, tell, warnings};
+use arclength_analysis::monitor::{monitored, named};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::{Along, HopfPoint};
+use kingpin::branches::{Along, HopfPoint, MotionMonitor};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::{counted, readable};
@@ -130,6 +133,7 @@ impl CyclesResult {
         interval: Along,
         Followed { branches: followed, not_followed }: Followed,
         missed: Vec<f64>,
+        monitors: &[MotionMonitor<Orbit>],
     ) -> Result<Self, Error> {
         let along = varying(&interval);
         let mut labels = LabelCounter::default();
@@ -149,7 +153,10 @@ impl CyclesResult {
                 } else {
                     cycle.label.map(|label| labels.next(label.kind).to_string())
                 };
-                points.push(at_cycle(number, cycle, label, (&wheel, &interval))?);
+                let recorded = named(&names(monitors), &cycle.monitors);
+                let mut point = at_cycle(number, cycle, label, (&wheel, &interval))?;
+                point.cycle.monitors = recorded;
+                points.push(point);
             }
             if let Some((label, hopf)) = &branch.reached {
                 points.push(at_hopf(number, hopf, label.clone())?);
@@ -166,10 +173,9 @@ impl CyclesResult {
             let unlocated = branch.cycles.unlocated.iter().map(UnlocatedResult::from).chain(missed).collect();
             let [first, second] = &branch.cycles.stops;
             let varying = std::slice::from_ref(&along);
-            let border = branch.cycles.wheel.border_of_cycles();
-            let monitors: Vec<String> = border.iter().map(|(words, _)| (*words).to_owned()).collect();
+            let words = &branch.cycles.monitors;
             let first = match (first, &branch.hopf) {
-                (Some(stop), _) => End::monitored(Some(stop), varying, &monitors, last(points.first())),
+                (Some(stop), _) => End::monitored(Some(stop), varying, words, last(points.first())),
                 (None, Some(hopf)) => {
                     End { cause: birth(hopf, &branch.origin), ..End::start(last(points.first())) }
                 }
@@ -177,7 +183,7 @@ impl CyclesResult {
                     End { cause: format!("starts at {}", branch.origin), ..End::start(last(points.first())) }
                 }
             };
-            let ends = [first, End::monitored(second.as_ref(), varying, &monitors, last(points.last()))];
+            let ends = [first, End::monitored(second.as_ref(), varying, words, last(points.last()))];
             branches.push(BranchResult {
                 branch: number,
                 from: branch.origin,
@@ -210,6 +216,30 @@ impl CyclesResult {
         let missed = self.missed.iter().map(missed);
         let not_followed = self.not_followed.iter().map(|point| point.text(&self.interval));
         not_followed.chain(missed).chain(warnings(&unlocated, &self.along)).collect()
+    }
+
+    /// The labelled points of a branch and its ends.
+    fn table(&self, points: &[&CyclePointResult]) -> Table {
+        let monitors = monitored(points.iter().map(|point| &point.cycle.monitors));
+        let heading = self.along.heading();
+        let headings = [
+            "label",
+            &heading,
+            "period (s)",
+            "psi_max (rad)",
+            "psi_min (rad)",
+            "largest multiplier",
+            "error",
+            ForcesResult::HEADING,
+        ];
+        let mut table = Table::new(headings.into_iter().chain(monitors.iter().copied()).chain(["", ""]));
+        let last = points.len().saturating_sub(1);
+        for (index, point) in points.iter().enumerate() {
+            if point.cycle.label.is_some() || index == 0 || index == last {
+                table.row(cells(point, &monitors));
+            }
+        }
+        table
     }
 
     fn missing(&self, value: f64) -> String {
@@ -253,25 +283,7 @@ impl Report for CyclesResult {
             writeln!(out, "\nbranch {} from {}, {count}", branch.branch, branch.from)?;
             let [first, last] = branch.ends();
             writeln!(out, "  first: {}\n  last:  {}\n", first.text(), last.text())?;
-            let mut table = Table::new([
-                "label",
-                &self.along.heading(),
-                "period (s)",
-                "psi_max (rad)",
-                "psi_min (rad)",
-                "largest multiplier",
-                "error",
-                ForcesResult::HEADING,
-                "",
-                "",
-            ]);
-            let last = points.len().saturating_sub(1);
-            for (index, point) in points.iter().enumerate() {
-                if point.cycle.label.is_some() || index == 0 || index == last {
-                    table.row(cells(point));
-                }
-            }
-            table.write(out)?;
+            self.table(&points).write(out)?;
         }
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
@@ -308,6 +320,7 @@ impl Report for CyclesResult {
         }
         columns = columns
             .named_numbers("test", cycles().map(|cycle| &cycle.tests))
+            .named_numbers("monitor", cycles().map(|cycle| &cycle.monitors))
             .optional_numbers("psi_0", self.points.iter().map(|point| point.psi_0))
             .unit("rad")
             .optional_numbers("deviation_max", self.points.iter().map(|point| point.deviation_max))

@@ -133,10 +133,11 @@ fn from_samples(wheel: &Wheel, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sy
     values.sort_by(f64::total_cmp);
     let quantile = |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
     let without = values.iter().filter(|value| value.is_infinite()).count() as f64 / values.len() as f64;
+    // Where a bound holds a parameter, hardly any draw is as extreme as the estimates.
     Consequence {
         value: finite(value),
-        lower: finite(quantile(OUTSIDE)),
-        upper: finite(quantile(1.0 - OUTSIDE)),
+        lower: finite(quantile(OUTSIDE).min(value)),
+        upper: finite(quantile(1.0 - OUTSIDE).max(value)),
         method: Some("samples"),
         without: Some(without),
     }

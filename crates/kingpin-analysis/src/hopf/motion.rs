@@ -4,6 +4,7 @@ use crate::states::named_state;
 use arclength::equilibrium::{EquilibriumPoint, SpecialPoint};
 use arclength_analysis::VaryingParameter;
 use arclength_analysis::branch::{pairs, tests};
+use arclength_analysis::monitor::named;
 use arclength_analysis::normal_form::of_equilibrium;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::readable;
@@ -25,6 +26,9 @@ pub struct MotionResult {
     pub label: Option<String>,
     /// Test functions by the label of the point at which each changes its sign.
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
     /// What the normal form of a special point says.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
@@ -69,7 +73,7 @@ pub(super) fn named_tests(motion: &EquilibriumPoint) -> NamedNumbers {
 
 impl MotionResult {
     /// A motion of the branch.
-    pub(super) fn new(motion: &EquilibriumPoint) -> Self {
+    pub(super) fn new(motion: &EquilibriumPoint, monitors: &[String]) -> Self {
         Self {
             value: motion.value,
             state: named_state(&motion.state),
@@ -77,6 +81,7 @@ impl MotionResult {
             stable: motion.stability.is_stable(),
             label: motion.label.map(|label| label.to_string()),
             tests: named_tests(motion),
+            monitors: named(monitors, &motion.monitors),
             remark: motion.special.as_deref().map(of_equilibrium),
         }
     }

@@ -9,16 +9,18 @@ use crate::forces::{self, ForcesResult};
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::{self, named_state};
-use arclength::branch::Criticality;
+use arclength::branch::{Criticality, SpecialKind};
 use arclength::equilibrium::SpecialPoint;
-use arclength_analysis::branch::pairs;
+use arclength_analysis::branch::{pairs, stability};
 use arclength_analysis::course::{self, ToldPoint};
+use arclength_analysis::labels::kind;
+use arclength_analysis::monitor::{monitored, named};
 use arclength_analysis::normal_form::criticality;
 use arclength_analysis::{End, Interval, VaryingParameter};
-use kingpin::branches::{Along, FORWARD_MONITOR, HopfPoint, MotionBranch};
+use kingpin::branches::{Along, HopfPoint, MotionBranch};
 use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_report::numbers::readable;
-use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
+use kingpin_report::{Cell, Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
@@ -78,6 +80,9 @@ pub struct HopfPointResult {
     /// Test functions by the label of the point at which each changes its sign.
     #[serde(default)]
     pub tests: NamedNumbers,
+    /// What was monitored, where it exists.
+    #[serde(default, skip_serializing_if = "NamedNumbers::is_empty")]
+    pub monitors: NamedNumbers,
 }
 
 /// Hopf points along a parameter.
@@ -165,17 +170,22 @@ impl HopfResult {
     ///
     /// # Errors
     /// Those of the wheel at a Hopf point.
-    pub(super) fn new(wheel: Wheel, interval: Along, branch: &MotionBranch) -> Result<Self, KingpinError> {
+    pub(super) fn new(
+        wheel: Wheel,
+        interval: Along,
+        branch: &MotionBranch,
+        monitors: &[String],
+    ) -> Result<Self, KingpinError> {
         let along = varying(&interval);
-        let motions: Vec<MotionResult> = branch.motions.iter().map(MotionResult::new).collect();
+        let motions: Vec<MotionResult> =
+            branch.motions.iter().map(|motion| MotionResult::new(motion, monitors)).collect();
         let last = |motion: Option<&MotionResult>| {
             let value = motion.map(|motion| (along.key.clone(), motion.value));
             let state = motion.iter().flat_map(|motion| motion.state.0.iter().cloned());
             NamedNumbers(value.into_iter().chain(state).collect())
         };
-        let monitors = [FORWARD_MONITOR.to_owned()];
         let end = |stop: &Option<_>, motion: Option<&MotionResult>| {
-            End::monitored(stop.as_ref(), std::slice::from_ref(&along), &monitors, last(motion))
+            End::monitored(stop.as_ref(), std::slice::from_ref(&along), &branch.monitors, last(motion))
         };
         let ends = [end(&branch.stops[0], motions.first()), end(&branch.stops[1], motions.last())];
         let stable = |motion: Option<&MotionResult>| motion.and_then(|motion| motion.stable);
@@ -189,12 +199,63 @@ impl HopfResult {
             course: course_of(branch),
             points: (0..)
                 .zip(&branch.hopf_points)
-                .map(|(index, point)| hopf_point(index, point, interval.key(), branch))
+                .map(|(index, point)| hopf_point(index, point, interval.key(), branch, monitors))
                 .collect::<Result<_, _>>()?,
             motions,
             along,
             dry_friction: NeglectedDryFriction::of(&wheel, &[interval.key()]),
         })
+    }
+
+    /// The Hopf points.
+    fn table(&self) -> Table {
+        let monitors = monitored(self.points.iter().map(|point| &point.monitors));
+        let heading = self.along.heading();
+        let headings = [
+            "label",
+            &heading,
+            "frequency (rad/s)",
+            "first Lyapunov coefficient",
+            "",
+            "mode",
+            "stable",
+            ForcesResult::HEADING,
+        ];
+        let mut table = Table::new(headings.into_iter().chain(monitors.iter().copied()));
+        for point in &self.points {
+            let cells = [
+                point.label.as_str().into(),
+                point.value.into(),
+                point.frequency.into(),
+                point.first_lyapunov.into(),
+                criticality(point.criticality).into(),
+                point.mode.clone().into(),
+                point.stable_side().into(),
+                point.forces.cell(),
+            ];
+            let recorded = monitors.iter().map(|name| Cell::from(point.monitors.named(name)));
+            table.row(cells.into_iter().chain(recorded));
+        }
+        table
+    }
+
+    /// The uniform motions at which a monitor has a value that was asked for, if there are any.
+    fn asked_for(&self) -> Option<Table> {
+        let is_asked_for = |motion: &&MotionResult| {
+            motion.label.as_deref().is_some_and(|label| kind(label) == SpecialKind::Requested.label())
+        };
+        let motions: Vec<&MotionResult> = self.motions.iter().filter(is_asked_for).collect();
+        let monitors = monitored(motions.iter().map(|motion| &motion.monitors));
+        let heading = self.along.heading();
+        let headings = ["label", &heading, "stable"].into_iter().chain(monitors.iter().copied());
+        let mut table = Table::new(headings);
+        for motion in &motions {
+            let cells =
+                [motion.label.clone().into(), motion.value.into(), stability(motion.stable, false).into()];
+            let recorded = monitors.iter().map(|name| Cell::from(motion.monitors.named(name)));
+            table.row(cells.into_iter().chain(recorded));
+        }
+        (!motions.is_empty()).then_some(table)
     }
 
     /// What was detected but not located.
@@ -263,6 +324,7 @@ fn hopf_point(
     point: &HopfPoint,
     key: Key,
     branch: &MotionBranch,
+    monitors: &[String],
 ) -> Result<HopfPointResult, KingpinError> {
     let motion = branch.motions.iter().find(|motion| {
         motion.value == point.value && matches!(motion.special.as_deref(), Some(SpecialPoint::Hopf(_)))
@@ -288,6 +350,7 @@ fn hopf_point(
         location_error: Some(point.location_error).filter(|error| error.is_finite()),
         eigenvalues: motion.map(|motion| pairs(&motion.eigenvalues)).unwrap_or_default(),
         tests: motion.map(named_tests).unwrap_or_default(),
+        monitors: motion.map(|motion| named(monitors, &motion.monitors)).unwrap_or_default(),
     })
 }
 
@@ -306,29 +369,7 @@ impl Report for HopfResult {
         let [low, high] = [low, high].map(readable);
         writeln!(out, "uniform motion at {}", description::on_lines(&self.wheel, &[key]))?;
         writeln!(out, "Hopf points for {key} from {low} to {high} {}\n", key.unit())?;
-        let mut table = Table::new([
-            "label".to_owned(),
-            self.along.heading(),
-            "frequency (rad/s)".to_owned(),
-            "first Lyapunov coefficient".to_owned(),
-            String::new(),
-            "mode".to_owned(),
-            "stable".to_owned(),
-            ForcesResult::HEADING.to_owned(),
-        ]);
-        for point in &self.points {
-            table.row([
-                point.label.as_str().into(),
-                point.value.into(),
-                point.frequency.into(),
-                point.first_lyapunov.into(),
-                criticality(point.criticality).into(),
-                point.mode.clone().into(),
-                point.stable_side().into(),
-                point.forces.cell(),
-            ]);
-        }
-        table.write(out)?;
+        self.table().write(out)?;
         for (label, remark) in
             self.points.iter().filter_map(|point| Some((&point.label, point.remark.as_ref()?)))
         {
@@ -336,6 +377,10 @@ impl Report for HopfResult {
         }
         for sentence in &self.course {
             writeln!(out, "{sentence}")?;
+        }
+        if let Some(table) = self.asked_for() {
+            writeln!(out, "\nuniform motions asked for\n")?;
+            table.write(out)?;
         }
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
@@ -371,7 +416,8 @@ impl Report for HopfResult {
             .optional_numbers("unstable_after", points().map(|point| count(point.unstable_after)))
             .optional_numbers("psi_max_squared_slope", points().map(|point| point.psi_max_squared_slope))
             .optional_numbers("friction_slope", points().map(|point| point.friction_slope))
-            .unit("N/rad");
+            .unit("N/rad")
+            .named_numbers("monitor", points().map(|point| &point.monitors));
         forces::columns(columns, points().map(|point| &point.forces))
     }
 

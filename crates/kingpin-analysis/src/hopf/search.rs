@@ -4,10 +4,9 @@ use super::course::{ends, unlocated_changes};
 use crate::description;
 use crate::error::{Error, unless_stopped};
 use crate::neglected_dry_friction::NeglectedDryFriction;
-use arclength::continuation::Settings;
 use arclength::equilibrium::EquilibriumPoint;
 use arclength_analysis::Control;
-use kingpin::branches::{Along, MotionBranch};
+use kingpin::branches::{Along, MotionBranch, MotionOptions};
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::readable;
 
@@ -21,10 +20,10 @@ const SAME_HOPF_POINT: f64 = 1e-6;
 pub(crate) fn search(
     wheel: &Wheel,
     along: Along,
-    settings: Settings,
+    options: &MotionOptions,
     control: &Control<'_>,
 ) -> Result<MotionBranch, Error> {
-    let branch = wheel.motion_branch(along, settings, |value| {
+    let branch = wheel.motion_branch(along, options, |value| {
         control.at(&format!("uniform motions, {} = {}", along.key(), readable(value)));
         control.flow()
     })?;
@@ -77,12 +76,9 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
     } else {
         "; try a wider interval, or see with `kingpin chart` where the stability changes".to_owned()
     };
-    let mut neglected = Vec::new();
-    if NeglectedDryFriction::tell(NeglectedDryFriction::of(wheel, &[along.key()]).as_ref(), &mut neglected)
-        .is_ok()
-    {
-        let told = String::from_utf8_lossy(&neglected);
-        told.lines().filter(|line| !line.is_empty()).for_each(|line| message += &format!("; {line}"));
+    let neglected = NeglectedDryFriction::of(wheel, &[along.key()]);
+    for sentence in neglected.iter().flat_map(NeglectedDryFriction::sentences) {
+        message += &format!("; {sentence}");
     }
     message
 }

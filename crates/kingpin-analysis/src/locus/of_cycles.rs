@@ -6,7 +6,7 @@ use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
 use arclength_analysis::Origin;
-use arclength_analysis::locus::CycleCurve;
+use arclength_analysis::locus::{CycleCurve, Quantities};
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::{Columns, Parameters, Report, Schema, Story};
@@ -59,11 +59,12 @@ impl CycleLocusResult {
         wheel: Wheel,
         plane: ParameterPlane,
         from: Origin,
+        monitors: &[String],
         curve: kingpin::branches::CycleCurve,
     ) -> Self {
-        let kingpin::branches::CycleCurve { kind, points, stops, unlocated } = curve;
-        let curve =
-            CycleCurve::new(Some(kind), plane.varying(), from, points, &stops, &unlocated, named_state);
+        let kingpin::branches::CycleCurve { kind, points, stops, unlocated, monitors: ends } = curve;
+        let quantities = Quantities { plane: plane.varying(), monitors, ends: Some(&ends) };
+        let curve = CycleCurve::new(kind, quantities, from, points, &stops, &unlocated, named_state);
         let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
         Self { wheel, plane, curve, dry_friction }
     }

@@ -18,14 +18,6 @@ use kingpin_figure::{
 const SPEEDS: usize = 36;
 
 pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
-    let mut panel = Panel::new(
-        Axis::new("$v$ (m/s)").limits(0.0, FASTEST),
-        Axis::new("extremes of $\\psi-\\psi_0$ (rad)").limits(-0.8, 0.8),
-    )
-    .tag("(b)")
-    .title("limit cycles")
-    .legend(Legend::Below)
-    .curve(Line::new([(0.0, 0.0), (FASTEST, 0.0)]).color(palette::GREY).width(0.6));
     let mut data = Data::new(&[
         ("solution", ""),
         ("r", "m"),
@@ -37,11 +29,31 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         ("stability", ""),
         ("friction_max", "N"),
     ]);
-    let mut motions = Panel::new(
+    let motions = motions_panel(branches, &mut data)?;
+    let cycles = cycles_panel(branches, &mut data)?;
+    let figure = Figure::single_column()
+        .row_weights([1.0, 3.0])
+        .height_mm(112.0)
+        .description("Extremes of the caster angle of the limit cycles against the towing speed for several turning radii")
+        .panel(motions)
+        .panel(cycles);
+    let caption = format!(
+        "Turning radii at <i>l</i> = {FIGURE_6_LENGTH} m: (a) the uniform motion, (b) its limit cycles, largest and smallest deviation of the caster angle \
+         from that of the uniform motion. The branch of straight running (<i>r</i> = ∞), which has no Hopf point, was reached by \
+         following a cycle in 1/<i>r</i> to zero. Dashed: unstable; dotted: cycles that ask the ground for more than the static friction under {} N, the largest load of \
+         figure 4. At a torus bifurcation a pair of multipliers \
+         crosses the unit circle.",
+        HEAVIEST.abs()
+    );
+    Ok(Drawing { number: 6, figure, data, caption })
+}
+
+/// The uniform motion at every radius, one above the other, by its stability.
+fn motions_panel(branches: &Branches, data: &mut Data) -> Result<Panel, Error> {
+    let radii = (0..).zip(RADII).map(|(place, radius): (u8, f64)| (f64::from(place), radius_label(radius)));
+    let mut panel = Panel::new(
         Axis::new("$v$ (m/s)").limits(0.0, FASTEST).without_labels(),
-        Axis::new("").limits(-0.6, RADII.len() as f64 - 0.4).ticks(
-            (0..).zip(RADII).map(|(place, radius): (u8, f64)| (f64::from(place), radius_label(radius))),
-        ),
+        Axis::new("").limits(-0.6, RADII.len() as f64 - 0.4).ticks(radii),
     )
     .tag("(a)")
     .title("uniform motion");
@@ -67,19 +79,30 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
             ]);
         }
         let line = along.iter().map(|motion| ((motion.speed, place), motion.stability));
-        motions = motions.curve(Curve::new(line).color(color));
         let hopf = branch.hopf.iter().map(|hopf| (hopf.value, place));
-        motions =
-            motions.markers(Markers::new(hopf, Marker::new(MarkerShape::Circle).size(3.6).color(color)));
+        let marker = Marker::new(MarkerShape::Circle).size(3.6).color(color);
+        panel = panel.curve(Curve::new(line).color(color)).markers(Markers::new(hopf, marker));
     }
+    Ok(panel)
+}
+
+/// The limit cycles at every radius by their extremes.
+fn cycles_panel(branches: &Branches, data: &mut Data) -> Result<Panel, Error> {
+    let mut panel = Panel::new(
+        Axis::new("$v$ (m/s)").limits(0.0, FASTEST),
+        Axis::new("extremes of $\\psi-\\psi_0$ (rad)").limits(-0.8, 0.8),
+    )
+    .tag("(b)")
+    .title("limit cycles")
+    .legend(Legend::Below)
+    .curve(Line::new([(0.0, 0.0), (FASTEST, 0.0)]).color(palette::GREY).width(0.6));
     for branch in branches.of_figure_6() {
-        let radius = branch.radius;
-        let color = radius_color(radius);
+        let color = radius_color(branch.radius);
         let [upper, lower] = extremes(branch)?;
         panel = panel
             .curve(diagram(branch, upper).color(color))
             .curve(diagram(branch, lower).color(color))
-            .legend_entry(LegendEntry::line(radius_label(radius), color, Dash::Dashed));
+            .legend_entry(LegendEntry::line(radius_label(branch.radius), color, Dash::Dashed));
         let tori = branch.cycles.iter().filter(|cycle| is_torus(cycle));
         let deviations = tori
             .map(|cycle| {
@@ -91,52 +114,46 @@ pub(super) fn drawing(branches: &Branches) -> Result<Drawing, Error> {
         if let Some(hopf) = &branch.hopf {
             let marker = Marker::new(MarkerShape::Circle).size(3.6).color(color);
             panel = panel.markers(Markers::new([(hopf.value, 0.0)], marker));
-            data.push([
-                "Hopf point".into(),
-                radius.into(),
-                hopf.value.into(),
-                0.0.into(),
-                0.0.into(),
-                hopf.state[2].into(),
-                (std::f64::consts::TAU / hopf.frequency).into(),
-                Cell::Empty,
-                hopf.wheel.uniform_motion()?.contact_force().friction().into(),
-            ]);
         }
-        for (cycle, forces) in branch.cycles_with_forces() {
-            let uniform = branch.uniform_angle(cycle.value)?;
-            data.push([
-                "limit cycle".into(),
-                radius.into(),
-                cycle.value.into(),
-                (cycle.max[2] - uniform).into(),
-                (cycle.min[2] - uniform).into(),
-                uniform.into(),
-                cycle.period.into(),
-                if is_torus(cycle) { "torus bifurcation" } else { stability_word(cycle.stable) }.into(),
-                forces.friction_max.into(),
-            ]);
-        }
+        push_cycles(branch, data)?;
     }
     let hopf = Marker::new(MarkerShape::Circle).size(3.6);
-    panel = panel.legend_entry(LegendEntry::marker("Hopf point", hopf));
-    panel = panel.legend_entry(LegendEntry::marker("torus bifurcation", torus_marker(palette::BLACK)));
-    panel = panel.legend_entry(LegendEntry::line(beyond_rolling_legend(), palette::BLACK, Dash::Dotted));
-    let figure = Figure::single_column()
-        .row_weights([1.0, 3.0])
-        .height_mm(112.0)
-        .description("Extremes of the caster angle of the limit cycles against the towing speed for several turning radii")
-        .panel(motions)
-        .panel(panel);
-    let caption = format!(
-        "Turning radii at <i>l</i> = {FIGURE_6_LENGTH} m: (a) the uniform motion, (b) its limit cycles, largest and smallest deviation of the caster angle \
-         from that of the uniform motion. The branch of straight running (<i>r</i> = ∞), which has no Hopf point, was reached by \
-         following a cycle in 1/<i>r</i> to zero. Dashed: unstable; dotted: cycles that ask the ground for more than the static friction under {} N, the largest load of \
-         figure 4. At a torus bifurcation a pair of multipliers \
-         crosses the unit circle.",
-        HEAVIEST.abs()
-    );
-    Ok(Drawing { number: 6, figure, data, caption })
+    Ok(panel
+        .legend_entry(LegendEntry::marker("Hopf point", hopf))
+        .legend_entry(LegendEntry::marker("torus bifurcation", torus_marker(palette::BLACK)))
+        .legend_entry(LegendEntry::line(beyond_rolling_legend(), palette::BLACK, Dash::Dotted)))
+}
+
+/// The Hopf point and the cycles of a branch, as data.
+fn push_cycles(branch: &Branch, data: &mut Data) -> Result<(), Error> {
+    if let Some(hopf) = &branch.hopf {
+        data.push([
+            "Hopf point".into(),
+            branch.radius.into(),
+            hopf.value.into(),
+            0.0.into(),
+            0.0.into(),
+            hopf.state[2].into(),
+            (std::f64::consts::TAU / hopf.frequency).into(),
+            Cell::Empty,
+            hopf.wheel.uniform_motion()?.contact_force().friction().into(),
+        ]);
+    }
+    for (cycle, forces) in branch.cycles_with_forces() {
+        let uniform = branch.uniform_angle(cycle.value)?;
+        data.push([
+            "limit cycle".into(),
+            branch.radius.into(),
+            cycle.value.into(),
+            (cycle.max[2] - uniform).into(),
+            (cycle.min[2] - uniform).into(),
+            uniform.into(),
+            cycle.period.into(),
+            if is_torus(cycle) { "torus bifurcation" } else { stability_word(cycle.stable) }.into(),
+            forces.friction_max.into(),
+        ]);
+    }
+    Ok(())
 }
 
 /// A uniform motion; where the stability changes it is the Hopf point.

@@ -3,9 +3,8 @@
 use super::finding::Finding;
 use crate::error::{Error, unless_stopped};
 use arclength::continuation::Stop;
-use arclength::equilibrium::equilibrium_settings;
 use arclength_analysis::Control;
-use kingpin::branches::{Along, MotionBranch};
+use kingpin::branches::{Along, MotionBranch, MotionOptions};
 use kingpin::{Key, Wheel};
 use kingpin_report::numbers::{readable, significant};
 
@@ -44,7 +43,7 @@ impl Speeds {
     /// No uniform motion, [`Error::Stopped`].
     pub(super) fn follow(wheel: &Wheel, fastest: f64, control: &Control<'_>) -> Result<Self, Error> {
         let along = Along::new(Key::V, SLOWEST * fastest, fastest)?;
-        let branch = wheel.motion_branch(along, equilibrium_settings(), |_| control.flow())?;
+        let branch = wheel.motion_branch(along, &MotionOptions::default(), |_| control.flow())?;
         unless_stopped(control)?;
         let ends = [branch.motions.first(), branch.motions.last()];
         let ends = ends.map(|motion| motion.map_or(f64::NAN, |motion| motion.value));

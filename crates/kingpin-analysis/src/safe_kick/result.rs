@@ -247,6 +247,84 @@ impl SafeKickResult {
         }
         table.write(out)
     }
+
+    /// The edges of either direction.
+    fn edges(&self) -> impl Iterator<Item = Edge> {
+        [self.positive, self.negative].into_iter().flatten()
+    }
+
+    /// How far apart magnitudes were tried, and so how narrow a range of failures may be that was not seen.
+    fn what_was_tried(&self) -> Option<String> {
+        let (unit, resolution) = (self.unit, readable(self.resolution));
+        match self.nearest().filter(|edge| !edge.is_open()) {
+            None => Some(format!(
+                "magnitudes were tried {resolution} {unit} apart: failures in a narrower range may lie between"
+            )),
+            // However small, none returned: there is nothing below.
+            Some(_) if self.resolution == 0.0 => None,
+            Some(_) => Some(format!(
+                "below what does not return magnitudes were tried {resolution} {unit} apart, just below an edge {}: failures in a narrower \
+                 range may lie there",
+                readable(self.resolution_beside_edge)
+            )),
+        }
+    }
+
+    /// What else is to be known, in sentences.
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.edges().any(|edge| edge.none_returns()) {
+            remarks.push(
+                "from where 0 returns none does, however small: down to a billionth of the largest magnitude none was found to".to_owned(),
+            );
+        }
+        let ends_in = |fate: Fate| self.edges().any(|edge| edge.fate.is_some_and(|ending| ending.0 == fate));
+        if ends_in(Fate::Irregular) {
+            remarks.push(format!(
+                "irregular swinging lasted to the end, up to ten times {} s: whether for ever is undecided",
+                readable(self.duration)
+            ));
+        }
+        if ends_in(Fate::ModelEnds) {
+            remarks.push(format!(
+                "end of the model: {}, and what becomes of the motion is undecided",
+                end_of_the_model(&self.wheel)
+            ));
+        }
+        remarks.extend(self.undecided());
+        if self.kind == Disturbance::StepSteer.name()
+            && let Some(safe) = self.safe.filter(|safe| *safe > 0.0)
+        {
+            remarks.push(format!("smallest radius from which it returned: {} m", readable(safe.recip())));
+        }
+        remarks
+    }
+
+    /// What is undecided of small motions, or of those beyond what returned.
+    fn undecided(&self) -> Option<String> {
+        if self.edges().any(|edge| edge.smaller_are_undecided) {
+            let ends_elsewhere = self.edges().filter(Edge::is_found).map(|edge| edge.fails.abs());
+            let found = match ends_elsewhere.reduce(f64::min) {
+                Some(smallest) => {
+                    format!(
+                        "from {} {} on a motion was found that ends elsewhere",
+                        readable(smallest),
+                        self.unit
+                    )
+                }
+                None => "of those that were tried none was found that ends elsewhere".to_owned(),
+            };
+            return Some(format!(
+                "undecided: on a circle at this speed it is not known whether small motions, which grow without M_f, die out with it; {found}"
+            ));
+        }
+        self.edges().any(|edge| edge.is_undecided()).then(|| {
+            format!(
+                "undecided: beyond what returned the motion neither returns nor settles in ten times {} s; a longer --duration may tell",
+                readable(self.duration)
+            )
+        })
+    }
 }
 
 impl Report for SafeKickResult {
@@ -277,22 +355,8 @@ impl Report for SafeKickResult {
             writeln!(out, "\nsmall disturbances grow: none is safe")?;
             return Ok(());
         }
-        let edges = || [self.positive, self.negative].into_iter().flatten();
-        match self.nearest().filter(|edge| !edge.is_open()) {
-            None => writeln!(
-                out,
-                "\nmagnitudes were tried {} {unit} apart: failures in a narrower range may lie between",
-                readable(self.resolution)
-            )?,
-            // However small, none returned: there is nothing below.
-            Some(_) if self.resolution == 0.0 => {}
-            Some(_) => writeln!(
-                out,
-                "\nbelow what does not return magnitudes were tried {} {unit} apart, just below an edge {}: failures in a narrower range may \
-                 lie there",
-                readable(self.resolution),
-                readable(self.resolution_beside_edge)
-            )?,
+        if let Some(sentence) = self.what_was_tried() {
+            writeln!(out, "\n{sentence}")?;
         }
         match &self.sliding {
             Some(Found { problem: Some(problem), .. }) => {
@@ -310,54 +374,7 @@ impl Report for SafeKickResult {
         if let Some(replay) = &self.replay {
             writeln!(out, "\nthe smallest that does not return: kingpin simulate {replay}")?;
         }
-        if edges().any(|edge| edge.none_returns()) {
-            writeln!(
-                out,
-                "\nfrom where 0 returns none does, however small: down to a billionth of the largest magnitude none was found to"
-            )?;
-        }
-        let ends_in = |fate: Fate| edges().any(|edge| edge.fate.is_some_and(|ending| ending.0 == fate));
-        if ends_in(Fate::Irregular) {
-            writeln!(
-                out,
-                "\nirregular swinging lasted to the end, up to ten times {} s: whether for ever is undecided",
-                readable(self.duration)
-            )?;
-        }
-        if ends_in(Fate::ModelEnds) {
-            writeln!(
-                out,
-                "\nend of the model: {}, and what becomes of the motion is undecided",
-                end_of_the_model(&self.wheel)
-            )?;
-        }
-        if edges().any(|edge| edge.smaller_are_undecided) {
-            let ends_elsewhere = edges().filter(Edge::is_found).map(|edge| edge.fails.abs()).reduce(f64::min);
-            let found = match ends_elsewhere {
-                Some(smallest) => {
-                    format!("from {} {unit} on a motion was found that ends elsewhere", readable(smallest))
-                }
-                None => "of those that were tried none was found that ends elsewhere".to_owned(),
-            };
-            writeln!(
-                out,
-                "\nundecided: on a circle at this speed it is not known whether small motions, which grow without M_f, die out with it; \
-                 {found}"
-            )?;
-        } else if edges().any(|edge| edge.is_undecided()) {
-            writeln!(
-                out,
-                "\nundecided: beyond what returned the motion neither returns nor settles in ten times {} s; a longer \
-                 --duration may tell",
-                readable(self.duration)
-            )?;
-        }
-        if self.kind == Disturbance::StepSteer.name()
-            && let Some(safe) = self.safe.filter(|safe| *safe > 0.0)
-        {
-            writeln!(out, "\nsmallest radius from which it returned: {} m", readable(safe.recip()))?;
-        }
-        Ok(())
+        self.remarks().iter().try_for_each(|remark| writeln!(out, "\n{remark}"))
     }
 
     fn columns(&self) -> Columns {

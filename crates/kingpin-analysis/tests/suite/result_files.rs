@@ -62,7 +62,7 @@ fn cycles_and_curves_start_from_them() {
         let plane = [Interval::new("l", 0.07, 0.09), Interval::new("v", 1.0, 12.0)];
         let mut request = LocusRequest::new(point(file, "HB1"), plane);
         request.at = vec![0.08];
-        let LocusResult::HopfPoints(result) = request.validate().unwrap().run(&control).unwrap() else {
+        let LocusResult::Motions(result) = request.validate().unwrap().run(&control).unwrap() else {
             panic!("no curve of Hopf points from {file}")
         };
         let start = result.curve.points.iter().find(|point| point.values[0] == 0.08).unwrap();

@@ -10,7 +10,7 @@ pub(crate) fn fails(arguments: &str, exit_code: i32, words: &[&str]) {
 }
 
 #[track_caller]
-fn fails_in(folder: &Folder, arguments: &str, exit_code: i32, words: &[&str]) {
+pub(crate) fn fails_in(folder: &Folder, arguments: &str, exit_code: i32, words: &[&str]) {
     let before = folder.files();
     let run = folder.run(arguments);
     assert_eq!(run.exit_code, exit_code, "{arguments}: {}", run.messages);

@@ -16,6 +16,7 @@ mod headings;
 mod interruption;
 mod lateral;
 mod long_values;
+mod monitors;
 mod overlays;
 mod readme;
 mod shimmy;

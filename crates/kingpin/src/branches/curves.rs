@@ -1,12 +1,13 @@
-//! Curves of Hopf points, and of folds, period doublings and torus bifurcations of cycles, in two parameters of the wheel.
+//! Curves in two parameters of the wheel: of Hopf points, of folds, period doublings and torus bifurcations of cycles, and of motions
+//! on which a quantity keeps its value.
 
-use super::{Along, HopfPoint};
+use super::{Along, HopfPoint, MotionMonitor};
 use crate::{KingpinError, RollingModel, Wheel};
 use arclength::branch::{Monitor, SpecialKind, Unlocated, WithParameters};
 use arclength::continuation::{Settings, Stop};
 use arclength::cycle::{Orbit, Resolution};
 use arclength::equilibrium::equilibrium_settings;
-use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, LocusPoint};
+use arclength::locus::{CycleLocus, CycleLocusEnd, CycleLocusPoint, EquilibriumLocus, LocusPoint};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
@@ -20,6 +21,10 @@ pub struct CurveOptions {
     pub resolution: Resolution,
     /// Settings of the continuation; those of the engine where there are none.
     pub settings: Option<Settings>,
+    /// What is recorded along a curve of uniform motions.
+    pub motion_monitors: Vec<MotionMonitor<[f64]>>,
+    /// What is recorded along a curve of cycles.
+    pub cycle_monitors: Vec<MotionMonitor<Orbit>>,
 }
 
 impl CurveOptions {
@@ -40,30 +45,53 @@ impl CurveOptions {
         self.settings = Some(settings);
         self
     }
+
+    /// The same with one more quantity that is recorded along a curve of uniform motions.
+    pub fn motion_monitor(mut self, monitor: MotionMonitor<[f64]>) -> Self {
+        self.motion_monitors.push(monitor);
+        self
+    }
+
+    /// The same with one more quantity that is recorded along a curve of cycles.
+    pub fn cycle_monitor(mut self, monitor: MotionMonitor<Orbit>) -> Self {
+        self.cycle_monitors.push(monitor);
+        self
+    }
 }
 
-/// A curve of Hopf points of the uniform motion.
+/// A curve of uniform motions: of Hopf points, or of those on which a quantity keeps its value.
 #[derive(Debug)]
-pub struct HopfCurve {
+pub struct MotionCurve {
     /// The points: values are those of the two keys, states are [all](Wheel::states).
     pub points: Vec<LocusPoint>,
     /// Why the curve ends, at its first and at its last point, in values of the keys.
     pub stops: [Option<Stop<Infallible>>; 2],
     /// What was noticed and could not be located.
     pub unlocated: Vec<Unlocated>,
+    /// Words for the monitors, in the order in which a [`Stop::Monitor`] counts them.
+    pub monitors: Vec<String>,
 }
 
-/// A curve of special cycles.
+/// A curve of cycles: of special ones, or of those on which a quantity keeps its value.
 #[derive(Debug)]
 pub struct CycleCurve {
-    /// What it consists of.
-    pub kind: SpecialKind,
+    /// What it consists of; nothing where it consists of any cycles.
+    pub kind: Option<SpecialKind>,
     /// The points: values are those of the two keys, extrema are as in [`WheelCycles`](super::WheelCycles).
     pub points: Vec<CycleLocusPoint>,
     /// Why the curve ends, at its first and at its last point, in values of the keys.
     pub stops: [Option<Stop<CycleLocusEnd>>; 2],
     /// Changes of test functions behind which no point of codimension two could be located.
     pub unlocated: Vec<Unlocated>,
+    /// Words for the monitors, in the order in which a [`Stop::Monitor`] counts them.
+    pub monitors: Vec<String>,
+}
+
+/// From where a curve of cycles is followed, and of what it consists.
+#[derive(Clone, Debug)]
+enum CycleStart<'a> {
+    Special(SpecialKind, &'a Orbit),
+    Holding(&'a MotionMonitor<Orbit>, f64, &'a Orbit),
 }
 
 impl HopfPoint {
@@ -95,50 +123,51 @@ impl HopfPoint {
         plane: [Along; 2],
         options: &CurveOptions,
         mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
-    ) -> Result<HopfCurve, KingpinError> {
-        self.curve_told_to(plane, options, &mut observer)
-    }
-
-    /// [`curve`](Self::curve), compiled once and not for every observer.
-    fn curve_told_to(
-        &self,
-        plane: [Along; 2],
-        options: &CurveOptions,
-        observer: &mut dyn FnMut([f64; 2]) -> ControlFlow<()>,
-    ) -> Result<HopfCurve, KingpinError> {
+    ) -> Result<MotionCurve, KingpinError> {
         let (model, values) = self.wheel.in_plane(plane)?;
         let start = arclength::equilibrium::HopfPoint { parameters: values.to_vec(), ..self.detail.clone() };
-        let branch = start
-            .curve(&model)
-            .along(plane[0].followed().name(), plane[0].range())
-            .and(plane[1].followed().name(), plane[1].range())
-            .at(&options.at.iter().map(|value| plane[0].convert(*value)).collect::<Vec<_>>())
-            .settings(options.settings.unwrap_or_else(equilibrium_settings))
-            .observer(|point| observer(convert(&plane, point.values)))
-            .run()?;
-        let mut points = branch.points;
-        for point in &mut points {
-            if model.has_no_first_lyapunov(&point.values) {
-                point.first_lyapunov = None;
-                if point.label.is_some_and(|label| label.kind == SpecialKind::GeneralizedHopf) {
-                    (point.label, point.special) = (None, None);
-                }
-            }
-            point.state = model.full_state(&point.state, &point.values);
-            point.values = convert(&plane, point.values);
-            if let Some(special) = &mut point.special {
-                special.state.clone_from(&point.state);
-                special.location_error = convert_errors(&plane, point.values, special.location_error);
-                special.values = point.values;
-                special.parameters = point.values.to_vec();
-            }
-        }
-        let stops = branch.stops.map(|stop| stop.map(|stop| convert_stop(&plane, stop)));
-        Ok(HopfCurve { points, stops, unlocated: convert_unlocated(&plane, branch.unlocated) })
+        motion_curve(start.curve(&model), &model, plane, options, &mut observer)
     }
 }
 
 impl Wheel {
+    /// The curve of uniform motions through one of this wheel, in all states, on which a quantity keeps a value.
+    ///
+    /// `observer` is told both values at every point found and may end the run.
+    ///
+    /// # Errors
+    /// As [`HopfPoint::curve`].
+    ///
+    /// ```
+    /// use kingpin::{Key, Wheel, branches::{Along, CurveOptions, MotionMonitor}};
+    /// use std::ops::ControlFlow;
+    /// // Uniform motions with the caster at one angle.
+    /// let wheel = Wheel::default();
+    /// let motion = wheel.uniform_motion()?;
+    /// let plane = [Along::new(Key::L, 0.05, 0.15)?, Along::new(Key::TurningRadius, 0.5, 2.0)?];
+    /// let angle = MotionMonitor::new("psi", |_: &Wheel, state: &[f64]| Some(state[2]));
+    /// let curve = wheel.motion_curve_holding(&angle, motion.psi(), &motion.states(), plane, &CurveOptions::default(), |_| {
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert!(curve.points.iter().all(|point| (point.state[2] - motion.psi()).abs() < 1e-9));
+    /// # Ok::<(), kingpin::KingpinError>(())
+    /// ```
+    pub fn motion_curve_holding(
+        &self,
+        held: &MotionMonitor<[f64]>,
+        value: f64,
+        state: &[f64],
+        plane: [Along; 2],
+        options: &CurveOptions,
+        mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
+    ) -> Result<MotionCurve, KingpinError> {
+        let (model, values) = self.in_plane(plane)?;
+        let held = held.held(&model, value);
+        let curve =
+            EquilibriumLocus::of(&model).from_held_equilibrium(held, &model.free_state(state), &values);
+        motion_curve(curve, &model, plane, options, &mut observer)
+    }
+
     /// The curve of special cycles through one of this wheel: folds, period doublings or torus bifurcations in two parameters.
     ///
     /// `observer` is told both values at every point found and may end the run.
@@ -153,22 +182,41 @@ impl Wheel {
         options: &CurveOptions,
         mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
     ) -> Result<CycleCurve, KingpinError> {
-        self.cycle_curve_told_to(kind, orbit, plane, options, &mut observer)
+        self.cycle_curve_from(&CycleStart::Special(kind, orbit), plane, options, &mut observer)
     }
 
-    /// [`cycle_curve`](Self::cycle_curve), compiled once and not for every observer.
-    fn cycle_curve_told_to(
+    /// The curve of cycles through one of this wheel on which a quantity keeps a value.
+    ///
+    /// `observer` is told both values at every point found and may end the run.
+    ///
+    /// # Errors
+    /// As [`HopfPoint::curve`].
+    pub fn cycle_curve_holding(
         &self,
-        kind: SpecialKind,
+        held: &MotionMonitor<Orbit>,
+        value: f64,
         orbit: &Orbit,
+        plane: [Along; 2],
+        options: &CurveOptions,
+        mut observer: impl FnMut([f64; 2]) -> ControlFlow<()>,
+    ) -> Result<CycleCurve, KingpinError> {
+        self.cycle_curve_from(&CycleStart::Holding(held, value, orbit), plane, options, &mut observer)
+    }
+
+    /// A curve of cycles, compiled once and not for every observer.
+    fn cycle_curve_from(
+        &self,
+        start: &CycleStart<'_>,
         plane: [Along; 2],
         options: &CurveOptions,
         observer: &mut dyn FnMut([f64; 2]) -> ControlFlow<()>,
     ) -> Result<CycleCurve, KingpinError> {
         let (model, values) = self.in_plane(plane)?;
+        let border = self.border_of_cycles();
+        let (CycleStart::Special(_, orbit) | CycleStart::Holding(.., orbit)) = start;
         model.check_forwards(orbit, &values)?;
         let curve = CycleLocus::of(&model);
-        let curve = match self.border_of_cycles() {
+        let curve = match border {
             Some((words, end)) => {
                 let to_border =
                     |point: &CycleLocusPoint| model.distance_from_border(&point.orbit, &point.values);
@@ -176,8 +224,17 @@ impl Wheel {
             }
             None => curve,
         };
+        let monitors = options.cycle_monitors.iter().map(|monitor| {
+            monitor.on_cycles(&model, |point: &CycleLocusPoint| (&point.orbit, point.values.to_vec()))
+        });
+        let curve = monitors.fold(curve, CycleLocus::monitor);
+        let curve = match start {
+            CycleStart::Special(kind, orbit) => curve.from_cycle(*kind, orbit, &values),
+            CycleStart::Holding(held, value, orbit) => {
+                curve.from_held_cycle(held.held(&model, *value), orbit, &values)
+            }
+        };
         let branch = curve
-            .from_cycle(kind, orbit, &values)
             .along(plane[0].followed().name(), plane[0].range())
             .and(plane[1].followed().name(), plane[1].range())
             .at(&options.at.iter().map(|value| plane[0].convert(*value)).collect::<Vec<_>>())
@@ -191,9 +248,20 @@ impl Wheel {
             point.values = convert(&plane, point.values);
             point.location_error =
                 point.location_error.map(|errors| convert_errors(&plane, point.values, errors));
+            point.monitors.drain(..usize::from(border.is_some()).min(point.monitors.len()));
         }
-        let stops = branch.stops.map(|stop| stop.map(|stop| convert_stop(&plane, stop)));
-        Ok(CycleCurve { kind, points, stops, unlocated: convert_unlocated(&plane, branch.unlocated) })
+        let asked_for = options.cycle_monitors.iter().map(MotionMonitor::name);
+        let monitors = border.iter().map(|(words, _)| *words).chain(asked_for).map(str::to_owned).collect();
+        Ok(CycleCurve {
+            kind: match start {
+                CycleStart::Special(kind, _) => Some(*kind),
+                CycleStart::Holding(..) => None,
+            },
+            points,
+            stops: branch.stops.map(|stop| stop.map(|stop| convert_stop(&plane, stop))),
+            unlocated: convert_unlocated(&plane, branch.unlocated),
+            monitors,
+        })
     }
 
     /// The vector field with two parameters active, and the wheel's own values of those that are followed.
@@ -210,8 +278,53 @@ impl Wheel {
     }
 }
 
+/// A curve of uniform motions from its start on, in all states and in values of the keys.
+fn motion_curve(
+    curve: EquilibriumLocus<'_>,
+    model: &RollingModel,
+    plane: [Along; 2],
+    options: &CurveOptions,
+    observer: &mut dyn FnMut([f64; 2]) -> ControlFlow<()>,
+) -> Result<MotionCurve, KingpinError> {
+    let monitors = options
+        .motion_monitors
+        .iter()
+        .map(|monitor| monitor.on_motions(model, |point: &LocusPoint| (&point.state, point.values.to_vec())));
+    let branch = monitors
+        .fold(curve, EquilibriumLocus::monitor)
+        .along(plane[0].followed().name(), plane[0].range())
+        .and(plane[1].followed().name(), plane[1].range())
+        .at(&options.at.iter().map(|value| plane[0].convert(*value)).collect::<Vec<_>>())
+        .settings(options.settings.unwrap_or_else(equilibrium_settings))
+        .observer(|point| observer(convert(&plane, point.values)))
+        .run()?;
+    let mut points = branch.points;
+    for point in &mut points {
+        if model.has_no_first_lyapunov(&point.values) {
+            point.first_lyapunov = None;
+            if point.label.is_some_and(|label| label.kind == SpecialKind::GeneralizedHopf) {
+                (point.label, point.special) = (None, None);
+            }
+        }
+        point.state = model.full_state(&point.state, &point.values);
+        point.values = convert(&plane, point.values);
+        if let Some(special) = &mut point.special {
+            special.state.clone_from(&point.state);
+            special.location_error = convert_errors(&plane, point.values, special.location_error);
+            special.values = point.values;
+            special.parameters = point.values.to_vec();
+        }
+    }
+    Ok(MotionCurve {
+        points,
+        stops: branch.stops.map(|stop| stop.map(|stop| convert_stop(&plane, stop))),
+        unlocated: convert_unlocated(&plane, branch.unlocated),
+        monitors: options.motion_monitors.iter().map(|monitor| monitor.name().to_owned()).collect(),
+    })
+}
+
 fn convert(plane: &[Along; 2], values: [f64; 2]) -> [f64; 2] {
-    [plane[0].convert(values[0]), plane[1].convert(values[1])]
+    [plane[0].told(values[0]), plane[1].told(values[1])]
 }
 
 fn convert_errors(plane: &[Along; 2], values: [f64; 2], errors: [f64; 2]) -> [f64; 2] {

@@ -1,9 +1,9 @@
 //! Hopf points of the uniform motion: where shimmy is born.
 
 use super::birth::Birth;
-use super::{Along, FORWARD_MONITOR, STANDING};
+use super::{Along, FORWARD_MONITOR, MotionMonitor, STANDING};
 use crate::tyre::Onset;
-use crate::{KingpinError, Tyre, UniformMotion, Wheel};
+use crate::{KingpinError, RollingModel, Tyre, UniformMotion, Wheel};
 use arclength::branch::{Criticality, Monitor};
 use arclength::continuation::{Settings, Stop, Wording};
 use arclength::control::Control;
@@ -78,7 +78,7 @@ pub struct MotionBranch {
     /// The motions, from the lower end of the interval to the upper one where the branch does not turn; `value` is a value of
     /// the key and `state` is in [all states](Wheel::states); the stability is that of [`UniformMotion::stability`], which does not count
     /// a longitudinal motion without damping. What is known of special points is as the continuation found it, which
-    /// follows `1/r` in place of `r`.
+    /// follows `1/r` in place of `r`. Monitors are those of the options, in their order.
     pub motions: Vec<EquilibriumPoint>,
     /// The Hopf points in ascending order of the parameter.
     pub hopf_points: Vec<HopfPoint>,
@@ -86,6 +86,8 @@ pub struct MotionBranch {
     pub stops: [Option<Stop<EquilibriumEnd>>; 2],
     /// The parameter and its interval.
     pub along: Along,
+    /// Words for the monitors, in the order in which a [`Stop::Monitor`] counts them.
+    pub monitors: Vec<String>,
 }
 
 impl MotionBranch {
@@ -98,7 +100,8 @@ impl MotionBranch {
     /// Why the branch ends at its first, `0`, or last motion, in words; nothing where that is not known.
     pub fn end_in_words(&self, end: usize) -> Option<String> {
         let key = self.along.key();
-        let wording = Wording::of([(key.name(), Some(key.unit()))]).monitors([FORWARD_MONITOR]);
+        let wording =
+            Wording::of([(key.name(), Some(key.unit()))]).monitors(self.monitors.iter().map(String::as_str));
         Some(self.stops.get(end)?.as_ref()?.explain(&wording).cause)
     }
 }
@@ -129,6 +132,37 @@ impl From<MotionBranch> for HopfSearch {
     }
 }
 
+/// How a branch of uniform motions is computed.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct MotionOptions {
+    /// Settings of the continuation.
+    pub settings: Settings,
+    /// What is recorded along the branch.
+    pub monitors: Vec<MotionMonitor<[f64]>>,
+}
+
+impl Default for MotionOptions {
+    /// The settings of the engine for equilibria, and no monitors.
+    fn default() -> Self {
+        Self { settings: equilibrium_settings(), monitors: Vec::new() }
+    }
+}
+
+impl MotionOptions {
+    /// The same with other settings of the continuation.
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
+    }
+
+    /// The same with one more quantity that is recorded along the branch.
+    pub fn monitor(mut self, monitor: MotionMonitor<[f64]>) -> Self {
+        self.monitors.push(monitor);
+        self
+    }
+}
+
 impl Wheel {
     /// The Hopf points of the uniform motion along a parameter.
     ///
@@ -143,7 +177,7 @@ impl Wheel {
     /// # Ok::<(), kingpin::KingpinError>(())
     /// ```
     pub fn hopf_points(&self, along: Along, control: &Control<'_>) -> Result<HopfSearch, KingpinError> {
-        let branch = self.motion_branch(along, equilibrium_settings(), |_| control.flow())?;
+        let branch = self.motion_branch(along, &MotionOptions::default(), |_| control.flow())?;
         control.check()?;
         Ok(branch.into())
     }
@@ -159,17 +193,17 @@ impl Wheel {
     pub fn motion_branch(
         &self,
         along: Along,
-        settings: Settings,
+        options: &MotionOptions,
         mut observer: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<MotionBranch, KingpinError> {
-        self.motion_branch_told_to(along, settings, &mut observer)
+        self.motion_branch_told_to(along, options, &mut observer)
     }
 
     /// [`motion_branch`](Self::motion_branch), compiled once and not for every observer.
     fn motion_branch_told_to(
         &self,
         along: Along,
-        settings: Settings,
+        options: &MotionOptions,
         observer: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<MotionBranch, KingpinError> {
         let mut first_error = None;
@@ -191,66 +225,23 @@ impl Wheel {
                 let forwards = |point: &EquilibriumPoint| model.speed_ratio(&point.state, &[point.value]);
                 equilibria.monitor(Monitor::new(FORWARD_MONITOR, forwards).until(&[STANDING]))
             };
-            let branch = equilibria
+            let asked_for = options.monitors.iter().map(|monitor| {
+                monitor.on_motions(&model, |point: &EquilibriumPoint| (&point.state, vec![point.value]))
+            });
+            let branch = asked_for
+                .fold(equilibria, Equilibria::monitor)
                 .start(&model.free_state(&motion.states()))
                 .parameters(&[candidate])
                 .along(&key.to_string(), along.range())
-                .settings(settings)
+                .settings(options.settings)
                 .observer(|point| observer(along.convert(point.value)))
                 .run()?;
             let mut motions = branch.points;
-            let mut onsets: Vec<(f64, Onset)> = Vec::new();
-            for motion in &mut motions {
-                if let Some(SpecialPoint::Hopf(point)) = motion.special.as_deref_mut()
-                    && let Some(onset) = model.onset(point)
-                {
-                    (point.first_lyapunov, point.first_lyapunov_error, point.c1_real) = (None, None, None);
-                    point.criticality = onset.criticality;
-                    onsets.push((point.value, onset));
-                }
-            }
-            let onset_at =
-                |value: f64| onsets.iter().find(|(place, _)| *place == value).map(|(_, onset)| *onset);
-            let mut hopf_points = motions
-                .iter()
-                .filter_map(|motion| match motion.special.as_deref() {
-                    Some(SpecialPoint::Hopf(point)) => Some(point),
-                    _ => None,
-                })
-                .map(|point| {
-                    let wheel = wheel.with(key, point.value)?;
-                    let state = model.full_state(&point.state, &[point.value]);
-                    Ok(HopfPoint {
-                        value: along.convert(point.value),
-                        location_error: along.convert_error(along.convert(point.value), point.location_error),
-                        frequency: point.frequency,
-                        first_lyapunov: point.first_lyapunov,
-                        psi_max_slope: onset_at(point.value).and_then(|onset| onset.psi_max_slope),
-                        criticality: point.criticality,
-                        birth: Birth::at(point, &wheel.motion_in(&state), along)?,
-                        state,
-                        wheel,
-                        detail: point.clone(),
-                        onset: onset_at(point.value),
-                    })
-                })
-                .collect::<Result<Vec<_>, KingpinError>>()?;
-            hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
+            let hopf_points = hopf_points_among(&mut motions, &model, along)?;
             if motions.is_empty() {
                 continue;
             }
-            for motion in &mut motions {
-                let state = model.full_state(&motion.state, &[motion.value]);
-                motion.stability = wheel.with(key, motion.value)?.motion_in(&state).stability();
-                motion.state = state;
-                motion.value = along.convert(motion.value);
-                if let Some(SpecialPoint::Degenerate { value, location_error, .. }) =
-                    motion.special.as_deref_mut()
-                {
-                    *value = motion.value;
-                    *location_error = along.convert_error(motion.value, *location_error);
-                }
-            }
+            complete(&mut motions, &wheel, &model, along)?;
             let mut stops = branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop)));
             if let [first, .., last] = &motions[..]
                 && first.value > last.value
@@ -258,9 +249,70 @@ impl Wheel {
                 motions.reverse();
                 stops.reverse();
             }
-            return Ok(MotionBranch { motions, hopf_points, stops, along });
+            let border = (self.tyre() != Tyre::Rigid).then_some(FORWARD_MONITOR);
+            let asked_for = options.monitors.iter().map(MotionMonitor::name);
+            let monitors = border.into_iter().chain(asked_for).map(str::to_owned).collect();
+            return Ok(MotionBranch { motions, hopf_points, stops, along, monitors });
         }
         let (start, end) = along.ends();
         Err(first_error.unwrap_or(KingpinError::EmptyInterval { key: along.key(), start, end }))
     }
+}
+
+/// The Hopf points among motions as the continuation found them, in ascending order of the parameter. Those that have no first Lyapunov
+/// coefficient lose the one that the continuation computed.
+fn hopf_points_among(
+    motions: &mut [EquilibriumPoint],
+    model: &RollingModel,
+    along: Along,
+) -> Result<Vec<HopfPoint>, KingpinError> {
+    let mut hopf_points = Vec::new();
+    for motion in motions {
+        let Some(SpecialPoint::Hopf(point)) = motion.special.as_deref_mut() else { continue };
+        let onset = model.onset(point);
+        if let Some(onset) = onset {
+            (point.first_lyapunov, point.first_lyapunov_error, point.c1_real) = (None, None, None);
+            point.criticality = onset.criticality;
+        }
+        let wheel = model.wheel_at(&[point.value])?;
+        let state = model.full_state(&point.state, &[point.value]);
+        hopf_points.push(HopfPoint {
+            value: along.told(point.value),
+            location_error: along.convert_error(along.convert(point.value), point.location_error),
+            frequency: point.frequency,
+            first_lyapunov: point.first_lyapunov,
+            psi_max_slope: onset.and_then(|onset| onset.psi_max_slope),
+            criticality: point.criticality,
+            birth: Birth::at(point, &wheel.motion_in(&state), along)?,
+            state,
+            wheel,
+            detail: point.clone(),
+            onset,
+        });
+    }
+    hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
+    Ok(hopf_points)
+}
+
+/// Gives motions as the continuation found them in all states and in values of the key, with the stability of the uniform motion and the
+/// monitors that were asked for.
+fn complete(
+    motions: &mut [EquilibriumPoint],
+    wheel: &Wheel,
+    model: &RollingModel,
+    along: Along,
+) -> Result<(), KingpinError> {
+    let own_monitors = usize::from(wheel.tyre() != Tyre::Rigid);
+    for motion in motions {
+        let state = model.full_state(&motion.state, &[motion.value]);
+        motion.stability = model.wheel_at(&[motion.value])?.motion_in(&state).stability();
+        motion.state = state;
+        motion.value = along.told(motion.value);
+        motion.monitors.drain(..own_monitors.min(motion.monitors.len()));
+        if let Some(SpecialPoint::Degenerate { value, location_error, .. }) = motion.special.as_deref_mut() {
+            *value = motion.value;
+            *location_error = along.convert_error(motion.value, *location_error);
+        }
+    }
+    Ok(())
 }

@@ -7,11 +7,13 @@ mod birth;
 mod curves;
 mod cycles;
 mod hopf;
+mod motion_monitor;
 
 pub use birth::{Birth, Mode};
-pub use curves::{CurveOptions, CycleCurve, HopfCurve};
+pub use curves::{CurveOptions, CycleCurve, MotionCurve};
 pub use cycles::{CycleOptions, WheelCycles};
-pub use hopf::{HopfPoint, HopfSearch, MotionBranch};
+pub use hopf::{HopfPoint, HopfSearch, MotionBranch, MotionOptions};
+pub use motion_monitor::MotionMonitor;
 
 use crate::{Key, KingpinError, Tyre, Wheel};
 use arclength::branch::WithParameters;
@@ -114,6 +116,12 @@ impl Along {
     /// A value of the key as a value of the parameter that is followed, and back: both are the same map.
     pub(crate) fn convert(&self, value: f64) -> f64 {
         if self.key == Key::TurningRadius { value.recip() } else { value }
+    }
+
+    /// A value of the parameter that is followed as one of the key: where it lies beyond the interval by an error of the computation, the end.
+    pub(crate) fn told(&self, followed: f64) -> f64 {
+        let range = self.range();
+        self.convert(if followed.is_nan() { followed } else { followed.clamp(*range.start(), *range.end()) })
     }
 
     /// A value of the key that was asked for as it is found on a branch: a radius has gone through `1/r` and back.

@@ -138,7 +138,7 @@ pub(super) fn identified(
     let information = Information::of(minimum, &minimum.free(bounds));
     let degrees_of_freedom = degrees_of_freedom(problem, minimum, bounds);
     let freedom = if known { f64::INFINITY } else { degrees_of_freedom as f64 };
-    let distribution = distribution(problem, minimum, &intervals, freedom);
+    let distribution = distribution(problem, minimum, bounds, &intervals, freedom);
     let groups: Vec<Vec<usize>> = information.undetermined();
     let is_undetermined = |index: usize| groups.iter().any(|group| group.contains(&index));
     let estimates =
@@ -148,13 +148,9 @@ pub(super) fn identified(
             standard_error: information.covariance(index, index).map(f64::sqrt),
             interval,
         });
-    let correlation = |one: usize, other: usize| {
-        let [both, first, second] = [(one, other), (one, one), (other, other)];
-        let covariance = |(one, other)| information.covariance(one, other);
-        Some(covariance(both)? / (covariance(first)? * covariance(second)?).sqrt())
-    };
-    let correlations: Vec<Vec<Option<f64>>> =
-        (0..count).map(|row| (0..count).map(|column| correlation(row, column)).collect()).collect();
+    let correlations: Vec<Vec<Option<f64>>> = (0..count)
+        .map(|row| (0..count).map(|column| information.correlation(row, column)).collect())
+        .collect();
     let mut not_separated: Vec<NotSeparated> = Vec::new();
     for group in &groups {
         let keys: Vec<Key> = group.iter().filter_map(|&index| problem.keys.get(index).copied()).collect();
@@ -162,12 +158,13 @@ pub(super) fn identified(
             not_separated.push(NotSeparated { keys, correlation: None });
         }
     }
-    for (row, entries) in correlations.iter().enumerate() {
-        for (column, entry) in entries.iter().enumerate().skip(row + 1) {
-            if entry.is_some_and(|correlation| correlation.abs() > HARDLY_SEPARATED) {
-                let keys = vec![problem.keys[row], problem.keys[column]];
-                not_separated.push(NotSeparated { keys, correlation: *entry });
-            }
+    // One that its bound holds may still be told apart from another one or not.
+    let all = Information::of(minimum, &(0..minimum.unknowns.len()).collect::<Vec<usize>>());
+    for (row, column) in (0..count).flat_map(|row| (row + 1..count).map(move |column| (row, column))) {
+        let correlation = all.correlation(row, column);
+        if correlation.is_some_and(|correlation| correlation.abs() > HARDLY_SEPARATED) {
+            let keys = vec![problem.keys[row], problem.keys[column]];
+            not_separated.push(NotSeparated { keys, correlation });
         }
     }
     let sum = minimum.sum_of_squares();
@@ -222,10 +219,12 @@ fn fitted_records(
     Ok(fitted)
 }
 
-/// The distribution of the parameters, those at a bound included, each as wide as its interval.
+/// The distribution of the parameters, those at a bound included, each as wide as its interval; where a bound holds one of them
+/// intervals are cut off by it, and widths are those of the quadratic model.
 fn distribution(
     problem: &Problem<'_>,
     minimum: &Minimum,
+    bounds: &[[f64; 2]],
     intervals: &[Interval],
     freedom: f64,
 ) -> Option<JointDistribution> {
@@ -233,9 +232,13 @@ fn distribution(
     let information = Information::of(minimum, &all);
     let step = information.newton_step(&minimum.residuals);
     let count = problem.keys.len();
+    let is_held = minimum.free(bounds).len() < minimum.unknowns.len();
     // Where the model is not nearly linear, the interval says more than the standard error.
     let stretch = |index: usize| {
         let Interval { lower, upper, reaches_lower_bound, method } = intervals[index];
+        if is_held {
+            return Some(1.0);
+        }
         let value = minimum.unknowns[index];
         let half = match (lower, upper) {
             (_, Some(upper)) if reaches_lower_bound => upper - value,

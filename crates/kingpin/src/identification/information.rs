@@ -59,6 +59,12 @@ impl Information {
         Some(sum / (self.scales[one] * self.scales[other]))
     }
 
+    /// The correlation of two unknowns; nothing where one of them is held, or is not determined.
+    pub(super) fn correlation(&self, one: usize, other: usize) -> Option<f64> {
+        let [first, second] = [self.covariance(one, one)?, self.covariance(other, other)?];
+        Some(self.covariance(one, other)? / (first * second).sqrt())
+    }
+
     /// Groups of unknowns of which only combinations are determined.
     pub(super) fn undetermined(&self) -> Vec<Vec<usize>> {
         let directions = (0..self.unknowns.len()).filter(|&direction| !self.determines(direction));

@@ -3,8 +3,8 @@
 //! The sum of squares beyond its smallest value, in units of the variance of the noise, is `tau^2` where one parameter is held at
 //! another value and all other unknowns are fitted again (Bates and Watts, *Nonlinear Regression Analysis and Its Applications*,
 //! 1988, chapter 6); the interval has `tau` up to the quantile of Student's t. Where the model is nearly linear, its ends are the
-//! estimate and so many standard errors on both sides. Where it is not, where a bound is near, where there is no standard error and where
-//! dry friction makes the sum of squares one with kinks, the ends are sought. An interval that reaches the bound of its parameter is one-sided; its other end stays that of the interval with
+//! estimate and so many standard errors on both sides. Where it is not, where a bound is near or holds another unknown, where there is no
+//! standard error and where dry friction makes the sum of squares one with kinks, the ends are sought. An interval that reaches the bound of its parameter is one-sided; its other end stays that of the interval with
 //! two, so that it holds the truth at least as often as it says.
 
 use super::information::Information;
@@ -127,10 +127,12 @@ impl Profile<'_> {
         if let Some((error, changes)) = &self.linear {
             let half = self.half_width * error;
             let far = value - FAR_FROM_BOUND * half > low && value + FAR_FROM_BOUND * half < high;
+            // An unknown that its bound holds may leave it where this one has another value, which its standard error says nothing of.
+            let is_held = self.minimum.free(self.bounds).len() < self.minimum.unknowns.len();
             let is_linear = || {
                 Ok::<_, Interrupted>(!self.problem.has_dry_friction() && self.is_linear(changes, control)?)
             };
-            if far && (*error < WELL_KNOWN * value.abs() || is_linear()?) {
+            if far && !is_held && (*error < WELL_KNOWN * value.abs() || is_linear()?) {
                 let (lower, upper) = (Some(value - half), Some(value + half));
                 return Ok(Interval {
                     lower,

@@ -2,15 +2,14 @@
 
 use arclength::continuation::Stop;
 use arclength::control::Control;
-use arclength::equilibrium::equilibrium_settings;
-use kingpin::branches::{Along, MotionBranch};
+use kingpin::branches::{Along, MotionBranch, MotionOptions};
 use kingpin::{Key, Wheel};
 use std::ops::ControlFlow;
 
 fn followed(toml: &str, from: f64, to: f64) -> MotionBranch {
     let wheel = Wheel::from_toml(toml).unwrap();
     let along = Along::new(Key::V, from, to).unwrap();
-    wheel.motion_branch(along, equilibrium_settings(), |_| ControlFlow::Continue(())).unwrap()
+    wheel.motion_branch(along, &MotionOptions::default(), |_| ControlFlow::Continue(())).unwrap()
 }
 
 /// Behind the fold at 1.0965 m/s the equations have motions with `V1 < 0`, which are none of a tyre.

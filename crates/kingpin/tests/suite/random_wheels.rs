@@ -6,8 +6,7 @@
 use crate::judge::{self, Judgement};
 use arclength::branch::Stability;
 use arclength::control::Control;
-use arclength::equilibrium::equilibrium_settings;
-use kingpin::branches::Along;
+use kingpin::branches::{Along, MotionOptions};
 use kingpin::{Axis, Key, Plane, Wheel};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -193,7 +192,7 @@ fn hopf_points_explain_the_changes_of_stability() {
             let wheel = wheel(kind, false, straight, &parts);
             let v = wheel.get(Key::V);
             let along = Along::new(Key::V, 0.3 * v, 3.0 * v).unwrap();
-            let branch = wheel.motion_branch(along, equilibrium_settings(), |_| ControlFlow::Continue(()));
+            let branch = wheel.motion_branch(along, &MotionOptions::default(), |_| ControlFlow::Continue(()));
             let Ok(branch) = branch else { continue };
             let [low, high] = [branch.motions.first(), branch.motions.last()].map(|motion| motion.unwrap());
             let judged =

@@ -207,6 +207,14 @@ def monitors(given: Mapping[str, Any] | Iterable[str], until: Mapping[str, Any] 
     return recorded + ending
 
 
+def held(given: str | tuple[str, float] | None) -> dict[str, Any] | None:
+    """What keeps its value along a curve, perhaps with that value."""
+    if given is None:
+        return None
+    expression, values = (given, []) if isinstance(given, str) else (given[0], numbers("hold", given[1]))
+    return {"expression": expression, "at": values}
+
+
 @contextmanager
 def reported(progress: Progress | None, title: str) -> Iterator[Callable[[float | None, str | None], object] | None]:
     """What is told the progress; for ``True`` a bar on standard error, for as long as it takes (needs tqdm)."""

@@ -26,6 +26,7 @@ from ._requests import (
     Sampled,
     assignments,
     conditions,
+    held,
     interval,
     named,
     number,
@@ -39,8 +40,9 @@ from ._requests import (
     whole,
     word,
 )
+from ._requests import monitors as recorded
 from .errors import InvalidInput, Interrupted
-from .models import samples_on_disk
+from .models import Monitors, samples_on_disk
 from .results import Branch, Path, Point, Result, decided, of
 
 if TYPE_CHECKING:
@@ -294,6 +296,8 @@ class Wheel:
         self,
         along: Along,
         *,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
         steps: int = 10_000,
         finer: int = 1,
         threads: int | None = None,
@@ -301,9 +305,17 @@ class Wheel:
     ) -> HopfPoints:
         """Hopf points of the uniform motion along a parameter, ``("v", 1, 12)``, with frequency (rad/s) and first Lyapunov coefficient.
 
+        ``monitors`` are expressions in states, parameters, ``friction_force``, ``king_pin_force`` and ``damper_power`` that are recorded, or a
+        mapping to values at which a motion is wanted; ``until`` maps expressions to values at which the search ends.
+
         Raises :class:`~arclength.ComputationFailed` where there is none.
         """
-        request = {"along": _interval("along", along), "steps": whole("steps", steps), "finer": whole("finer", finer)}
+        request = {
+            "along": _interval("along", along),
+            "monitors": recorded(monitors, until),
+            "steps": whole("steps", steps),
+            "finer": whole("finer", finer),
+        }
         result: HopfPoints = self._run("hopf", request, threads, progress)
         return result
 
@@ -314,6 +326,8 @@ class Wheel:
         at: float | Iterable[float] = (),
         samples: Path | Mapping[str, Any] | None = None,
         stay: bool = False,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
         steps: int = 10_000,
         finer: int = 1,
         tolerance: float = 1e-8,
@@ -324,11 +338,13 @@ class Wheel:
         """Limit cycles along a parameter from its Hopf points there, or from ``samples`` of an orbit over one period.
 
         ``at`` are values at which cycles are wanted exactly. Each point has its multipliers, its error estimate and its forces.
+        ``monitors`` and ``until`` are as those of :meth:`hopf`, made of ``max(..)``, ``min(..)``, ``mean(..)``, ``at(.., phase)``, ``period`` and
+        parameters.
         """
         with ExitStack() as stack:
             source = None if samples is None else {"samples": stack.enter_context(samples_on_disk(samples))}
             return _cycles(
-                self, source, along, at, stay, steps, finer, tolerance, intervals, threads, progress
+                self, source, along, at, stay, monitors, until, steps, finer, tolerance, intervals, threads, progress
             )
 
     def locus(
@@ -338,6 +354,9 @@ class Wheel:
         *,
         label: str = "HB1",
         at: float | Iterable[float] = (),
+        hold: str | tuple[str, float] | None = None,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
         steps: int = 10_000,
         finer: int = 1,
         tolerance: float = 1e-8,
@@ -353,6 +372,9 @@ class Wheel:
             first,
             second,
             at=at,
+            hold=hold,
+            monitors=monitors,
+            until=until,
             steps=steps,
             finer=finer,
             tolerance=tolerance,
@@ -572,6 +594,8 @@ def _cycles(
     along: Along,
     at: float | Iterable[float],
     stay: bool,
+    monitors: Monitors,
+    until: Mapping[str, Any] | None,
     steps: int,
     finer: int,
     tolerance: float,
@@ -584,6 +608,7 @@ def _cycles(
         "along": _interval("along", along),
         "at": numbers("at", at),
         "stay": bool(stay),
+        "monitors": recorded(monitors, until),
         "steps": whole("steps", steps),
         "finer": whole("finer", finer),
         "tolerance": number("tolerance", tolerance),
@@ -605,6 +630,8 @@ class WheelPoint(Point):
         at: float | Iterable[float] = (),
         set: Mapping[str, float | str] | None = None,
         stay: bool = False,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
         steps: int = 10_000,
         finer: int = 1,
         tolerance: float = 1e-8,
@@ -616,7 +643,19 @@ class WheelPoint(Point):
         with self.branch._file() as path:
             source = {"path": path, "label": self._label()}
             return _cycles(
-                Wheel(**(set or {})), source, along, at, stay, steps, finer, tolerance, intervals, threads, progress
+                Wheel(**(set or {})),
+                source,
+                along,
+                at,
+                stay,
+                monitors,
+                until,
+                steps,
+                finer,
+                tolerance,
+                intervals,
+                threads,
+                progress,
             )
 
     def locus(
@@ -625,6 +664,9 @@ class WheelPoint(Point):
         second: Along,
         *,
         at: float | Iterable[float] = (),
+        hold: str | tuple[str, float] | None = None,
+        monitors: Monitors = (),
+        until: Mapping[str, Any] | None = None,
         steps: int = 10_000,
         finer: int = 1,
         tolerance: float = 1e-8,
@@ -632,12 +674,17 @@ class WheelPoint(Point):
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> WheelBranch:
-        """The curve of such points in two parameters: Hopf points, folds, period doublings, torus bifurcations."""
+        """The curve of such points in two parameters: Hopf points, folds, period doublings, torus bifurcations.
+
+        ``hold`` is an expression that keeps its value, perhaps with that value, along any uniform motions or cycles: ``("max(psi)", 0.3)``.
+        """
         with self.branch._file() as path:
             request = {
                 "from": {"path": path, "label": self._label()},
                 "in": [_interval("first", first), _interval("second", second)],
                 "at": numbers("at", at),
+                "hold": held(hold),
+                "monitors": recorded(monitors, until),
                 "steps": whole("steps", steps),
                 "finer": whole("finer", finer),
                 "tolerance": number("tolerance", tolerance),

@@ -18,6 +18,7 @@ from ._requests import (
     Direction,
     Method,
     Progress,
+    held,
     interval,
     monitors,
     named,
@@ -715,16 +716,12 @@ class ModelPoint(Point):
         """
         from ._requests import monitors as recorded
 
-        held = None
-        if hold is not None:
-            expression, values = (hold, []) if isinstance(hold, str) else (hold[0], numbers("hold", hold[1]))
-            held = {"expression": expression, "at": values}
         with self.branch._file() as path:
             request = {
                 "from": {"path": path, "label": self._label()},
                 "in": [interval("first", first), interval("second", second)],
                 "at": numbers("at", at),
-                "hold": held,
+                "hold": held(hold),
                 "monitors": recorded(monitors, until),
                 "steps": whole("steps", steps),
                 "finer": whole("finer", finer),

@@ -156,3 +156,43 @@ fn branch_points_along_a_family_of_a_conservative_system_are_those_of_hills_equa
         assert!(family.unlocated.is_empty(), "{:?}", family.unlocated);
     }
 }
+
+/// A circle with `r^2 = mu` beside which `z^2 = mu - 1/2` grows: a pitchfork of cycles, on which `z` does not vary along the cycle.
+struct Pitchfork;
+
+impl VectorField for Pitchfork {
+    fn state_names(&self) -> Vec<String> {
+        ["x", "y", "z"].map(str::to_owned).into()
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["mu".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let square = s[0] * s[0] + s[1] * s[1];
+        d[0] = s[0] * (p[0] - square) - s[1];
+        d[1] = s[1] * (p[0] - square) + s[0];
+        d[2] = s[2] * (square - s[2] * s[2] - 0.5);
+    }
+}
+
+#[test]
+fn the_branch_that_leaves_a_pitchfork_of_cycles_is_no_neutral_family() {
+    let range = -0.5..=1.0;
+    let equilibria = Equilibria::of(&Pitchfork).parameters(&[-0.1]).along("mu", range.clone()).run().unwrap();
+    let hopf = equilibria.hopf_points().next().unwrap();
+    let circles = hopf.cycles(&Pitchfork).along("mu", range.clone()).run().unwrap();
+    let branch_points: Vec<_> = circles
+        .points
+        .iter()
+        .filter(|point| point.label.is_some_and(|label| label.kind == SpecialKind::BranchPointOfCycles))
+        .collect();
+    assert_eq!(branch_points.len(), 1);
+    let other = branch_points[0].other(&Pitchfork).unwrap().along("mu", range).run().unwrap();
+    for point in &other.points {
+        assert!(!point.neutral, "mu = {}", point.value);
+        assert!((point.max[2].powi(2) - (point.value - 0.5)).abs() < 1e-9);
+        assert!(point.value < 0.501 || point.stable == Some(true), "mu = {}", point.value);
+    }
+    let [first, .., last] = &other.points[..] else { panic!("no branch") };
+    assert!(first.value == 1.0 && last.value == 1.0 && first.max[2] * last.max[2] < 0.0);
+}

@@ -1,7 +1,8 @@
 //! Cycles of random fields from random starts: whatever comes out is finite and within its tolerance, or a clear error.
 
-use arclength::continuation::Settings;
-use arclength::cycle::{CycleBranch, CycleStart, Cycles, Orbit, Resolution};
+use arclength::continuation::{Settings, Stop};
+use arclength::cycle::{CycleBranch, CycleEnd, CycleStart, Cycles, Orbit, Resolution};
+use arclength::equilibrium::Equilibria;
 use arclength::{Error, Scalar, VectorField};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -140,5 +141,47 @@ fn first_cycles_are_sized_by_the_field_and_not_by_rounding() {
             Cycles::of(&field, start).parameters(&[0.0]).along("m", -0.5..=0.2).at(&[0.01]).run().unwrap();
         let found = branch.points.iter().find(|cycle| cycle.value == 0.01).unwrap();
         assert!((found.max[0] / (0.1 * unit) - 1.0).abs() < 1e-8, "{unit}: {}", found.max[0]);
+    }
+}
+
+/// Predator and prey with an Allee effect: its cycles come ever nearer to a heteroclinic one, on which the predator is zero.
+struct AlleeEffect;
+
+impl VectorField for AlleeEffect {
+    fn state_names(&self) -> Vec<String> {
+        vec!["prey".into(), "predator".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["mortality".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let square = s[0] * s[0];
+        let eaten = square * s[1] / (square + 0.09);
+        d[0] = s[0] * (s[0] - 0.1) * (-s[0] + 1.0) - eaten;
+        d[1] = eaten * 0.6 - p[0] * s[1];
+    }
+}
+
+#[test]
+fn a_branch_does_not_creep_on_for_ever_where_a_state_comes_too_near_to_zero() {
+    let equilibria = Equilibria::of(&AlleeEffect)
+        .start(&[0.4, 0.2])
+        .parameters(&[0.4])
+        .along("mortality", 0.02..=0.6)
+        .run()
+        .unwrap();
+    let hopf = equilibria.hopf_points().next().expect("a Hopf point");
+    let branch = hopf.cycles(&AlleeEffect).along("mortality", 0.02..=0.6).run().unwrap();
+    assert!(branch.points.len() < 400, "{} points", branch.points.len());
+    let last = branch.points.last().unwrap();
+    assert!(last.min[1] > 0.0);
+    match &branch.stops[1] {
+        Some(Stop::Problem(CycleEnd::NearZero { state, smallest, .. })) => {
+            assert_eq!(state, "predator");
+            assert!((smallest / last.min[1] - 1.0).abs() < 1e-12);
+        }
+        // Where the last digits allow, the heteroclinic orbit is seen before.
+        Some(Stop::Problem(CycleEnd::PeriodUnbounded { .. })) => {}
+        other => panic!("{other:?}"),
     }
 }

@@ -433,3 +433,36 @@ fn clusters_of_equal_multipliers_in_a_symmetric_ring() {
         assert!((found.log_modulus - expected).abs() < 1e-12, "{} {expected}", found.log_modulus);
     }
 }
+
+#[test]
+fn clusters_of_nearly_equal_multipliers_are_found_whatever_the_coordinates() {
+    // Multipliers of the synchronous cycle of six coupled oscillators, next to the Hopf point where it is born: quadruples that differ
+    // in the last digits. In some coordinates rounding errors of the sweeps themselves keep them coupled.
+    let decay = |j: usize| 0.6 * TAU * (1.0 - (TAU * j as f64 / 6.0).cos());
+    let mut random = Random(29);
+    for case in 0..400 {
+        let count = 8 + case % 20;
+        let split = 1e-6 * (case + 1) as f64;
+        let logarithms: Vec<f64> =
+            [0, 1, 2, 3, 4, 5].iter().flat_map(|&j| [-decay(j), -decay(j) - split]).skip(1).collect();
+        let n = logarithms.len();
+        let frames: Vec<Vec<f64>> = (0..count).map(|_| random.orthogonal(n, PI)).collect();
+        let mut part = vec![0.0; n * n];
+        for (entry, logarithm) in part.iter_mut().step_by(n + 1).zip(&logarithms) {
+            *entry = (logarithm / count as f64).exp();
+        }
+        let factors: Vec<f64> = (0..count)
+            .flat_map(|index| {
+                let changed = product(&part, &transposed(&frames[index], n), n);
+                product(&frames[(index + 1) % count], &changed, n)
+            })
+            .collect();
+        let found = multipliers(&factors, n, count).unwrap();
+        let mut expected = logarithms;
+        expected.sort_by(|a, b| b.total_cmp(a));
+        for (found, expected) in found.iter().zip(expected) {
+            let error = (found.log_modulus - expected).abs().max(found.argument.abs());
+            assert!(error < 1e-11, "case {case}: {found:?}, not {expected}");
+        }
+    }
+}

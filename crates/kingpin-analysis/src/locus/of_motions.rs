@@ -1,4 +1,4 @@
-//! A curve of Hopf points of a wheel as a result.
+//! A curve of uniform motions of a wheel as a result: of Hopf points, or of those on which a quantity keeps its value.
 
 use crate::along::ParameterPlane;
 use crate::description;
@@ -7,18 +7,18 @@ use crate::parameters::{parameters_of, wheel_of};
 use crate::states::named_state;
 use arclength::branch::SpecialKind;
 use arclength_analysis::Origin;
-use arclength_analysis::locus::EquilibriumCurve;
-use kingpin::branches::HopfCurve;
+use arclength_analysis::locus::{EquilibriumCurve, Quantities};
+use kingpin::branches::MotionCurve;
 use kingpin::{KingpinError, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::{Columns, Parameters, Report, Schema, Story};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
-/// A curve of Hopf points of the uniform motion.
+/// A curve of uniform motions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "StoredCurve")]
-pub struct HopfLocusResult {
+pub struct MotionLocusResult {
     /// The wheel; its values of the parameters that vary are anywhere.
     #[serde(skip)]
     pub wheel: Wheel,
@@ -41,7 +41,7 @@ struct StoredCurve {
     curve: EquilibriumCurve,
 }
 
-impl TryFrom<StoredCurve> for HopfLocusResult {
+impl TryFrom<StoredCurve> for MotionLocusResult {
     type Error = KingpinError;
 
     fn try_from(StoredCurve { parameters, curve }: StoredCurve) -> Result<Self, KingpinError> {
@@ -52,22 +52,35 @@ impl TryFrom<StoredCurve> for HopfLocusResult {
     }
 }
 
-impl HopfLocusResult {
+impl MotionLocusResult {
     /// Schema of the result file.
     pub const SCHEMA: &'static str = "kingpin.locus";
 
     /// The result of a curve.
-    pub(super) fn new(wheel: Wheel, plane: ParameterPlane, from: Origin, curve: &HopfCurve) -> Self {
-        let kind = SpecialKind::Hopf;
-        let HopfCurve { points, stops, unlocated } = curve;
-        let curve =
-            EquilibriumCurve::new(Some(kind), plane.varying(), from, points, stops, unlocated, named_state);
+    pub(super) fn new(
+        wheel: Wheel,
+        plane: ParameterPlane,
+        from: Origin,
+        (kind, monitors): (Option<SpecialKind>, &[String]),
+        curve: &MotionCurve,
+    ) -> Self {
+        let MotionCurve { points, stops, unlocated, monitors: ends } = curve;
+        let quantities = Quantities { plane: plane.varying(), monitors, ends: Some(ends) };
+        let curve = EquilibriumCurve::new(kind, quantities, from, points, stops, unlocated, named_state);
         let dry_friction = NeglectedDryFriction::of(&wheel, &plane.keys());
         Self { wheel, plane, curve, dry_friction }
     }
+
+    /// What the curve consists of, in words.
+    fn name(&self) -> String {
+        match self.curve.kind {
+            Some(_) => self.curve.name(),
+            None => self.curve.name().replace("equilibria", "uniform motions"),
+        }
+    }
 }
 
-impl Report for HopfLocusResult {
+impl Report for MotionLocusResult {
     fn schema(&self) -> Schema {
         Schema::first(Self::SCHEMA)
     }
@@ -78,7 +91,7 @@ impl Report for HopfLocusResult {
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         let heading =
-            format!("curve of Hopf points at {}", description::on_lines(&self.wheel, &self.plane.keys()));
+            format!("curve of {} at {}", self.name(), description::on_lines(&self.wheel, &self.plane.keys()));
         self.curve.write_table(&heading, out)?;
         NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
     }
@@ -90,7 +103,7 @@ impl Report for HopfLocusResult {
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
         let [one, two] = self.plane.keys();
         let description =
-            format!("Hopf points in {one} and {two} at {}", description::of(&self.wheel, &[one, two]));
+            format!("{} in {one} and {two} at {}", self.name(), description::of(&self.wheel, &[one, two]));
         let [first, second] = self.plane.labels();
         Ok(Some(self.curve.figure(&description, [&first, &second], self.plane.scales())))
     }

@@ -5,7 +5,7 @@ use clap::Args;
 
 /// What is recorded along a branch, and where it ends for that.
 #[derive(Args, Debug)]
-pub(crate) struct MonitorOptions {
+pub struct MonitorOptions {
     /// Record an expression along the branch or curve, and give points where it has these values; on cycles with max(..), min(..),
     /// mean(..), at(.., PHASE), period and parameters, such as "max(x)-min(x)=1,2"; the phase from 0 to 1 is counted from
     /// the place where the first state is largest
@@ -19,7 +19,7 @@ pub(crate) struct MonitorOptions {
 
 impl MonitorOptions {
     /// What is asked for.
-    pub(crate) fn asked(&self) -> Vec<Monitored> {
+    pub fn asked(&self) -> Vec<Monitored> {
         self.monitor.iter().cloned().chain(self.until.iter().cloned().map(Monitored::ending)).collect()
     }
 }
