@@ -58,7 +58,9 @@ pub(crate) fn settled_orbit(
     settled.accuracy.absolute = motion.sizes.iter().map(|size| TOLERANCE * size.max(TOLERANCE)).collect();
     let not_back = || Error::from(arclength::Error::NoReturn { duration });
     let between = settled.back(&motion).ok_or_else(not_back)?;
-    let finer = even(between[0], between[1], FINER);
+    // A little more on both sides: the passage may be at a sample.
+    let margin = (between[1] - between[0]) / FINER as f64;
+    let finer = even((between[0] - margin).max(0.0), between[1] + margin, FINER);
     let again = settled.follow(&finer)?;
     let period = settled.back_at(&again).ok_or_else(not_back)?;
     // The unit time begins in the middle of the longest time without a break.
@@ -118,7 +120,8 @@ impl Settled<'_> {
     fn passages(&self, motion: &Motion<'_>) -> Vec<(usize, f64)> {
         let (times, states) = (&motion.samples.times, &motion.samples.states);
         let positions: Vec<f64> = states.iter().map(|state| self.position(state)).collect();
-        (1..states.len().saturating_sub(1))
+        // At the start itself the position is zero.
+        (0..states.len().saturating_sub(1))
             .filter(|&index| {
                 times[index] < times[index + 1] && positions[index] < 0.0 && positions[index + 1] >= 0.0
             })

@@ -110,3 +110,21 @@ fn a_ball_bounces_on_a_table_from_a_fold_on() {
     let exact = 1.962 * 0.4 / (2.0 * 1.6) / (2.0 * std::f64::consts::PI);
     assert!((number(&fold["value"]) - exact).abs() < 1e-10, "{} instead of {exact}", fold["value"]);
 }
+
+#[test]
+fn a_settled_motion_starts_cycles_wherever_it_was_stopped() {
+    // With 300 the time of a sample is a multiple of the period, to a millionth.
+    let text = "par I=2\nv'=-v+.2*exp((v-1)/.2)+I-w\nw'=(.2*v-w)/8\nglobal 1 v-3 {v=.2;w=w+.3}\ndone\n";
+    let folder = folder(text);
+    for duration in [100, 300, 301, 600] {
+        folder.succeed(&format!("simulate model.ode --duration {duration} -o h.json -q"));
+        let cycles = folder.json("cycles --from h.json:END --along I=1.6:4 --at 2 --steps 1");
+        let point = points(&cycles).iter().find(|point| number(&point["value"]) == 2.0).unwrap();
+        // The interval between spikes by SciPy with events, at 1e-10.
+        assert!(
+            (number(&point["period"]) / 3.030005505404 - 1.0).abs() < 1e-8,
+            "{duration}: {}",
+            point["period"]
+        );
+    }
+}

@@ -143,7 +143,7 @@ impl<C: Curve> Run<'_, '_, C> {
         }
         let mut previous: Option<(Vec<f64>, f64)> = None;
         let mut length = settings.initial_step;
-        let mut creeping = 0;
+        let (mut creeping, mut known) = (0, 0);
         for _ in 0..settings.most_steps {
             let bounds = &self.request.bounds;
             let kept = keep(self.curve, &current, &previous);
@@ -161,7 +161,12 @@ impl<C: Curve> Run<'_, '_, C> {
                     let way = along(self.curve, &current, &next.unknown).abs();
                     current = next;
                     creeping = if way < CREEPING * settings.initial_step { creeping + 1 } else { 0 };
+                    if creeping == 0 {
+                        known = self.unlocated.len();
+                    }
                     if creeping == CREEPING_STEPS {
+                        // Signs that changed on such a way are rounding.
+                        self.unlocated.truncate(known);
                         let hindrance = self.curve.hindrance(&current);
                         return hindrance.map_or(Stop::Creeping { steps: CREEPING_STEPS }, Stop::Problem);
                     }

@@ -204,6 +204,58 @@ pub(super) fn study(given: Option<&Wheel>, control: &Control<'_>) -> Result<Stud
     Ok(Study { findings: isola.findings(), drawings: vec![isola.drawing()], pictures: Vec::new() })
 }
 
+/// The branches of cycles from Hopf points, every branch once.
+fn attached_branches(
+    field: &LateralWheel,
+    hopf_points: &[HopfPoint],
+    ranges: &Ranges,
+) -> Result<Vec<CycleBranch>, Error> {
+    let mut attached: Vec<CycleBranch> = Vec::new();
+    for hopf in hopf_points {
+        let ends_here = |branch: &CycleBranch| {
+            matches!(branch.stops[1], Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. }))
+                if (parameter / hopf.value - 1.0).abs() < SAME)
+        };
+        if !attached.iter().any(ends_here) {
+            attached.push(along_speed(hopf.cycles(field), ranges)?);
+        }
+    }
+    Ok(attached)
+}
+
+/// That the largest cycles at a damping, followed to stronger ones at a speed, end before straight running becomes stable.
+fn none_found(
+    birth: &HopfVertex,
+    attached: &[CycleBranch],
+    bridged: &CycleBranch,
+    (damping, speed): (f64, f64),
+) -> Error {
+    let found: Vec<String> = attached.iter().map(|branch| told(branch, "v", "m/s")).collect();
+    Error::NothingFound(format!(
+        "no isola was found. Straight running is stable at every speed from c_q = {} N s/m on; the largest cycles at c_q = {damping} N s/m, \
+         followed in the damping at v = {} m/s, end before that: {}. Searched were the branches from the Hopf points at c_q = {damping} \
+         N s/m: {}",
+        readable(birth.damping),
+        readable(speed),
+        told(bridged, "c_q", "N s/m"),
+        found.join("; ")
+    ))
+}
+
+/// The folds of a closed branch in speed and damping.
+fn folds_of(field: &LateralWheel, closed: &CycleBranch, ranges: &Ranges) -> Result<CycleLocusBranch, Error> {
+    let curve = closed
+        .of_kind(SpecialKind::FoldOfCycles)
+        .max_by(|a, b| a.value.total_cmp(&b.value))
+        .and_then(|fold| fold.curve(field))
+        .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {} N s/m", ranges.detached)))?;
+    Ok(curve
+        .along("v", ranges.speeds.0..=ranges.speeds.1)
+        .and("c_q", ranges.fold_dampings.0..=ranges.fold_dampings.1)
+        .settings(settings().predictor_error(FOLD_PREDICTOR_ERROR))
+        .run()?)
+}
+
 impl Isola {
     pub(super) fn compute(wheel: &Wheel, control: &Control<'_>) -> Result<Self, Error> {
         let birth = HopfVertex::of(wheel).ok_or_else(|| {
@@ -223,17 +275,7 @@ impl Isola {
             .run()?;
         let mut hopf_points: Vec<HopfPoint> = straight.hopf_points().cloned().collect();
         hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let mut attached = Vec::new();
-        for hopf in &hopf_points {
-            let ends_here = |branch: &CycleBranch| {
-                matches!(branch.stops[1], Some(Stop::Problem(CycleEnd::HopfPoint { parameter, .. }))
-                    if (parameter / hopf.value - 1.0).abs() < SAME)
-            };
-            if attached.iter().any(ends_here) {
-                continue;
-            }
-            attached.push(along_speed(hopf.cycles(&field), &ranges)?);
-        }
+        let attached = attached_branches(&field, &hopf_points, &ranges)?;
         control.done(0.2);
         unless_stopped(control)?;
         let largest = |at: &dyn Fn(&&CyclePoint) -> bool| {
@@ -256,16 +298,7 @@ impl Isola {
         let strongest = bridged.points.iter().map(|point| point.value).fold(0.0, f64::max);
         if strongest < ranges.detached {
             if strongest <= birth.damping {
-                let found: Vec<String> = attached.iter().map(|branch| told(branch, "v", "m/s")).collect();
-                return Err(Error::NothingFound(format!(
-                    "no isola was found. Straight running is stable at every speed from c_q = {} N s/m on; the largest cycles at c_q = \
-                     {with_hopf_points} N s/m, followed in the damping at v = {} m/s, end before that: {}. Searched were the branches \
-                     from the Hopf points at c_q = {with_hopf_points} N s/m: {}",
-                    readable(birth.damping),
-                    readable(speed),
-                    told(&bridged, "c_q", "N s/m"),
-                    found.join("; ")
-                )));
+                return Err(none_found(&birth, &attached, &bridged, (with_hopf_points, speed)));
             }
             // Between the two the branch is detached.
             ranges.detached = 0.5 * (birth.damping + strongest);
@@ -298,17 +331,7 @@ impl Isola {
         }
         control.done(0.6);
         unless_stopped(control)?;
-        let fold = closed
-            .of_kind(SpecialKind::FoldOfCycles)
-            .max_by(|a, b| a.value.total_cmp(&b.value))
-            .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?;
-        let folds = fold
-            .curve(&field)
-            .ok_or_else(|| Error::not_found("fold of cycles", &format!("c_q = {detached} N s/m")))?
-            .along("v", ranges.speeds.0..=ranges.speeds.1)
-            .and("c_q", ranges.fold_dampings.0..=ranges.fold_dampings.1)
-            .settings(settings().predictor_error(FOLD_PREDICTOR_ERROR))
-            .run()?;
+        let folds = folds_of(&field, &closed, &ranges)?;
         control.done(0.9);
         unless_stopped(control)?;
         let death = largest_damping(&field, &folds)?;
