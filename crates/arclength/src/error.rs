@@ -67,6 +67,15 @@ pub enum Error {
         /// Time for which it was followed.
         duration: f64,
     },
+    /// A motion comes to rest.
+    #[error(
+        "the motion comes to rest at the equilibrium ({}): there is no cycle to start from; start from a motion that goes on swinging",
+        equilibrium.iter().map(|value| crate::numbers::readable(*value)).collect::<Vec<_>>().join(", ")
+    )]
+    Resting {
+        /// The equilibrium.
+        equilibrium: Vec<f64>,
+    },
     /// A motion could not be computed.
     #[error("the motion that the cycle is to be taken from cannot be computed")]
     Motion(#[from] IntegrationError),

@@ -162,7 +162,7 @@ fn curves_of_cycles_are_monitored() {
     assert!(table.lines().any(|line| line.contains("label") && line.contains("mean(x^2)")), "{table}");
     let columns = std::fs::read_to_string(folder.0.path().join("curve.csv")).unwrap();
     assert!(columns.lines().next().unwrap().contains("monitor_max(x),"), "{columns}");
-    folder.fails("locus --from c.json:LPC1 --in p=-4:0,q=0.5:4 --until x=1", 2, &["--monitor x", "max(x)"]);
+    folder.fails("locus --from c.json:LPC1 --in p=-4:0,q=0.5:4 --until x=1", 2, &["--until x", "max(x)"]);
 
     // Where r is held, p falls by r^2 as q grows by 1.
     let held = folder.json(

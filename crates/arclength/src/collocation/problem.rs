@@ -136,6 +136,12 @@ pub trait BoundaryValueEquations {
         Some(0.0)
     }
 
+    /// The states where jump number `index` takes place, before and behind it, from the state before it at its mesh point; `None` where
+    /// it does not take place, or takes place at the mesh point.
+    fn at_jump(&self, _index: usize, _before: &[f64], _scalars: &[f64]) -> Option<[Vec<f64>; 2]> {
+        None
+    }
+
     /// Sets the times of the jumps.
     fn move_jumps(&mut self, _times: &[f64]) {}
 

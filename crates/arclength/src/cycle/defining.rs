@@ -220,6 +220,13 @@ impl BoundaryValueEquations for Defining<'_> {
         Some(delay / scalars[0])
     }
 
+    /// The states of the cycle alone: those of its eigenfunctions have no extremes that anybody asks for.
+    fn at_jump(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let states = &before[..self.scales.len()];
+        let replaced = self.replaced(scalars, |value| value);
+        self.segments.as_ref()?.at_gate(self.field, index, states, scalars[0], &replaced)
+    }
+
     fn move_jumps(&mut self, times: &[f64]) {
         if let Some(segments) = &mut self.segments {
             segments.times.copy_from_slice(times);

@@ -25,6 +25,13 @@ pub(crate) struct Extremes {
     pub(crate) smallest: f64,
 }
 
+/// A jump of the state, with the node behind it.
+struct Jump {
+    node: usize,
+    before: Vec<f64>,
+    behind: Vec<f64>,
+}
+
 /// Extremes of every component among the first `count`.
 pub(crate) fn extremes<P: BoundaryValueEquations>(
     collocation: &Collocation<P>,
@@ -35,23 +42,41 @@ pub(crate) fn extremes<P: BoundaryValueEquations>(
     let cycle = collocation.polynomials(unknown);
     let times = cycle.node_times();
     let mut values = vec![0.0; times.len()];
-    let before_jumps: Vec<Vec<f64>> =
-        collocation.jump_points().into_iter().map(|point| collocation.end_of(unknown, point - 1)).collect();
+    let scalars = &unknown[unknown.len() - collocation.problem.scalars()..];
+    let jumps: Vec<Jump> = collocation
+        .jump_points()
+        .into_iter()
+        .enumerate()
+        .map(|(index, point)| {
+            let before = collocation.end_of(unknown, point - 1);
+            let node = point * (collocation.gauss().degree() + 1);
+            let behind = unknown[node * n..(node + 1) * n].to_vec();
+            // A mesh point may miss its jump by a time in which a fast state changes by more than its error.
+            let [before, behind] =
+                collocation.problem.at_jump(index, &before, scalars).unwrap_or([before, behind]);
+            Jump { node, before, behind }
+        })
+        .collect();
+    let breaks: Vec<usize> = jumps.iter().map(|jump| jump.node).collect();
     (0..count)
         .map(|component| {
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
                 *value = state[component];
+            }
+            for jump in &jumps {
+                values[jump.node] = jump.behind[component];
             }
             let mut extremes = extremes_of(PeriodicFunction {
                 times: &times,
                 values: &values,
                 slope_at_node: &|index| cycle.slope_at_node(index, component),
                 at: &|time| cycle.component(time - time.floor(), component),
+                breaks: &breaks,
             });
             // What is reached before a jump is no node.
-            for end in &before_jumps {
-                extremes.largest = extremes.largest.max(end[component]);
-                extremes.smallest = extremes.smallest.min(end[component]);
+            for jump in &jumps {
+                extremes.largest = extremes.largest.max(jump.before[component]);
+                extremes.smallest = extremes.smallest.min(jump.before[component]);
             }
             extremes
         })
@@ -130,6 +155,7 @@ impl Orbit {
                     let Dual { value, derivatives: [slope] } = at_time(time)[function];
                     (value, slope)
                 },
+                breaks: &[],
             });
             let starts = values.iter().step_by(self.degree + 1).skip(1);
             let ends = ends.iter().map(|end| end[function]).zip(starts);
@@ -146,6 +172,8 @@ struct PeriodicFunction<'a> {
     slope_at_node: &'a dyn Fn(usize) -> f64,
     /// Value and slope.
     at: &'a dyn Fn(f64) -> (f64, f64),
+    /// Nodes behind jumps: no extreme is sought between one of them and the node before.
+    breaks: &'a [usize],
 }
 
 /// A function at one time.
@@ -186,6 +214,13 @@ fn extremes_of(function: PeriodicFunction) -> Extremes {
         let (mut left, mut right) = (sample(previous), sample(next));
         left.time -= if index == 0 { 1.0 } else { 0.0 };
         right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
+        // Beside a jump the place itself stands for the neighbour beyond it.
+        if function.breaks.contains(&index) {
+            left = sample(index);
+        }
+        if function.breaks.contains(&next) {
+            right = sample(index);
+        }
         let refined = refine(function.at, [left, sample(index), right], size);
         extremes.largest = extremes.largest.max(refined);
         extremes.smallest = extremes.smallest.min(refined);

@@ -116,6 +116,11 @@ impl BoundaryValueEquations for LimitCycle<'_> {
         Some(delay / scalars[0])
     }
 
+    fn at_jump(&self, index: usize, before: &[f64], scalars: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let segments = self.segments.as_ref()?;
+        segments.at_gate(self.field, index, before, scalars[0], &[(self.active, scalars[1])])
+    }
+
     fn move_jumps(&mut self, times: &[f64]) {
         if let Some(segments) = &mut self.segments {
             segments.times.copy_from_slice(times);

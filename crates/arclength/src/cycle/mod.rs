@@ -25,6 +25,7 @@ mod orbit;
 mod other_branch;
 mod passages;
 mod repeated;
+mod resting;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod slow_passage;

@@ -1,5 +1,6 @@
 //! A periodic orbit as plain data: a piecewise polynomial that can be sampled, stored and restarted from.
 
+use super::resting::rests_at;
 use crate::collocation::gauss::Gauss;
 use crate::collocation::mesh::{SAME_TIME, dividing_equally};
 use crate::collocation::polynomials::Polynomials;
@@ -191,13 +192,17 @@ impl Orbit {
     /// normal to the flow there, close to `initial`. Good enough to start [`Cycles`](super::Cycles) from.
     ///
     /// # Errors
-    /// [`Error::Motion`] when the motion cannot be integrated, [`Error::NoReturn`] when it does not return in that time.
+    /// [`Error::Motion`] when the motion cannot be integrated, [`Error::Resting`] when it comes to rest, [`Error::NoReturn`] when it does
+    /// not return in that time.
     pub fn from_time_history<F: VectorField>(
         field: &F,
         parameters: &[f64],
         initial: &[f64],
         longest_period: f64,
     ) -> Result<Self, Error> {
+        if let Some(equilibrium) = rests_at(field, parameters, initial, longest_period) {
+            return Err(Error::Resting { equilibrium });
+        }
         let dimension = initial.len();
         let mut normal = vec![0.0; dimension];
         field.evaluate(initial, parameters, &mut normal);

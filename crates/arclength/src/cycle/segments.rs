@@ -257,6 +257,23 @@ impl Segments {
         after.copy_from_slice(&new.flow(field, &at_gate, replaced, -delay, steps));
     }
 
+    /// The states in which the cycle passes a gate, before and behind a jump there, from the state before it at its mesh point.
+    pub(crate) fn at_gate(
+        &self,
+        field: ErasedField<'_>,
+        index: usize,
+        before: &[f64],
+        period: f64,
+        replaced: &[(usize, f64)],
+    ) -> Option<[Vec<f64>; 2]> {
+        let (delay, _) = self.delay(field, index, before, period, replaced)?;
+        let course = &self.courses[index];
+        let state = course.flow(field, before, replaced, delay, steps_for(delay, period));
+        let mut behind = state.clone();
+        self.gates[index].reset(field, course, &mut behind, replaced, self.switches);
+        Some([state, behind])
+    }
+
     /// How much later than its mesh point the cycle passes a gate, in time, and the rate of its function there.
     pub(crate) fn delay(
         &self,

@@ -51,6 +51,9 @@ const AGREE_WITHIN: f64 = 10.0;
 const TURNS_AGREE: [f64; 2] = [1e-7, 1e-3];
 const TURNS_MAY_AGREE: f64 = 0.3;
 
+/// Part of the range of the parameter by which the first cycle may lie from a given one that is a fold.
+const AT_FOLD: f64 = 1e-3;
+
 /// What a branch of cycles starts from.
 #[derive(Clone, Debug)]
 pub enum CycleStart {
@@ -371,6 +374,7 @@ impl<'a> Asked<'a> {
         observer: &mut Observer<'_, CycleInspection, SpecialKind>,
     ) -> Result<BothWays<CycleInspection, SpecialKind, CycleEnd>, Error> {
         let mut start = self.through(orbit);
+        let given = self.parameters[self.active];
         let directions = both_ways(|sign| {
             if sign < 0.0 {
                 start.tangent.iter_mut().for_each(|entry| *entry = -*entry);
@@ -381,8 +385,19 @@ impl<'a> Asked<'a> {
                 Err(Error::NotFound { sought, cause }) => {
                     start.tangent = orbit.deviation();
                     start.tangent.extend([0.0, 0.0]);
-                    self.follow(&start, false, request, observer)
-                        .map_err(|_| Error::NotFound { sought, cause })
+                    // A cycle elsewhere is not the one that was given.
+                    let is_there = |followed: &FollowedCycles| {
+                        let first =
+                            followed.solutions.first().map(|(first, _)| self.bound.value(&first.unknown));
+                        first.is_some_and(|value| {
+                            (value - given).abs() <= AT_FOLD * self.bound.width()
+                                && self.bound.holds(value, START_ROUNDING)
+                        })
+                    };
+                    match self.follow(&start, false, request, observer) {
+                        Ok(followed) if is_there(&followed) => Ok(followed),
+                        _ => Err(Error::NotFound { sought, cause }),
+                    }
                 }
                 result => result,
             }

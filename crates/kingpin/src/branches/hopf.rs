@@ -4,7 +4,7 @@ use super::birth::Birth;
 use super::{Along, FORWARD_MONITOR, MotionMonitor, STANDING};
 use crate::tyre::Onset;
 use crate::{KingpinError, RollingModel, Tyre, UniformMotion, Wheel};
-use arclength::branch::{Criticality, Monitor};
+use arclength::branch::{Criticality, Monitor, SpecialKind};
 use arclength::continuation::{Settings, Stop, Wording};
 use arclength::control::Control;
 use arclength::cycle::CycleStart;
@@ -250,6 +250,9 @@ impl Wheel {
                 stops.reverse();
             }
             let border = (self.tyre() != Tyre::Rigid).then_some(FORWARD_MONITOR);
+            if border.is_some() {
+                take_off_borders(&mut motions, &stops);
+            }
             let asked_for = options.monitors.iter().map(MotionMonitor::name);
             let monitors = border.into_iter().chain(asked_for).map(str::to_owned).collect();
             return Ok(MotionBranch { motions, hopf_points, stops, along, monitors });
@@ -292,6 +295,26 @@ fn hopf_points_among(
     }
     hopf_points.sort_by(|a, b| a.value.total_cmp(&b.value));
     Ok(hopf_points)
+}
+
+/// Takes the label of a requested value off the motions at the border where the equations cease to hold, and numbers the others anew.
+fn take_off_borders(motions: &mut [EquilibriumPoint], stops: &[Option<Stop<EquilibriumEnd>>; 2]) {
+    let last = motions.len().saturating_sub(1);
+    let mut number = 0;
+    for (index, motion) in motions.iter_mut().enumerate() {
+        let is_end_at_border = [0, last]
+            .into_iter()
+            .zip(stops)
+            .any(|(end, stop)| end == index && matches!(stop, Some(Stop::Monitor { index: 0, .. })));
+        let Some(label) = motion.label.as_mut().filter(|label| label.kind == SpecialKind::Requested) else {
+            continue;
+        };
+        number += usize::from(!is_end_at_border);
+        label.number = number;
+        if is_end_at_border {
+            motion.label = None;
+        }
+    }
 }
 
 /// Gives motions as the continuation found them in all states and in values of the key, with the stability of the uniform motion and the

@@ -186,3 +186,50 @@ fn a_branch_does_not_creep_on_for_ever_where_a_state_comes_too_near_to_zero() {
         other => panic!("{other:?}"),
     }
 }
+
+/// `r' = r (a - r^2)` with a turn of one: cycles of radius `sqrt(a)` where a is positive.
+struct StuartLandau;
+
+impl VectorField for StuartLandau {
+    fn state_names(&self) -> Vec<String> {
+        vec!["x".into(), "y".into()]
+    }
+    fn parameter_names(&self) -> Vec<String> {
+        vec!["a".into()]
+    }
+    fn evaluate<T: Scalar>(&self, s: &[T], p: &[T], d: &mut [T]) {
+        let square = s[0] * s[0] + s[1] * s[1];
+        d[0] = s[0] * (p[0] - square) - s[1];
+        d[1] = s[1] * (p[0] - square) + s[0];
+    }
+}
+
+#[test]
+fn a_motion_that_comes_to_rest_is_told_so() {
+    for (a, radius, duration) in
+        [(-0.01, 4e-5, 1000.0), (-1.0, 1e-3, 20.0), (-1.0, 1e-40, 1000.0), (-0.3, 0.0, 10.0)]
+    {
+        let found = Orbit::from_time_history(&StuartLandau, &[a], &[radius, 0.0], duration);
+        let Err(Error::Resting { equilibrium }) = found else { panic!("a = {a}: {found:?}") };
+        assert!(equilibrium.iter().all(|value| value.abs() < 1e-12));
+    }
+    let orbit = Orbit::from_time_history(&StuartLandau, &[0.25], &[0.5, 0.0], 7.0).unwrap();
+    assert!((orbit.period / std::f64::consts::TAU - 1.0).abs() < 1e-8);
+}
+
+#[test]
+fn a_start_that_is_no_cycle_does_not_lead_to_one_elsewhere() {
+    // Nearly a circle of the linear motion: there are cycles of that radius at a = 1e-12, beyond the range.
+    let circle = |angle: f64| vec![1e-6 * angle.cos(), 1e-6 * angle.sin()];
+    let count = 41;
+    let times: Vec<f64> = (0..count).map(|index| std::f64::consts::TAU * index as f64 / 40.0).collect();
+    let states: Vec<Vec<f64>> = (0..count).map(|index| circle(times[index % 40])).collect();
+    let orbit = Orbit::from_samples(&times, &states).unwrap();
+    for range in [-2.0..=-0.005, -2.0..=1.0] {
+        let branch = Cycles::of(&StuartLandau, CycleStart::Orbit(orbit.clone()))
+            .parameters(&[-0.01])
+            .along("a", range)
+            .run();
+        assert!(matches!(branch, Err(Error::NotFound { .. })), "{branch:?}");
+    }
+}
