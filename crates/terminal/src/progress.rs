@@ -24,7 +24,10 @@ impl ProgressDisplay {
     /// A spinner with a message that changes.
     pub fn spinner(what: &'static str, quiet: bool) -> Self {
         let progress = Self::new(ProgressBar::no_length(), "{spinner} {msg} {elapsed}", what, quiet);
-        progress.bar.enable_steady_tick(SPIN);
+        // What nobody sees needs no thread that turns it.
+        if !progress.bar.is_hidden() {
+            progress.bar.enable_steady_tick(SPIN);
+        }
         progress
     }
 

@@ -311,11 +311,30 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     /// scalars. `sizes` are those of the components and then of the scalars; what has none has weight zero.
     pub fn apply_metric(&self, sizes: &[f64], vector: &[f64], image: &mut [f64]) {
         let n = self.problem.dimension();
-        let size = self.interval_size();
-        let weights = &self.gauss().weights;
         let square = |index: usize| sizes.get(index).map_or(0.0, |size| 1.0 / (size * size));
         let squares: Vec<f64> = (0..n).map(square).collect();
-        let states = self.intervals() * size;
+        // With a number of components that the compiler knows the loops over them are unrolled.
+        match n {
+            1 => self.weigh_states(1, &squares, vector, image),
+            2 => self.weigh_states(2, &squares, vector, image),
+            3 => self.weigh_states(3, &squares, vector, image),
+            4 => self.weigh_states(4, &squares, vector, image),
+            5 => self.weigh_states(5, &squares, vector, image),
+            6 => self.weigh_states(6, &squares, vector, image),
+            _ => self.weigh_states(n, &squares, vector, image),
+        }
+        let states = self.intervals() * self.interval_size();
+        for (index, (image, value)) in image[states..].iter_mut().zip(&vector[states..]).enumerate() {
+            *image = square(n + index) * value;
+        }
+    }
+
+    /// The part of the metric that is an integral over the states of `n` components with these weights.
+    #[inline(always)]
+    fn weigh_states(&self, n: usize, squares: &[f64], vector: &[f64], image: &mut [f64]) {
+        let size = (self.gauss().degree() + 1) * n;
+        let weights = &self.gauss().weights;
+        let squares = &squares[..n];
         for ((pair, vector), image) in
             self.mesh.windows(2).zip(vector.chunks_exact(size)).zip(image.chunks_exact_mut(size))
         {
@@ -325,13 +344,10 @@ impl<P: BoundaryValueEquations> Collocation<P> {
                 vector[n..].chunks_exact(n).zip(rest.chunks_exact_mut(n)).zip(weights)
             {
                 let weight = weight * (pair[1] - pair[0]);
-                for ((image, value), square) in images.iter_mut().zip(values).zip(&squares) {
+                for ((image, value), square) in images.iter_mut().zip(values).zip(squares) {
                     *image = weight * square * value;
                 }
             }
-        }
-        for (index, (image, value)) in image[states..].iter_mut().zip(&vector[states..]).enumerate() {
-            *image = square(n + index) * value;
         }
     }
 

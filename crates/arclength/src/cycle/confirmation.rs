@@ -11,6 +11,7 @@ use super::curve::CycleCurve;
 use super::floquet::{Floquet, multiplier_changes};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
+use super::sizes::StateSizes;
 use super::start::Asked;
 use super::variational::{KnownOrbit, resolved_multipliers};
 use crate::branch::SpecialKind;
@@ -83,21 +84,23 @@ impl<'a> Asked<'a> {
             return;
         }
         let last = branch.points.len().saturating_sub(1);
+        let mut sizes = None;
         for (index, point) in branch.points.iter_mut().enumerate() {
             let is_shown = match point.label {
                 None => index == 0 || index == last,
                 Some(label) => label.kind == SpecialKind::Requested && at.contains(&point.value),
             };
             if is_shown && point.orbit.mesh.len() > 1 {
-                self.confirm_cycle(point);
+                self.confirm_cycle(point, &mut sizes);
                 renew(point);
             }
         }
     }
 
     /// Replaces a cycle by the finest solution and its errors by those that were measured. Of one for which a finer mesh has no
-    /// solution at the same parameter value nothing is certain: its error is told to be the whole.
-    fn confirm_cycle(&self, point: &mut CyclePoint) {
+    /// solution at the same parameter value nothing is certain: its error is told to be the whole. What the nonlinearity of the field says
+    /// of `sizes` is computed for the first cycle.
+    fn confirm_cycle(&self, point: &mut CyclePoint, sizes: &mut Option<StateSizes>) {
         let degree = point.orbit.degree;
         let mut unknown = point.orbit.states.clone();
         unknown.extend([point.period, point.value]);
@@ -110,7 +113,8 @@ impl<'a> Asked<'a> {
             if mesh.len() - 1 > self.resolution.most_intervals {
                 break;
             }
-            let Some(mut level) = self.solve_on_halves((&mesh, &unknown), degree, point.neutral) else {
+            let level = self.solve_on_halves((&mesh, &unknown), degree, point.neutral, sizes);
+            let Some(mut level) = level else {
                 if last_change.is_none() {
                     (point.error_estimate, point.stable) = (NOTHING_KNOWN, None);
                 }
@@ -158,12 +162,15 @@ impl<'a> Asked<'a> {
         (mesh, unknown): (&[f64], &[f64]),
         degree: usize,
         neutral: bool,
+        sizes: &mut Option<StateSizes>,
     ) -> Option<Level<'a>> {
         let halves = halved(mesh);
         let coarse = Collocation::new(self.problem(), mesh.to_vec(), degree);
         let mut unknown = coarse.carry(unknown, &halves);
         let fine = Collocation::new(self.problem(), halves.clone(), degree);
-        let mut curve = CycleCurve::new(fine, self.resolution, self.bound.width(), &unknown);
+        let width = self.bound.width();
+        let sizes = sizes.get_or_insert_with(|| StateSizes::new(&fine.problem, &unknown, width)).anew();
+        let mut curve = CycleCurve::with_sizes(fine, (self.resolution, width), &unknown, sizes);
         let mut border = vec![0.0; unknown.len()];
         if neutral {
             let [end, dimension] = [unknown.len() - 2, self.field.dimension()];

@@ -130,10 +130,21 @@ pub(crate) struct CycleCurve<'a> {
 impl<'a> CycleCurve<'a> {
     /// The curve through a start that is given on the mesh of the collocation.
     pub(crate) fn new(
-        mut collocation: Collocation<LimitCycle<'a>>,
+        collocation: Collocation<LimitCycle<'a>>,
         resolution: Resolution,
         parameter_scale: f64,
         start: &[f64],
+    ) -> Self {
+        let sizes = StateSizes::new(&collocation.problem, start, parameter_scale);
+        Self::with_sizes(collocation, (resolution, parameter_scale), start, sizes)
+    }
+
+    /// The same with sizes that are known.
+    pub(super) fn with_sizes(
+        mut collocation: Collocation<LimitCycle<'a>>,
+        (resolution, parameter_scale): (Resolution, f64),
+        start: &[f64],
+        sizes: StateSizes,
     ) -> Self {
         collocation.set_reference(start);
         let n = collocation.problem.dimension();
@@ -142,7 +153,6 @@ impl<'a> CycleCurve<'a> {
         if collocation.problem.has_borders() {
             collocation.set_mesh(collocation.mesh().to_vec(), start);
         }
-        let sizes = StateSizes::new(&collocation.problem, start, parameter_scale);
         let mut curve = Self {
             segments_error,
             resolution,
@@ -172,7 +182,8 @@ impl<'a> CycleCurve<'a> {
     pub(super) fn on_mesh(&self, mesh: Vec<f64>, unknown: &[f64]) -> Self {
         let degree = self.collocation.gauss().degree();
         let collocation = Collocation::new(self.collocation.problem.clone(), mesh, degree);
-        let mut curve = Self::new(collocation, self.resolution, self.parameter_scale, unknown);
+        let settings = (self.resolution, self.parameter_scale);
+        let mut curve = Self::with_sizes(collocation, settings, unknown, self.sizes.anew());
         (curve.settings, curve.doubled) = (self.settings, self.doubled);
         curve
     }

@@ -39,7 +39,7 @@ pub(super) fn may_be_unresolved(collocation: &Collocation<LimitCycle<'_>>) -> bo
     let problem = &collocation.problem;
     let (n, degree) = (problem.dimension(), collocation.gauss().degree());
     let size = n * (n + problem.scalars());
-    let scales = &problem.scales;
+    let ratios = ratios(&problem.scales);
     let farthest_turn = RESOLVED_TURN * degree as f64;
     // The stability function takes exp(-r) for exp(-k / r) with k = 2 m (m + 1) where r is large.
     let kept = (2 * degree * (degree + 1)) as f64;
@@ -50,8 +50,8 @@ pub(super) fn may_be_unresolved(collocation: &Collocation<LimitCycle<'_>>) -> bo
     for (points, pair) in blocks.zip(collocation.mesh().windows(2)) {
         let width = pair[1] - pair[0];
         let block = &points[degree / 2 * size..];
-        for (index, entry) in scaled.iter_mut().enumerate() {
-            *entry = width * block[index] * scales[index / n] / scales[index % n];
+        for (entry, (derivative, ratio)) in scaled.iter_mut().zip(block.iter().zip(&ratios)) {
+            *entry = width * derivative * ratio;
         }
         let (mut symmetric, mut antisymmetric) = (0.0, 0.0);
         for column in 0..n {
@@ -151,8 +151,8 @@ where
     Dual<f64, D>: JacobianScalar,
 {
     let problem = &collocation.problem;
-    let scales = &problem.scales;
-    let n = scales.len();
+    let n = problem.dimension();
+    let ratios = ratios(&problem.scales);
     let points = &Gauss::of(WEIGHTS.len()).points;
     let polynomials = collocation.polynomials(unknown);
     let scalars = &unknown[collocation.intervals() * collocation.interval_size()..];
@@ -177,18 +177,21 @@ where
             jacobian.at(time, &state, matrix);
         }
         for (half, weights) in halves.iter_mut().zip([WEIGHTS, [WEIGHTS[1], WEIGHTS[0]]]) {
-            for (index, entry) in half.iter_mut().enumerate() {
-                let sum = weights[0] * jacobians[0][index] + weights[1] * jacobians[1][index];
-                *entry = width * scales[index / n] / scales[index % n] * sum;
+            let pairs = jacobians[0].iter().zip(&jacobians[1]);
+            for (entry, ((one, other), ratio)) in half.iter_mut().zip(pairs.zip(&ratios)) {
+                *entry = width * ratio * (weights[0] * one + weights[1] * other);
             }
             exponential.apply(half).then_some(())?;
         }
         multiply(&halves[1], &halves[0], transfer, n);
-        for (index, entry) in transfer.iter_mut().enumerate() {
-            *entry *= scales[index % n] / scales[index / n];
-        }
+        transfer.iter_mut().zip(&ratios).for_each(|(entry, ratio)| *entry /= ratio);
     }
     Some((flow, transfer))
+}
+
+/// Factors by which the entries of a Jacobian (column-major) become those in units of the sizes of the states.
+fn ratios(scales: &[f64]) -> Vec<f64> {
+    scales.iter().flat_map(|column| scales.iter().map(move |row| column / row)).collect()
 }
 
 /// Jacobians of the field along a cycle, `D` columns at a time, with the memory for them.

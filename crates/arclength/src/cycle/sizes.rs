@@ -71,12 +71,22 @@ impl StateSizes {
             .map(|(value, size)| if *size < rounding { 0.0 } else { *value })
             .collect();
         let natural = natural_scales_along(&problem.field, &state, &parameters, (problem.active, range));
+        Self::resting_below(natural.iter().map(|size| RESTING_PART * size).collect())
+    }
+
+    fn resting_below(resting: Vec<f64>) -> Self {
+        let n = resting.len();
         Self {
             largest: vec![0.0; n],
             visited: vec![Extremes { smallest: f64::INFINITY, largest: f64::NEG_INFINITY }; n],
-            resting: natural.iter().map(|size| RESTING_PART * size).collect(),
+            resting,
             first_period: None,
         }
+    }
+
+    /// Those of another part of the same curve, of which no cycle has been met.
+    pub(crate) fn anew(&self) -> Self {
+        Self::resting_below(self.resting.clone())
     }
 
     /// Sizes of the states of a cycle, given on its nodes.

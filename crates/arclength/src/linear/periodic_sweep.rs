@@ -42,7 +42,7 @@ fn triangular_product(factors: &[f64], n: usize, start: usize) -> [[Wide; 3]; 3]
 fn first_column(factors: &[f64], n: usize, first: usize, last: usize, sweeps: usize) -> [f64; 3] {
     let h = |row: usize, column: usize| factors[row + n * column];
     let top = triangular_product(factors, n, first);
-    let bottom = triangular_product(factors, n, last - 2);
+    let bottom = if first + 2 == last { top } else { triangular_product(factors, n, last - 2) };
     // Sum and product of the shifts: trace and determinant of the last two rows and columns of the product.
     let [[_, t01, t02], [_, t11, t12], [_, _, t22]] = bottom;
     let (k, l) = (last - 1, last);
