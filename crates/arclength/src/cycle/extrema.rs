@@ -17,6 +17,8 @@ const ROUNDING: f64 = 1e-14;
 
 /// Part of its range by which a function changes at a mesh point where the state jumps; less is rounding.
 const JUMP: f64 = 1e-9;
+/// Part of the way from the last node to a jump that is left before it where a slope before the jump is taken.
+const BEFORE_JUMP: f64 = 1e-9;
 
 /// Largest and smallest value of one component.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +59,6 @@ pub(crate) fn extremes<P: BoundaryValueEquations>(
             Jump { node, before, behind }
         })
         .collect();
-    let breaks: Vec<usize> = jumps.iter().map(|jump| jump.node).collect();
     (0..count)
         .map(|component| {
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {
@@ -66,6 +67,11 @@ pub(crate) fn extremes<P: BoundaryValueEquations>(
             for jump in &jumps {
                 values[jump.node] = jump.behind[component];
             }
+            let breaks: Vec<Break> = jumps
+                .iter()
+                .filter(|jump| jump.before != jump.behind)
+                .map(|jump| Break { node: jump.node, before: jump.before[component] })
+                .collect();
             let mut extremes = extremes_of(PeriodicFunction {
                 times: &times,
                 values: &values,
@@ -172,8 +178,15 @@ struct PeriodicFunction<'a> {
     slope_at_node: &'a dyn Fn(usize) -> f64,
     /// Value and slope.
     at: &'a dyn Fn(f64) -> (f64, f64),
-    /// Nodes behind jumps: no extreme is sought between one of them and the node before.
-    breaks: &'a [usize],
+    /// Nodes behind which the function goes on elsewhere.
+    breaks: &'a [Break],
+}
+
+/// A node behind a jump, with the value before it.
+#[derive(Clone, Copy, Debug)]
+struct Break {
+    node: usize,
+    before: f64,
 }
 
 /// A function at one time.
@@ -214,12 +227,14 @@ fn extremes_of(function: PeriodicFunction) -> Extremes {
         let (mut left, mut right) = (sample(previous), sample(next));
         left.time -= if index == 0 { 1.0 } else { 0.0 };
         right.time += if index + 1 == nodes { 1.0 } else { 0.0 };
-        // Beside a jump the place itself stands for the neighbour beyond it.
-        if function.breaks.contains(&index) {
+        // Beside a jump the last moment before it, or the place itself, stands for the neighbour beyond it.
+        let break_at = |node: usize| function.breaks.iter().find(|jump| jump.node == node);
+        if break_at(index).is_some() {
             left = sample(index);
         }
-        if function.breaks.contains(&next) {
-            right = sample(index);
+        if let Some(jump) = break_at(next) {
+            right.time -= BEFORE_JUMP * (right.time - times[index]);
+            right = Sample { value: jump.before, slope: (function.at)(right.time).1, ..right };
         }
         let refined = refine(function.at, [left, sample(index), right], size);
         extremes.largest = extremes.largest.max(refined);
