@@ -91,8 +91,11 @@ pub(crate) fn samples() -> Vec<Sample> {
     of_wheel.wheel = wheel();
     of_wheel.at = vec![1.0];
     of_wheel.from = Some(CycleSource::Point(point()));
+    of_wheel.monitors = vec![monitored()];
     let mut curve = kingpin_analysis::locus::LocusRequest::new(point(), [interval("v"), interval("l")]);
     curve.at = vec![1.0];
+    curve.hold = Some(monitored());
+    curve.monitors = vec![monitored()];
     let mut shimmy = ShimmyRequest::new(interval("v"));
     shimmy.wheel = wheel();
     shimmy.at = vec![1.0];
