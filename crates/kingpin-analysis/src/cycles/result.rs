@@ -136,6 +136,7 @@ impl CyclesResult {
         monitors: &[MotionMonitor<Orbit>],
     ) -> Result<Self, Error> {
         let along = varying(&interval);
+        let recorded = names(monitors);
         let mut labels = LabelCounter::default();
         let mut all = Vec::new();
         let mut branches = Vec::new();
@@ -153,9 +154,9 @@ impl CyclesResult {
                 } else {
                     cycle.label.map(|label| labels.next(label.kind).to_string())
                 };
-                let recorded = named(&names(monitors), &cycle.monitors);
+                let monitors = named(&recorded, &cycle.monitors);
                 let mut point = at_cycle(number, cycle, label, (&wheel, &interval))?;
-                point.cycle.monitors = recorded;
+                point.cycle.monitors = monitors;
                 points.push(point);
             }
             if let Some((label, hopf)) = &branch.reached {
