@@ -3,13 +3,15 @@
 use crate::branch::certain_digits;
 use crate::labels::kind;
 use arclength::branch::{Criticality, SpecialKind};
-use arclength::equilibrium::{Crossing, SpecialPoint};
+use arclength::equilibrium::{BranchPoint, Crossing, FoldPoint, SpecialPoint};
 use arclength::locus::CodimensionTwoPoint;
 use kingpin_report::NamedNumbers;
 use kingpin_report::numbers::significant;
 
 /// Digits of coefficients.
 const COEFFICIENT: usize = 7;
+/// Why a fold or a branch point has no coefficients.
+const DOUBLE_ZERO: &str = "zero is a double eigenvalue: no normal form";
 /// Digits of frequencies.
 const FREQUENCY: usize = 11;
 
@@ -27,15 +29,23 @@ pub fn of_equilibrium(special: &SpecialPoint) -> String {
             let c1 = hopf.c1_real.map_or(String::new(), |c1| format!(", {}", told("Re c1", c1, error)));
             format!("omega = {frequency}, {first}{c1}, {}", criticality(hopf.criticality))
         }
+        SpecialPoint::Fold(FoldPoint { quadratic: None, .. }) => DOUBLE_ZERO.to_owned(),
         SpecialPoint::Fold(fold) => coefficient("a", fold.quadratic, fold.quadratic_error),
+        SpecialPoint::BranchPoint(BranchPoint { crossing, quadratic: None, .. }) => {
+            let crossing = match crossing {
+                Crossing::Transcritical => "transcritical",
+                Crossing::Pitchfork => "pitchfork",
+            };
+            format!("{crossing}, {DOUBLE_ZERO}")
+        }
         SpecialPoint::BranchPoint(point) => {
             let error = |index: usize| point.quadratic_errors.map(|errors| errors[index]);
             match (point.crossing, point.cubic) {
                 (Crossing::Transcritical, _) => format!(
                     "transcritical, {}, {}, {}",
-                    coefficient("a11", Some(point.quadratic), error(0)),
-                    coefficient("a12", Some(point.mixed), error(1)),
-                    coefficient("a22", Some(point.parametric), error(2))
+                    coefficient("a11", point.quadratic, error(0)),
+                    coefficient("a12", point.mixed, error(1)),
+                    coefficient("a22", point.parametric, error(2))
                 ),
                 (Crossing::Pitchfork, cubic) => {
                     let sense =

@@ -24,7 +24,7 @@ pub(crate) struct Simulate {
     duration: Option<f64>,
 
     /// Number of samples, at equal distances to the end [default: one for every @ dt of the model and one at the end, or 1001]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
     points: Option<u64>,
 
     /// Time at which it starts [default: where the motion ended that it goes on from if the model depends on the time, or
@@ -37,18 +37,18 @@ pub(crate) struct Simulate {
     transient: Option<f64>,
 
     /// Magnitude of a state at which it stops [default: the model's @ bound]
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     bound: Option<f64>,
 
     /// Relative error allowed in a step; the absolute one is a hundredth of it, times the size of a state smaller than 0.01
     /// [default: the model's @ toler where that is smaller than 1e-10, or 1e-10]
-    #[arg(long, value_name = "X")]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
     /// Largest step. Switches on a state are located inside steps; a visit beyond one that is much shorter than a step, on a way that
     /// touches it, may be missed. What switches on the time is always met; a smooth stimulus much shorter than a step may be missed
     /// [default: where the model depends on the time, five sampling times, of at least 1001 over the whole]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
     max_step: Option<f64>,
 
     /// Method of integration; auto is the explicit one, and the implicit one where the model is stiff

@@ -162,6 +162,7 @@ pub(crate) fn color(fate: Fate) -> Color {
     match fate {
         Fate::UniformMotion => palette::BLUE,
         Fate::Shimmy => palette::YELLOW,
+        Fate::SteadySliding => palette::GREEN,
         Fate::Tumbling => palette::VERMILION,
         Fate::Escape => palette::BLACK,
         Fate::Irregular => palette::ORANGE,

@@ -31,11 +31,11 @@ pub(crate) struct Basin {
 
     /// Draw N random initial conditions in the rectangle in place of the grid
     #[arg(long, value_name = "N", allow_negative_numbers = true,
-          value_parser = clap::value_parser!(u64).range(1..=BasinRequest::MOST_POINTS as u64))]
+          allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=BasinRequest::MOST_POINTS as u64))]
     samples: Option<u64>,
 
     /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value_t = BasinRequest::default().seed, requires = "samples")]
+    #[arg(long, value_name = "N", default_value_t = BasinRequest::default().seed, allow_negative_numbers = true, requires = "samples")]
     seed: u64,
 
     #[command(flatten)]

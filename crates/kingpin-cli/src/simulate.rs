@@ -34,7 +34,7 @@ pub(crate) struct Simulate {
     blow: f64,
 
     /// Number of samples, at equal distances from 0 to T
-    #[arg(long, value_name = "N", default_value_t = SimulateRequest::default_points(),
+    #[arg(long, value_name = "N", default_value_t = SimulateRequest::default_points(), allow_negative_numbers = true,
           value_parser = clap::value_parser!(u64).range(SimulateRequest::POINTS))]
     points: u64,
 

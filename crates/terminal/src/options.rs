@@ -99,7 +99,7 @@ impl From<StepOptions> for Steps {
 #[command(next_help_heading = "Steps")]
 pub struct MeshOptions {
     /// Error estimate, relative to the amplitude, that no cycle exceeds; the mesh follows from it
-    #[arg(long, value_name = "E", default_value_t = Mesh::default().tolerance)]
+    #[arg(long, value_name = "E", default_value_t = Mesh::default().tolerance, allow_negative_numbers = true)]
     tolerance: f64,
 
     /// Most mesh intervals

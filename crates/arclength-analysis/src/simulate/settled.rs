@@ -17,8 +17,12 @@ const MOST_STEPS: usize = 10_000_000;
 /// Times at which it is looked at, and those between two of them where it comes back.
 const SAMPLES: usize = 40_000;
 const FINER: usize = 1_000;
-/// Samples of one period from which the mesh is made.
+/// Samples of one period from which the mesh is made, at first; where a state changes by more than this part of its range from one
+/// to the next they are divided into so many parts, again and again, but not more than so often: a neuron fires in a millionth of the period.
 const MESH_SAMPLES: usize = 2_000;
+const LARGEST_CHANGE: f64 = 0.02;
+const PARTS: usize = 8;
+const MOST_REFINEMENTS: usize = 10;
 /// Largest distance from the start where it comes back, and one that is none, as part of the size of the motion.
 const CLOSURE: f64 = 0.05;
 const CLOSED: f64 = 1e-3;
@@ -71,7 +75,15 @@ pub(crate) fn settled_orbit(
         (0..behind.len()).max_by(|a, b| (next(*a) - behind[*a]).total_cmp(&(next(*b) - behind[*b])));
     let origin = longest.map_or(0.0, |index| 0.5 * (behind[index] + next(index)));
     let origin = if origin >= period { origin - period } else { origin };
-    let times = even(origin, origin + period, MESH_SAMPLES);
+    let mut times = even(origin, origin + period, MESH_SAMPLES);
+    for _ in 0..MOST_REFINEMENTS {
+        let added = quick_stretches(&settled.follow(&times)?, SAME_BREAK * period);
+        if added.is_empty() {
+            break;
+        }
+        times.extend(added);
+        times.sort_by(f64::total_cmp);
+    }
     let whole = settled.follow(&times)?;
     let breaks: Vec<f64> = distinct(&whole.breaks, period)
         .into_iter()
@@ -156,6 +168,28 @@ impl Settled<'_> {
         let [before, behind] = [index, index + 1].map(|index| self.position(&states[index]));
         Some(times[index] + (times[index + 1] - times[index]) * before / (before - behind))
     }
+}
+
+/// Times between samples from one to the next of which a state changes much; those next to a jump come as close to it as `shortest`.
+fn quick_stretches(motion: &Motion<'_>, shortest: f64) -> Vec<f64> {
+    let (times, states) = (&motion.samples.times, &motion.samples.states);
+    let dimension = states.first().map_or(0, Vec::len);
+    let range = |component: usize| {
+        let values = states.iter().map(|state| state[component]);
+        let [low, high] = values
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+        high - low
+    };
+    let largest: Vec<f64> = (0..dimension).map(|component| LARGEST_CHANGE * range(component)).collect();
+    let mut added = Vec::new();
+    for (times, states) in times.windows(2).zip(states.windows(2)) {
+        let is_quick =
+            states[0].iter().zip(&states[1]).zip(&largest).any(|((a, b), most)| (b - a).abs() > *most);
+        if is_quick && times[1] - times[0] > shortest {
+            added.extend_from_slice(&even(times[0], times[1], PARTS)[1..PARTS]);
+        }
+    }
+    added
 }
 
 fn even(from: f64, until: f64, count: usize) -> Vec<f64> {

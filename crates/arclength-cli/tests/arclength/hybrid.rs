@@ -36,6 +36,17 @@ fn an_adaptive_neuron_fires() {
     check(&cycles, 3.0, 1.474509636205281, 0.5603538881832256);
 }
 
+/// In the last millionth of its period it rises by a third of the way.
+#[test]
+fn a_neuron_with_an_exponential_fires() {
+    let folder = settled(
+        "par I=2\nv'=-v+.1*exp((v-1)/.1)+I-u\nu'=-u\nglobal 1 v-2.5 {v=0;u=u+.3}\ninit v=0,u=0\ndone\n",
+        60.0,
+    );
+    let cycles = folder.json("cycles --from h.json:END --along I=1.98:2.02 --at 2");
+    check(&cycles, 2.0, 1.14854111063144, 0.246535168241246);
+}
+
 /// Along any of its parameters the dose is given at other fractions of the unit time, round and round.
 #[test]
 fn doses_at_equal_times_are_told_exactly_all_along_a_branch() {

@@ -154,6 +154,8 @@ fn the_settings_of_the_model_hold_where_nothing_else_is_said() {
     folder.fails("simulate model.ode --duration 1 --transient 2", 2, &["--transient 2", "less than 1"]);
     folder.fails("simulate model.ode --duration 1 --tolerance 0", 2, &["--tolerance 0", "from 1e-14"]);
     folder.fails("simulate model.ode --duration 1 --max-step 0", 2, &["--max-step"]);
+    folder.fails("simulate model.ode --duration 1 --max-step -1", 2, &["--max-step", "positive"]);
+    folder.fails("simulate model.ode --duration 1 --points -1", 2, &["--points", "-1"]);
     folder.fails(
         "simulate model.ode --duration 9 --transient 8 --bound 1",
         2,

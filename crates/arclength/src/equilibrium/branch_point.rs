@@ -37,24 +37,24 @@ pub struct BranchPoint {
     pub state: Vec<f64>,
     /// Null vector `q` of the Jacobian, `<q, q> = 1`.
     pub null_vector: Vec<f64>,
-    /// `<p, B(q, q)>`, with `<p, q> = 1`.
-    pub quadratic: f64,
+    /// `<p, B(q, q)>`, with `<p, q> = 1`; `None`, as the other coefficients, where zero is a double eigenvalue, so that `<p, q> = 0`.
+    pub quadratic: Option<f64>,
     /// `<p, B(q, x1) + f_xp q>`, where `x1` is the slope of a branch in the parameter, orthogonal to `q` after
     /// division by the sizes of the states.
-    pub mixed: f64,
+    pub mixed: Option<f64>,
     /// The second derivative of `<p, f>` along `(x1, 1)`.
-    pub parametric: f64,
+    pub parametric: Option<f64>,
     /// Errors of `quadratic`, `mixed` and `parametric`: how much they change where the equilibrium moves by its own error.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quadratic_errors: Option<[f64; 3]>,
     /// At a pitchfork, the cubic coefficient of the flow on the centre manifold, `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6`:
-    /// negative if the pitchfork is supercritical.
+    /// negative if the pitchfork is supercritical. `None` where zero is a double eigenvalue.
     pub cubic: Option<f64>,
     /// Error of that coefficient, as of the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cubic_error: Option<f64>,
     /// The sense of a pitchfork; degenerate where the other branch is vertical within rounding, or the coefficient zero within its
-    /// error.
+    /// error. `None` where there is no coefficient.
     #[serde(default)]
     pub criticality: Option<Criticality>,
     /// How the branches cross.
@@ -86,7 +86,11 @@ impl BranchPoint {
 
     /// The same with the errors of its coefficients.
     fn with_errors(self, problem: &EquilibriumProblem<'_>, tangent: &[f64], scales: &[f64]) -> Self {
-        let known = [self.quadratic, self.mixed, self.parametric, self.cubic.unwrap_or(0.0)];
+        let (Some(quadratic), Some(mixed), Some(parametric)) = (self.quadratic, self.mixed, self.parametric)
+        else {
+            return self;
+        };
+        let known = [quadratic, mixed, parametric, self.cubic.unwrap_or(0.0)];
         let equilibrium = UncertainEquilibrium::on_branch(
             problem,
             (&self.state, &self.parameters),
@@ -101,7 +105,7 @@ impl BranchPoint {
             let product = near.null_vector.iter().zip(&self.null_vector).map(|(one, other)| one * other);
             let sign = product.sum::<f64>().signum();
             let cubic = if self.cubic.is_some() { near.cubic? } else { 0.0 };
-            Some([sign * near.quadratic, near.mixed, sign * near.parametric, cubic])
+            Some([sign * near.quadratic?, near.mixed?, sign * near.parametric?, cubic])
         });
         let quadratic_errors = errors.map(|[quadratic, mixed, parametric, _]| [quadratic, mixed, parametric]);
         let cubic_error = self.cubic.and(errors).map(|errors| errors[3]);
@@ -130,8 +134,10 @@ impl BranchPoint {
         let Some(directions) = equation.directions(scales) else { return Ok(None) };
         let scaled = equation.scaled(scales);
         let crossing = if scaled.is_pitchfork() { Crossing::Pitchfork } else { Crossing::Transcritical };
-        let cubic = (crossing == Crossing::Pitchfork).then(|| equation.cubic());
-        let BranchingEquation { null_vector, quadratic, mixed, parametric, .. } = equation;
+        let cubic = (crossing == Crossing::Pitchfork && equation.is_simple).then(|| equation.cubic());
+        let BranchingEquation { null_vector, quadratic, mixed, parametric, is_simple, .. } = equation;
+        let [quadratic, mixed, parametric] =
+            [quadratic, mixed, parametric].map(|coefficient| is_simple.then_some(coefficient));
         Ok(Some(Self {
             criticality: cubic.map(|cubic| scaled.criticality(cubic)),
             quadratic_errors: None,

@@ -19,6 +19,8 @@ pub(super) struct BranchingEquation<'a> {
     bordered: BorderedJacobian,
     /// `p`.
     left: Vec<f64>,
+    /// Whether `<p, q> = 1`: zero is a simple eigenvalue.
+    pub is_simple: bool,
     /// `q`.
     pub null_vector: Vec<f64>,
     /// `(x1, 1)`, with an entry for every parameter.
@@ -39,7 +41,7 @@ impl<'a> BranchingEquation<'a> {
         scales: &[f64],
     ) -> Result<Option<Self>, Error> {
         let n = problem.dimension;
-        let NullVectors { right: null_vector, left, .. } = null_vectors(problem, unknown)?;
+        let NullVectors { right: null_vector, left, is_simple } = null_vectors(problem, unknown, scales)?;
         let mut jacobian = vec![0.0; n * (n + 1)];
         let mut residual = vec![0.0; n];
         Differentiator::default().jacobian(problem, unknown, &mut residual, &mut jacobian, n);
@@ -57,7 +59,18 @@ impl<'a> BranchingEquation<'a> {
         let quadratic = project(&square);
         let mixed = project(&forms.real(&[&null_vector, &across]));
         let parametric = project(&forms.real(&[&across, &across]));
-        Ok(Some(Self { forms, bordered, left, null_vector, across, square, quadratic, mixed, parametric }))
+        Ok(Some(Self {
+            forms,
+            bordered,
+            left,
+            is_simple,
+            null_vector,
+            across,
+            square,
+            quadratic,
+            mixed,
+            parametric,
+        }))
     }
 
     /// The coefficient `<p, C(q, q, q) - 3 B(q, A^-1 B(q, q))>/6` of the flow on the centre manifold.

@@ -3,7 +3,7 @@
 use super::coefficient_error::{self, UncertainEquilibrium};
 use super::multilinear::MultilinearForms;
 use super::problem::EquilibriumProblem;
-use crate::algebraic::{AlgebraicEquations, Differentiator};
+use crate::algebraic::{AlgebraicEquations, Differentiator, length};
 use crate::error::Error;
 use crate::linear::eigenvectors::{left_eigenvector, right_eigenvector};
 use num_complex::Complex64;
@@ -48,8 +48,12 @@ pub(crate) struct NullVectors {
     pub is_simple: bool,
 }
 
-/// The null vectors at an equilibrium.
-pub(crate) fn null_vectors(problem: &EquilibriumProblem<'_>, unknown: &[f64]) -> Result<NullVectors, Error> {
+/// The null vectors at an equilibrium; `scales` are the sizes of the states.
+pub(crate) fn null_vectors(
+    problem: &EquilibriumProblem<'_>,
+    unknown: &[f64],
+    scales: &[f64],
+) -> Result<NullVectors, Error> {
     let n = problem.dimension;
     let mut matrix = vec![0.0; n * unknown.len()];
     let mut residual = vec![0.0; n];
@@ -59,9 +63,11 @@ pub(crate) fn null_vectors(problem: &EquilibriumProblem<'_>, unknown: &[f64]) ->
     let right = real(right_eigenvector(&matrix[..n * n], n, Complex64::ZERO).map_err(failed)?.vector);
     let mut left = real(left_eigenvector(&matrix[..n * n], n, Complex64::ZERO).map_err(failed)?.vector);
     let product: f64 = left.iter().zip(&right).map(|(p, q)| p * q).sum();
-    // The size of the terms of the product does not depend on units, the vectors' norms do.
+    // Neither depends on units. The terms alone say nothing where those that do not cancel are rounding themselves.
     let size: f64 = left.iter().zip(&right).map(|(p, q)| (p * q).abs()).sum();
-    let is_simple = product.abs() > DOUBLE * size;
+    let left_size = left.iter().zip(scales).map(|(p, scale)| (p * scale).powi(2)).sum::<f64>().sqrt();
+    let sizes = left_size * length(&right, &scales[..n]);
+    let is_simple = product.abs() > DOUBLE * size.max(sizes);
     if is_simple {
         left.iter_mut().for_each(|entry| *entry /= product);
     }
@@ -81,7 +87,7 @@ impl FoldPoint {
         let state = unknown[..n].to_vec();
         let parameters = problem.parameters_at(&unknown[n..]);
         let active = problem.active[0];
-        let NullVectors { right: null_vector, left, is_simple } = null_vectors(problem, unknown)?;
+        let NullVectors { right: null_vector, left, is_simple } = null_vectors(problem, unknown, scales)?;
         let forms = MultilinearForms { field: problem.field, state: &state, parameters: &parameters };
         let project = |image: Vec<f64>| -> f64 { image.iter().zip(&left).map(|(value, p)| value * p).sum() };
         let mut along = vec![0.0; n + parameters.len()];
@@ -93,7 +99,7 @@ impl FoldPoint {
                 UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
             let [error] = coefficient_error::errors([value], equilibrium, |state, parameters| {
                 let moved = EquilibriumProblem::new(problem.field, parameters, &[]);
-                let NullVectors { right, left, is_simple } = null_vectors(&moved, state).ok()?;
+                let NullVectors { right, left, is_simple } = null_vectors(&moved, state, scales).ok()?;
                 let square =
                     MultilinearForms { field: problem.field, state, parameters }.real(&[&right, &right]);
                 let product: f64 = square.iter().zip(&left).map(|(value, p)| value * p).sum();

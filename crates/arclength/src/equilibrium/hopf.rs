@@ -71,6 +71,9 @@ impl HopfPoint {
             })?;
             Some(error)
         });
+        // Next to a zero eigenvalue or a pair at twice the frequency the coefficient has a pole, at which not even its size is known.
+        let first = first.filter(|(_, size)| first_lyapunov_error.is_none_or(|error| error < *size));
+        let first_lyapunov_error = first.and(first_lyapunov_error);
         let criticality = match (first, first_lyapunov_error) {
             (Some((value, size)), Some(error)) if value.abs() > error.max(DEGENERATE * size) => {
                 if value < 0.0 { Criticality::Supercritical } else { Criticality::Subcritical }

@@ -34,6 +34,9 @@ const MARGIN: f64 = 1e-6;
 const UNPERTURBED: f64 = 1e-12;
 /// Distance, in the metric, of a point located by Newton's method from the bracket of its crossing.
 const AGREEMENT: f64 = 1e-6;
+/// Square of the moduli of a located pair, as a part of that next to it, below which both eigenvalues are zero: that is no Hopf point, nor a
+/// neutral saddle.
+const COLLAPSED: f64 = 1e-8;
 /// Relative difference of the frequencies of two pairs.
 const DISTINCT: f64 = 1e-6;
 
@@ -205,6 +208,9 @@ fn hopf_of_pair(
     let Ok(solved) = solve_square(&system, &start, &sizes) else { return Ok(None) };
     let unknown = [&solved.unknown[..n], &solved.unknown[3 * n + 1..]].concat();
     let kappa = solved.unknown[3 * n];
+    if kappa.abs() < COLLAPSED {
+        return Ok(None);
+    }
     let eigenvalue = system.rate * kappa.abs().sqrt();
     let Ok(mut node) = finish(curve, unknown, &before.tangent) else { return Ok(None) };
     if !node.point.spectrum.has_pair(eigenvalue, kappa > 0.0) {

@@ -183,6 +183,7 @@ fn symbol(fate: Fate) -> char {
     match fate {
         Fate::UniformMotion => '.',
         Fate::Shimmy => 's',
+        Fate::SteadySliding => 'd',
         Fate::Tumbling => 't',
         Fate::Escape => 'e',
         Fate::Irregular => 'i',

@@ -1,4 +1,4 @@
-//! The course of the uniform motion along a parameter, as far as Hopf points do not tell it: where it turns or ends, and changes of its
+//! The course of the uniform motion along a parameter, as far as Hopf points do not tell it: where it turns, branches or ends, and changes of its
 //! stability that were not located.
 
 use crate::description;
@@ -15,12 +15,18 @@ pub(crate) fn course_of(branch: &MotionBranch) -> Vec<String> {
     turns(branch).chain(ends(branch)).chain(unlocated_changes(branch)).collect()
 }
 
-/// Where it turns at folds.
-fn turns(branch: &MotionBranch) -> impl Iterator<Item = String> {
-    let label = |motion: &EquilibriumPoint| motion.label.filter(|label| label.kind == SpecialKind::Fold);
+/// Where it turns at folds, and where others meet it.
+pub(super) fn turns(branch: &MotionBranch) -> impl Iterator<Item = String> {
     branch.motions.iter().filter_map(move |motion| {
+        let label = motion.label?;
         let place = description::quantity(branch.along.key(), motion.value);
-        Some(format!("the uniform motion turns at {place} ({})", label(motion)?))
+        match label.kind {
+            SpecialKind::Fold => Some(format!("the uniform motion turns at {place} ({label})")),
+            SpecialKind::BranchPoint => {
+                Some(format!("other uniform motions branch off at {place} ({label})"))
+            }
+            _ => None,
+        }
     })
 }
 

@@ -1,6 +1,6 @@
 //! The search for Hopf points, which must find one.
 
-use super::course::{ends, unlocated_changes};
+use super::course::{ends, turns, unlocated_changes};
 use crate::description;
 use crate::error::{Error, unless_stopped};
 use crate::neglected_dry_friction::NeglectedDryFriction;
@@ -57,7 +57,7 @@ fn nothing_found(wheel: &Wheel, along: Along, branch: &MotionBranch) -> String {
         stability(high_stable),
         description::quantity(along.key(), high),
     );
-    for sentence in ends(branch) {
+    for sentence in turns(branch).chain(ends(branch)) {
         message += &format!("; {sentence}");
     }
     let changes: Vec<String> = unlocated_changes(branch).collect();

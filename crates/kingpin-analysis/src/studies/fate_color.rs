@@ -8,6 +8,7 @@ pub(super) fn fate_color(fate: Fate) -> Color {
     match fate {
         Fate::UniformMotion => palette::SKY_BLUE.lightened(0.55),
         Fate::Shimmy => palette::VERMILION,
+        Fate::SteadySliding => palette::GREEN,
         Fate::Tumbling => palette::ORANGE.lightened(0.35),
         Fate::Escape => palette::GREY,
         Fate::Irregular => palette::VERMILION.lightened(0.5),

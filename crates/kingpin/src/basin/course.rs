@@ -54,6 +54,16 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// The state `(u, q, psi, V, Omega)` of the steady sliding next to where a wheel that slides is, if small disturbances of it die out.
+    pub(super) fn steady_sliding(&self) -> Option<[f64; 5]> {
+        match self {
+            Self::Hybrid { wheel, state } => {
+                wheel.steady_sliding_near(state).map(|steady| reduced(&steady.public()))
+            }
+            _ => None,
+        }
+    }
+
     /// Goes on for `duration`, with nodes at multiples of `spacing` and wherever the equations change.
     pub(super) fn follow(
         &mut self,

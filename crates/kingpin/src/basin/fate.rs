@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 /// A motion has returned when it stays this near the uniform motion, relative to the reference speed, ...
-const NEAR: f64 = 0.02;
+pub(super) const NEAR: f64 = 0.02;
 /// ... for this many natural periods of the springs.
 const PERIODS_NEAR: f64 = 3.0;
 /// Part of the duration for which a motion has to be near where it is not known whether small ones die out; then it is undecided.
@@ -41,6 +41,9 @@ pub enum Fate {
     /// The caster swings to and fro for ever: the motion repeats itself to a millionth of its size and, pushed a thousandth
     /// outwards or inwards, comes back to a tenth of that.
     Shimmy,
+    /// The wheel slides for ever with the caster at rest in the towing frame: the motion stays near steady sliding of which small
+    /// disturbances die out, as near as it has to come to the uniform motion to have returned.
+    SteadySliding,
     /// It lasts to the end of the duration, the caster turning right round.
     Tumbling,
     /// It grows beyond fifty times the reference speed.
@@ -57,9 +60,10 @@ pub enum Fate {
 
 impl Fate {
     /// All fates.
-    pub const ALL: [Fate; 7] = [
+    pub const ALL: [Fate; 8] = [
         Fate::UniformMotion,
         Fate::Shimmy,
+        Fate::SteadySliding,
         Fate::Tumbling,
         Fate::Escape,
         Fate::Irregular,
@@ -72,6 +76,7 @@ impl Fate {
         match self {
             Fate::UniformMotion => "uniform motion",
             Fate::Shimmy => "shimmy",
+            Fate::SteadySliding => "steady sliding",
             Fate::Tumbling => "tumbling",
             Fate::Escape => "escape",
             Fate::Irregular => "irregular swinging",

@@ -7,8 +7,8 @@
 //! tells whether it lasts: swinging of this kind was seen to die out after hundreds of seconds.
 
 use super::attractor::Attractor;
-use super::course::Course;
-use super::fate::{Fate, PATIENCE, Target, Watch};
+use super::course::{Course, Node};
+use super::fate::{Fate, NEAR, PATIENCE, Target, Watch};
 use super::maxima::{Cycle, Maxima, Maximum, RUN, WINDOWS};
 use super::pushed::comes_back;
 use crate::simulation::SimulationError;
@@ -100,6 +100,9 @@ impl<'a> Lasting<'a> {
                 }
                 self.maxima.take(self.time, node, PERIODS_PER_WINDOW * target.natural_period);
             }
+            if self.slides_steadily(&nodes, target) {
+                return Ok(Seen::Ends(Fate::SteadySliding));
+            }
             // The maxima of a caster that turns right round tell nothing.
             let angles = nodes.iter().map(|node| node.angle[0]);
             let [low, high] = angles.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], angle| {
@@ -152,6 +155,17 @@ impl<'a> Lasting<'a> {
             Seen::Swings if self.maxima.is_irregular() => Ok(Fate::Irregular),
             Seen::Swings => Ok(Fate::Undecided),
         }
+    }
+
+    /// Whether the wheel stayed, for all of a piece of the motion, near steady sliding of which small disturbances die out.
+    fn slides_steadily(&self, piece: &[Node], target: &Target) -> bool {
+        let Some(last) = piece.last() else { return false };
+        let stays_near = |centre: &[f64; 5], distance: f64| {
+            piece.iter().all(|node| target.separation(&node.state, centre) < distance)
+        };
+        // Looking for it costs more than seeing that the motion is far from steady.
+        stays_near(&last.state, 2.0 * NEAR)
+            && self.course.steady_sliding().is_some_and(|steady| stays_near(&steady, NEAR))
     }
 
     /// Whether the motion swings irregularly and cannot return.

@@ -18,6 +18,9 @@ const VARIANCE_RATIO: f64 = 10.0;
 /// A size that scatters less than this in either half, relative to its mean, is not that of an irregular motion.
 const LEAST_SCATTER: f64 = 1e-3;
 
+/// A caster that swings by less than this, in rad, is at rest but for rounding.
+const LEAST_SIZE: f64 = 1e-6;
+
 /// A place where the caster angle is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Maximum {
@@ -104,7 +107,8 @@ impl Maxima {
         let [before, after] = [variance(early), variance(late)];
         let size = 0.5 * (mean(early) + mean(late));
         let error = ((before + after) / (WINDOWS / 2) as f64).sqrt();
-        before.min(after).sqrt() > LEAST_SCATTER * size
+        size > LEAST_SIZE
+            && before.min(after).sqrt() > LEAST_SCATTER * size
             && before.max(after) < VARIANCE_RATIO * before.min(after)
             && (mean(early) - mean(late)).abs() < STANDARD_ERRORS * error
     }

@@ -46,6 +46,7 @@ pub(crate) mod model;
 mod pieces;
 mod regime;
 mod smoothed;
+mod steady;
 #[cfg(test)]
 mod swing_tests;
 #[cfg(test)]
@@ -133,6 +134,7 @@ pub(crate) fn phase_at(phases: &[Phase], time: f64) -> Option<&Phase> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct SlidingWheel {
+    wheel: Wheel,
     equations: Equations<f64>,
     rolling: RollingWheel,
     /// Whether the ground supplies whatever force rolling takes.
@@ -184,6 +186,7 @@ impl Wheel {
 
     fn follower(&self, equations: Equations<f64>, rolls_always: bool) -> Result<SlidingWheel, KingpinError> {
         Ok(SlidingWheel {
+            wheel: *self,
             equations,
             rolling: self.rolling(&[])?,
             rolls_always,

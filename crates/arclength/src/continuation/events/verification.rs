@@ -2,7 +2,7 @@
 //! are searched again.
 
 use super::count::reachable;
-use super::event::Unlocated;
+use super::event::{Event, Unlocated};
 use super::node::Node;
 use super::scan::Scan;
 use crate::continuation::corrector::across;
@@ -76,6 +76,7 @@ impl<C: Curve> Scan<'_, C> {
             .map(|event| (along(self.curve, origin, &event.solution.unknown), event))
             .collect();
         placed.sort_by(|one, other| one.0.total_cmp(&other.0));
+        drop_shadows(&mut placed);
         placed.dedup_by(|next, previous| self.is_repeated(next, previous));
         let mut each: Vec<(f64, EventOf<C>)> = Vec::with_capacity(placed.len());
         for (place, event) in placed {
@@ -243,4 +244,14 @@ impl<C: Curve> Scan<'_, C> {
         let high = across(self.curve, origin, high, self.settings).ok()?;
         Some((Node::new(self.curve, low), Node::new(self.curve, high)))
     }
+}
+
+/// Drops what was only bracketed at the place of a point that satisfies its defining system: what makes the test function vanish, and
+/// its own defining system singular, is that point. Two eigenvalues that come to zero together at a branch point have the sum zero there.
+fn drop_shadows<K, P>(placed: &mut Vec<(f64, Event<K, P>)>) {
+    let located: Vec<f64> =
+        placed.iter().filter(|(_, event)| event.is_located).map(|(place, _)| *place).collect();
+    placed.retain(|(place, event)| {
+        event.is_located || located.iter().all(|other| (other - place).abs() > SAME_PLACE)
+    });
 }

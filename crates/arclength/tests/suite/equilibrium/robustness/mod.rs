@@ -3,6 +3,7 @@
 mod close_points;
 mod crossings;
 mod degenerate_fields;
+mod double_zero;
 mod random_fields;
 mod requests;
 mod symmetry;
