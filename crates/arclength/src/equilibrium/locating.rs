@@ -28,7 +28,8 @@ const CANDIDATES: usize = 3;
 /// times the last update: Newton's method converges slowly to a branch point, at which the equations of a fold are singular.
 const NO_UNFOLDING: f64 = 1e-8;
 const UNCERTAIN: f64 = 1e3;
-/// A located point may lie this part of the bracket outside it.
+/// A located point may lie this part of the bracket outside it, and as far as solutions may be off next to a point at which the
+/// Jacobian is singular.
 const MARGIN: f64 = 1e-6;
 /// Perturbation of the field, relative to its fastest rate, below which a branch point is one of the field itself.
 const UNPERTURBED: f64 = 1e-12;
@@ -71,8 +72,8 @@ fn nearer_end(curve: &EquilibriumCurve<'_>, before: &Node, after: &Node, test: T
 fn inside(scales: &[f64], before: &Node, distance: f64, unknown: &[f64]) -> bool {
     let along = position(before, unknown, scales);
     let offset: Vec<f64> = unknown.iter().zip(&before.unknown).map(|(there, here)| there - here).collect();
-    let margin = MARGIN * distance;
-    along > -margin && along < distance + margin && length(&offset, scales) < 1.5 * distance
+    let margin = MARGIN * distance + AGREEMENT;
+    along > -margin && along < distance + margin && length(&offset, scales) < 1.5 * distance + AGREEMENT
 }
 
 /// Error estimate of the parameter, the last unknown.

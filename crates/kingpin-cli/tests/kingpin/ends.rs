@@ -115,6 +115,27 @@ fn a_load_that_does_not_enter_decides_nothing() {
     );
 }
 
+/// With springs that differ, and no damper along the path, the king pin has no place of its own along the path where
+/// `m_c (l - l_c) omega^2 = k_u l`: two eigenvalues are zero, and motions with any `u` branch off.
+#[test]
+fn an_anisotropic_suspension_loses_its_stability_at_a_branch_point() {
+    let folder = Folder::new();
+    let wheel = "-s l=0.09 -s r=1.5 -s m_w=0.35 -s m_c=0.09 -s J_wxi=5e-5 -s J_wzeta=3e-5 -s J_Cz=4e-6 -s R=0.04 -s l_c=0.02 \
+                 -s k_u=40 -s k_q=300 -s F_Az=-20";
+    let speed = 1.5 * (40.0 * 0.09 / (0.09 * 0.07_f64)).sqrt();
+    for interval in ["20:40", "4:60", "30:39.5"] {
+        let run = folder.run(&format!("hopf {wheel} --along v={interval} -q"));
+        let text = run.output.clone() + &run.messages;
+        let told: Vec<f64> = text
+            .split("other uniform motions branch off at v = ")
+            .skip(1)
+            .map(|rest| rest.split(' ').next().unwrap().parse().unwrap())
+            .collect();
+        assert!(matches!(told[..], [told] if (told - speed).abs() < 1e-6), "{text}");
+        assert!(!text.contains("bracketed") && !text.contains("turns"), "{text}");
+    }
+}
+
 /// Where `stability` knows at which speed the stability changes, no interval has to be guessed.
 #[test]
 fn where_the_stability_changes_is_told_where_no_hopf_point_is_found() {

@@ -18,6 +18,8 @@ const SURROUNDINGS: f64 = 0.02;
 const COINCIDENT: f64 = 1e-8;
 /// Distance, in the metric, within which two points of one kind are one that was found twice.
 const SAME_PLACE: f64 = 1e-7;
+/// The same for what was only bracketed beside a point that was located: next to a branch point what the Jacobian decides is rounding.
+const SHADOW: f64 = 1e-5;
 
 impl<C: Curve> Scan<'_, C> {
     /// Special points between two solutions, each with the change in the number of unstable directions that belongs to it.
@@ -252,6 +254,6 @@ fn drop_shadows<K, P>(placed: &mut Vec<(f64, Event<K, P>)>) {
     let located: Vec<f64> =
         placed.iter().filter(|(_, event)| event.is_located).map(|(place, _)| *place).collect();
     placed.retain(|(place, event)| {
-        event.is_located || located.iter().all(|other| (other - place).abs() > SAME_PLACE)
+        event.is_located || located.iter().all(|other| (other - place).abs() > SHADOW)
     });
 }
