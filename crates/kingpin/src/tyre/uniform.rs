@@ -26,6 +26,8 @@ const NEWTON_TOLERANCE: f64 = 1e-14;
 const NEWTON_STEPS: usize = 20;
 /// The way to the circle ends when its step, as a part of the way, falls below this.
 const SHORTEST_STEP: f64 = 1e-6;
+/// Where the king pin is so many caster lengths aside the way goes on without end, towards `psi = +-pi/2`, and to no circle.
+const FARTHEST: f64 = 1e3;
 /// Largest change of the caster angle in rad in a step.
 const LARGEST_TURN: f64 = 0.2;
 
@@ -160,18 +162,24 @@ impl Wheel {
         let target = self.get(Key::Curvature);
         let mut free = self.padded(&straight);
         let (mut part, mut step) = (0.0, 1.0);
+        let mut slope = [0.0; STATES];
         while part < 1.0 && target != 0.0 {
             let next = f64::min(part + step, 1.0);
+            let predicted = std::array::from_fn(|index| free[index] + (next - part) * slope[index]);
             let angle = |free: &Padded<f64>| self.tyre_state(free, next * target)[2];
             let curvature = next * target;
             // A long way to the next motion leads to another one, with the caster turned round.
             let near = |found: Padded<f64>| {
                 let is_near = (angle(&found) - angle(&free)).abs() < LARGEST_TURN;
-                let rolls_on = self.tyre_state(&found, curvature)[3] > 0.0;
-                if is_near && rolls_on { Ok(found) } else { Err(f64::INFINITY) }
+                let [u, q, _, forward, ..] = self.tyre_state(&found, curvature);
+                let is_bounded = u.hypot(q) < FARTHEST * self.get(Key::L);
+                if is_near && is_bounded && forward > 0.0 { Ok(found) } else { Err(f64::INFINITY) }
             };
-            match self.newton_with_tyre(&free, curvature, None).and_then(near) {
-                Ok(found) => (free, part, step) = (found, next, 2.0 * step),
+            match self.newton_with_tyre(&predicted, curvature, None).and_then(near) {
+                Ok(found) => {
+                    slope = std::array::from_fn(|index| (found[index] - free[index]) / (next - part));
+                    (free, part, step) = (found, next, 2.0 * step);
+                }
                 Err(residual) if step < SHORTEST_STEP => {
                     return Err(NoUniformMotion::LostOnTheCircle { curvature: part * target, residual });
                 }
