@@ -1,6 +1,6 @@
 //! What continuation asks of a curve of cycles: residuals, meshes, test functions, where special points lie, where the curve ends.
 
-use super::curve::{CycleCurve, CycleInspection, STANDING};
+use super::curve::{Birth, CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
 use super::extrema::{Extremes, extremes};
 use super::floquet::DEFECT;
@@ -356,7 +356,7 @@ impl Curve for CycleCurve<'_> {
                 beside,
             })));
         }
-        if self.doubled
+        if self.birth == Birth::Doubled
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {
             return Some(Ending::Between(Stop::Problem(CycleEnd::PeriodDoubling {
@@ -377,7 +377,7 @@ impl Curve for CycleCurve<'_> {
             })));
         }
         // Cycles that are not known to be doubled ones may be so; then they pass what looks like a branch point.
-        if !self.doubled
+        if self.birth != Birth::Doubled
             && before.orientation * after.orientation < 0.0
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)
         {

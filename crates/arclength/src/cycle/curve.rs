@@ -90,6 +90,17 @@ pub(crate) struct Fitted {
     pub states: Vec<f64>,
 }
 
+/// What is known of a branch of cycles from where it starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Birth {
+    /// Nothing.
+    Unknown,
+    /// At a Hopf point whose first Lyapunov coefficient certainly is not zero: the parameter changes along the branch.
+    OfCertainSense,
+    /// At a period doubling: it ends where the cycles become single again.
+    Doubled,
+}
+
 /// Limit cycles `u' = T f(u, p)` along one parameter.
 #[derive(Debug)]
 pub(crate) struct CycleCurve<'a> {
@@ -105,8 +116,8 @@ pub(crate) struct CycleCurve<'a> {
     /// Sizes that measure the error: amplitudes.
     pub(super) amplitudes: Vec<f64>,
     pub(super) sizes: StateSizes,
-    /// Whether the branch is one of doubled cycles, which ends where they become single again.
-    pub doubled: bool,
+    /// What is known of the branch from where it starts.
+    pub birth: Birth,
     pub(super) error_estimate: f64,
     /// Whether both ends of the last step are neutral.
     pub(super) follows_neutral_family: bool,
@@ -161,7 +172,7 @@ impl<'a> CycleCurve<'a> {
             period_scale: 1.0,
             amplitudes: vec![1.0; n],
             sizes,
-            doubled: false,
+            birth: Birth::Unknown,
             error_estimate: f64::INFINITY,
             follows_neutral_family: false,
             refinement: 1.0,
@@ -184,7 +195,7 @@ impl<'a> CycleCurve<'a> {
         let collocation = Collocation::new(self.collocation.problem.clone(), mesh, degree);
         let settings = (self.resolution, self.parameter_scale);
         let mut curve = Self::with_sizes(collocation, settings, unknown, self.sizes.anew());
-        (curve.settings, curve.doubled) = (self.settings, self.doubled);
+        (curve.settings, curve.birth) = (self.settings, self.birth);
         curve
     }
 
@@ -256,7 +267,9 @@ impl<'a> CycleCurve<'a> {
             (STANDING, NEUTRAL.min(NEUTRAL_ERRORS * error))
         };
         let one = |multiplier: &Multiplier| multiplier.argument == 0.0 && multiplier.log_modulus.abs() < near;
-        self.turn(tangent).abs() < standing && floquet.nontrivial.iter().any(one)
+        self.birth != Birth::OfCertainSense
+            && self.turn(tangent).abs() < standing
+            && floquet.nontrivial.iter().any(one)
     }
 
     /// Whether the rate of change of the parameter has the wrong sign. On the explosion of a canard it may be nothing but

@@ -1,7 +1,7 @@
 //! Asking for a branch of limit cycles: where it starts, how it is followed.
 
 use super::branch::{CycleBranch, CyclePoint, FollowedParameter};
-use super::curve::{CycleCurve, CycleInspection};
+use super::curve::{Birth, CycleCurve, CycleInspection};
 use super::end::CycleEnd;
 use super::expansion::Expansion;
 use super::floquet::UnstableCount;
@@ -50,6 +50,9 @@ const CERTAIN_RATE: f64 = 1e-6;
 const AGREE_WITHIN: f64 = 10.0;
 const TURNS_AGREE: [f64; 2] = [1e-7, 1e-3];
 const TURNS_MAY_AGREE: f64 = 0.3;
+
+/// Error of a cycle, relative to its amplitude, beyond which it is so small that its multipliers say nothing.
+const RESOLVED: f64 = 1e-3;
 
 /// Part of the range of the parameter by which the first cycle may lie from a given one that is a fold.
 const AT_FOLD: f64 = 1e-3;
@@ -313,12 +316,12 @@ impl<'a> Asked<'a> {
     fn follow(
         &self,
         start: &Departure,
-        doubled: bool,
+        birth: Birth,
         request: &Request<'_, CycleInspection>,
         observer: &mut Observer<'_, CycleInspection, SpecialKind>,
     ) -> Result<FollowedCycles, Error> {
         let mut curve = self.curve(start);
-        curve.doubled = doubled;
+        curve.birth = birth;
         let mut followed =
             follow(&mut curve, start.unknown.clone(), start.tangent.clone(), request, observer)?;
         if matches!(followed.stop, Stop::StepTooSmall { .. }) {
@@ -378,9 +381,9 @@ impl<'a> Asked<'a> {
         let directions = both_ways(|sign| {
             if sign < 0.0 {
                 start.tangent.iter_mut().for_each(|entry| *entry = -*entry);
-                return self.follow(&start, false, request, observer);
+                return self.follow(&start, Birth::Unknown, request, observer);
             }
-            match self.follow(&start, false, request, observer) {
+            match self.follow(&start, Birth::Unknown, request, observer) {
                 // At a fold the parameter stands still: the size of the cycle changes.
                 Err(Error::NotFound { sought, cause }) => {
                     start.tangent = orbit.deviation();
@@ -394,7 +397,7 @@ impl<'a> Asked<'a> {
                                 && self.bound.holds(value, START_ROUNDING)
                         })
                     };
-                    match self.follow(&start, false, request, observer) {
+                    match self.follow(&start, Birth::Unknown, request, observer) {
                         Ok(followed) if is_there(&followed) => Ok(followed),
                         _ => Err(Error::NotFound { sought, cause }),
                     }
@@ -442,7 +445,9 @@ impl<'a> Asked<'a> {
         self.first_of(amplitude, AMPLITUDE_REDUCTION, |amplitude| {
             let mut first = |expansion: Option<&Expansion>| {
                 let start = hopf.cycle(place, amplitude, expansion, self.resolution.degree);
-                let followed = self.follow(&start, false, request, observer)?;
+                let is_certain = hopf.cubic_coefficient.is_normal();
+                let birth = if is_certain { Birth::OfCertainSense } else { Birth::Unknown };
+                let followed = self.follow(&start, birth, request, observer)?;
                 let expected = amplitude * amplitude * hopf.cubic_coefficient / hopf.crossing_speed;
                 if self.is_stray(&followed, FARTHEST_FIRST * expected.abs()) {
                     return Err(Error::NotFound { sought: "cycle", cause: CorrectionFailure::Diverged });
@@ -493,6 +498,9 @@ impl<'a> Asked<'a> {
         let start = hopf.cycle(place, amplitude, None, self.resolution.degree);
         let mut curve = self.curve(&start);
         let Ok(found) = exact_start(&mut curve, start.unknown, start.tangent, request) else { return false };
+        if found.point.error_estimate > RESOLVED {
+            return false;
+        }
         if let Some(expected) = unstable_at_birth {
             return found.point.floquet.unstable() == UnstableCount { count: expected, is_certain: true };
         }
@@ -566,10 +574,11 @@ impl<'a> Asked<'a> {
         let size = start.tangent.iter().zip(&image).map(|(a, b)| a * b).sum::<f64>().sqrt();
         start.tangent.iter_mut().for_each(|entry| *entry *= sign / size);
         let origin = start.unknown.clone();
+        let birth = if branching.doubled { Birth::Doubled } else { Birth::Unknown };
         self.first_of(FIRST_DISTANCE, DISTANCE_REDUCTION, |distance| {
             let ahead = origin.iter().zip(&start.tangent).map(|(value, slope)| value + distance * slope);
             start.unknown = ahead.collect();
-            self.follow(&start, branching.doubled, request, observer)
+            self.follow(&start, birth, request, observer)
         })
     }
 
