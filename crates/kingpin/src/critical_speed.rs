@@ -9,10 +9,13 @@ use crate::body::Body;
 use crate::parameters::{Key, Tyre};
 use crate::wheel::Wheel;
 
-/// Smallest speed in m/s at which a change of stability is looked for.
-pub(crate) const SLOWEST: f64 = 1e-3;
-/// Number of speeds, in geometric progression, between which changes of stability are looked for.
+/// Smallest speed in m/s at which a change of stability is looked for, unless straight towing has one at a smaller one; then it is this
+/// part of that.
+const SLOWEST: f64 = 1e-3;
+const SLOWER: f64 = 0.1;
+/// Number of speeds from that smallest one on, in geometric progression, between which changes of stability are looked for.
 const SPEEDS: usize = 400;
+const MOST_SPEEDS: f64 = 4000.0;
 /// The interval of the critical speed is halved until it is this small, relative to the speed.
 const TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// Relative distances from a critical speed, one after the other, at which the stability on both sides is compared.
@@ -39,8 +42,8 @@ pub struct CriticalSpeed {
 impl Wheel {
     /// The smallest towing speed at which the uniform motion changes its stability; `None` where no such speed is found.
     ///
-    /// On a circle, but for the plain wheel, and with a tyre the growth rate is sampled at 400 speeds from 1 mm/s to the largest at which the motion
-    /// exists, and at its extrema between them; its first zero is found by bisection.
+    /// On a circle, but for the plain wheel, and with a tyre the growth rate is sampled at 400 speeds from 1 mm/s, or less where straight towing has a smaller
+    /// critical speed, to the largest at which the motion exists, and at its extrema between them; its first zero is found by bisection.
     pub fn critical_speed(&self) -> Option<CriticalSpeed> {
         let speed = match self.changes_in_closed_form() {
             Some(speeds) => speeds.first().copied(),
@@ -113,8 +116,20 @@ impl Wheel {
         let limit = (body.lateral_stiffness * body.caster_length / body.static_moment).sqrt() * radius;
         let fastest = Key::V.allowed().highest;
         let fastest = if limit < fastest { limit } else { fastest };
-        let ratio = (fastest / SLOWEST).powf(1.0 / (SPEEDS - 1) as f64);
-        (0..SPEEDS).map(|index| SLOWEST * ratio.powi(index as i32)).collect()
+        let slowest = self.slowest_speed();
+        let intervals = (SPEEDS - 1) as f64 * (fastest / slowest).ln() / (fastest / SLOWEST).ln();
+        let count = intervals.round().clamp(1.0, MOST_SPEEDS) as usize;
+        let ratio = (fastest / slowest).powf(1.0 / count as f64);
+        (0..=count).map(|index| slowest * ratio.powi(index as i32)).collect()
+    }
+
+    /// Smallest speed in m/s at which a change of stability is looked for.
+    pub(crate) fn slowest_speed(&self) -> f64 {
+        let straight = match self.tyre() {
+            Tyre::Rigid => self.critical_speeds_straight(),
+            _ => Vec::new(),
+        };
+        straight.first().map_or(SLOWEST, |speed| SLOWEST.min(SLOWER * speed))
     }
 
     /// Speeds in ascending order at which the growth rate between those that are looked at passes through zero.

@@ -5,7 +5,6 @@
 //! them the speeds of the scan say which stability is certain.
 
 use crate::branches::{Along, MotionOptions};
-use crate::critical_speed::SLOWEST;
 use crate::error::KingpinError;
 use crate::parameters::Key;
 use crate::wheel::Wheel;
@@ -65,7 +64,8 @@ impl Wheel {
         };
         changes.sort_by(f64::total_cmp);
         changes.dedup_by(|next, before| (*next - *before).abs() <= SAME_CHANGE * *before);
-        let searched = [SLOWEST, scanned.last().copied().unwrap_or(SLOWEST)];
+        let slowest = self.slowest_speed();
+        let searched = [slowest, scanned.last().copied().unwrap_or(slowest)];
         let parts = self.parts(scanned, &changes);
         Ok(StabilityOverSpeed { searched, parts, changes, is_complete, not_followed })
     }
@@ -77,9 +77,9 @@ impl Wheel {
         not_followed: &mut Vec<[f64; 2]>,
         control: &Control<'_>,
     ) -> Result<Vec<f64>, KingpinError> {
-        let fastest = scanned.last().copied().unwrap_or(SLOWEST);
+        let mut slow = self.slowest_speed();
+        let fastest = scanned.last().copied().unwrap_or(slow);
         let mut changes = Vec::new();
-        let mut slow = SLOWEST;
         while slow < fastest {
             let fast = (DECADE * slow).min(fastest);
             let along = Along::new(Key::V, slow, fast)?;

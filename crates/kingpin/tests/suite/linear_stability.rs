@@ -203,6 +203,18 @@ fn relative_determinant(mut matrix: [[num_complex::Complex64; 5]; 5]) -> f64 {
 }
 
 /// Damping that goes to zero leaves the closed form; the general search finds a zero of the growth rate.
+/// At low speeds a circle is straight, and there the critical speed is proportional to a small lateral damper.
+#[test]
+fn a_weak_damper_has_a_critical_speed_below_a_millimetre_a_second() {
+    let trolley = Wheel::from_toml(include_str!("../../examples/wheels/trolley.toml")).unwrap();
+    let on_circle = trolley.with(Key::TurningRadius, 2.0).unwrap();
+    let straight = |damper: f64| trolley.with(Key::CQ, damper).unwrap().critical_speed().unwrap().speed;
+    for damper in [0.05, 0.005, 5e-6] {
+        let found = on_circle.with(Key::CQ, damper).unwrap().critical_speed().unwrap().speed;
+        assert_relative_eq!(found, straight(damper), max_relative = 1e-3);
+    }
+}
+
 #[test]
 fn critical_speed_of_damped_wheels() {
     let plain = Wheel::default().critical_speed().unwrap().speed;
