@@ -72,7 +72,7 @@ fn check_multipliers(point: &Value, truth: &[[f64; 2]], row: &str) {
         let size = real.hypot(*imaginary);
         let nearest = (0..told.len()).min_by(|a, b| distance(&told[*a]).total_cmp(&distance(&told[*b])));
         let nearest = nearest.unwrap();
-        let allowed = (3.0 * number(&errors[nearest]) * size).max(1e-12).min(1e-8 * size.max(1.0));
+        let allowed = (3.0 * number(&errors[nearest]) * size).max(5e-12).min(1e-8 * size.max(1.0));
         assert!(distance(&told[nearest]) <= allowed, "{row}: {told:?}, errors {errors:?}");
     }
 }
