@@ -8,6 +8,8 @@ mod hybrid;
 mod kinks;
 mod monitors;
 mod orbits;
+mod piecewise_linear;
+mod piecewise_linear_jumps;
 mod readme;
 mod restarts;
 mod sections;

@@ -283,7 +283,6 @@ impl<C: Curve> Run<'_, '_, C> {
                 }
                 error => failed(error),
             })?;
-        self.note(unlocated);
         let mut between: Between<C> = found
             .into_iter()
             .filter(|event| !self.is_known(event))
@@ -292,9 +291,16 @@ impl<C: Curve> Run<'_, '_, C> {
         let passed = between.iter().map(|(solution, _)| solution);
         let leaves = passed.chain([advanced]).find_map(|solution| first_exit(&solution.unknown, bounds));
         if let Some(&bound) = bounds.first() {
-            insert_values(self.curve, current, &mut between, advanced, (bound, values), settings)
-                .map_err(failed)?;
+            let all_found =
+                insert_values(self.curve, current, &mut between, advanced, (bound, values), settings)
+                    .map_err(failed)?;
+            let length = along(self.curve, current, &advanced.unknown);
+            if !all_found && length.abs() > settings.shortest_jump {
+                self.search.restart();
+                return Err(Step::Again(STEP_REDUCTION * length));
+            }
         }
+        self.note(unlocated);
         let mut steps = self.solutions.iter().rev().filter(|(_, origin)| *origin == Origin::Step);
         let earlier = steps.nth(1).map(|(solution, _)| solution);
         insert_targets(self.curve, earlier, current, &mut between, advanced, targets, settings)

@@ -70,8 +70,8 @@ const SAME_FRACTION: f64 = 1e-6;
 /// Solutions between two neighbours, in order.
 pub(super) type Between<C> = Vec<(Solution<<C as Curve>::Point>, Origin<<C as Curve>::Kind>)>;
 
-/// Inserts a converged solution wherever the first bounded parameter passes a requested value; none where a branch point has that value
-/// and none can be told from it.
+/// Inserts a converged solution wherever the first bounded parameter passes a requested value. Whether all were found: none can be told
+/// from a branch point that has that value, and where the curve bends sharply within a step none may be found from its ends.
 ///
 /// # Errors
 /// When eigenvalues of a solution cannot be computed.
@@ -82,10 +82,11 @@ pub(super) fn insert_values<C: Curve>(
     advanced: &Solution<C::Point>,
     (bound, values): (Bound, &[f64]),
     settings: &Settings,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
+    let mut all_found = true;
     for &value in values {
         let test = |_: &mut C, solution: &Solution<C::Point>| Some(bound.value(&solution.unknown) - value);
-        insert_passages(curve, current, between, advanced, test, |curve, left, right| {
+        all_found &= insert_passages(curve, current, between, advanced, test, |curve, left, right| {
             let found = fix(curve, left, right, bound.from_end, value, settings).or_else(|error| {
                 fix_closely(curve, left, right, bound.from_end, value, settings)?.ok_or(error)
             });
@@ -103,7 +104,7 @@ pub(super) fn insert_values<C: Curve>(
             Ok(found.map(|solution| (solution, Origin::Requested)))
         })?;
     }
-    Ok(())
+    Ok(all_found)
 }
 
 /// Inserts a solution wherever a monitor passes the value of a target; `earlier` is the solution before `current`, if there is one.
@@ -219,7 +220,7 @@ fn least_by_parabolas<C: Curve>(
     None
 }
 
-/// Inserts what `find` finds between neighbours at which a test has different signs.
+/// Inserts what `find` finds between neighbours at which a test has different signs; whether it found something between all of them.
 fn insert_passages<C: Curve>(
     curve: &mut C,
     current: &Solution<C::Point>,
@@ -231,24 +232,26 @@ fn insert_passages<C: Curve>(
         &Solution<C::Point>,
         &Solution<C::Point>,
     ) -> Result<Option<(Solution<C::Point>, Origin<C::Kind>)>, Error>,
-) -> Result<(), Error> {
+) -> Result<bool, Error> {
     let mut index = 0;
+    let mut all_found = true;
     while index <= between.len() {
         let left = if index == 0 { current } else { &between[index - 1].0 };
         let right = between.get(index).map_or(advanced, |(solution, _)| solution);
         if let (Some(before), Some(after)) = (test(curve, left), test(curve, right)) {
             let passes = (before < 0.0) != (after < 0.0) || after == 0.0;
-            if passes
-                && before != 0.0
-                && let Some(found) = find(curve, left, right)?
-            {
-                between.insert(index, found);
-                index += 1;
+            if passes && before != 0.0 {
+                if let Some(found) = find(curve, left, right)? {
+                    between.insert(index, found);
+                    index += 1;
+                } else {
+                    all_found = false;
+                }
             }
         }
         index += 1;
     }
-    Ok(())
+    Ok(all_found)
 }
 
 /// The solution between two neighbours at which the unknown `from_end` has the given value.
