@@ -205,6 +205,11 @@ fn told(end: &SlidingBranchEnd, along: &VaryingParameter, last: NamedNumbers) ->
             last,
             remedy: Some("an interval beyond it, where kicked motions may settle on others".to_owned()),
         },
+        SlidingBranchEnd::NotFollowed { cause, value } => End {
+            cause: format!("beyond {} the motion cannot be followed: {cause}", along.at(*value)),
+            last,
+            remedy: Some("an interval beyond it, where kicked motions may settle on others".to_owned()),
+        },
         end => End { cause: end.to_string(), last, remedy: None },
     }
 }

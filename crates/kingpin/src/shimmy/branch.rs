@@ -104,6 +104,13 @@ pub enum SlidingBranchEnd {
         /// Parameter value of the last motion.
         value: f64,
     },
+    /// Beyond it the motion cannot be followed over a period, however short the step.
+    NotFollowed {
+        /// What happened.
+        cause: Refusal,
+        /// Parameter value of the last motion.
+        value: f64,
+    },
     /// Another reason.
     Continuation(Stop),
 }
@@ -116,6 +123,9 @@ impl std::fmt::Display for SlidingBranchEnd {
                 formatter,
                 "beyond {value} the motion is known to a part of {error:.1e} only, however short the step"
             ),
+            Self::NotFollowed { cause, value } => {
+                write!(formatter, "beyond {value} the motion cannot be followed: {cause}")
+            }
             Self::Continuation(stop) => write!(formatter, "{stop}"),
         }
     }
@@ -261,6 +271,10 @@ impl PeriodicSliding {
                     }
                     Some(Refusal::Inexact { error }) => Some(SlidingBranchEnd::Inexact {
                         error,
+                        value: along.convert(last.unknown[last.unknown.len() - 1]),
+                    }),
+                    Some(cause @ Refusal::Integration(_)) => Some(SlidingBranchEnd::NotFollowed {
+                        cause,
                         value: along.convert(last.unknown[last.unknown.len() - 1]),
                     }),
                     _ => Some(SlidingBranchEnd::Continuation(followed.stop)),
