@@ -4,6 +4,7 @@
 //! [`Columns`], [`parquet`], pictures, and [`files`] that appear whole or not at all. Nothing here knows a model, an option or
 //! a terminal.
 
+pub mod chunks;
 mod columns;
 mod destination;
 mod error;
