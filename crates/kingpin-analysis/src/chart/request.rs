@@ -4,7 +4,7 @@ use super::overlay::{Overlay, wheels};
 use super::result::{ChartResult, GROWTH_RATE, ROLLS, STABLE};
 use crate::axis::{axis, conversion};
 use crate::by_chunks::{ByChunks, Keep, in_a_chunk};
-use crate::error::Error;
+use crate::error::{Error, unless_stopped};
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control, SampledInterval};
@@ -126,7 +126,10 @@ impl ChartAnalysis {
             let control = control.part(part(index)..part(index + 1));
             overlays.push(Overlay::trace(*key, *value, wheel, &self.plane, &control)?);
         }
-        ChartResult::new(self.wheel, self.plane, chart, overlays, &control.quiet())
+        let result = ChartResult::new(self.wheel, self.plane, chart, overlays, &control.quiet())?;
+        // Whoever stopped it does not want to wait until it is written.
+        unless_stopped(control)?;
+        Ok(result)
     }
 }
 
