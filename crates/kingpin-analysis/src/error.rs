@@ -9,6 +9,7 @@ use kingpin::shimmy::ShimmyError;
 use kingpin::simulation::SimulationError;
 use kingpin_figure::FigureError;
 use kingpin_report::ReportError;
+use kingpin_report::chunks::ChunkError;
 use std::path::PathBuf;
 
 /// Why an analysis of a wheel gives no result.
@@ -112,6 +113,9 @@ pub enum Error {
         /// The cause.
         source: std::io::Error,
     },
+    /// The chunks of a run that is divided into shards could not be kept or put together.
+    #[error(transparent)]
+    Chunks(#[from] ChunkError),
     /// The control stopped a run of many parts.
     #[error("interrupted: {done} of {parts} parts are finished, {kept}")]
     Interrupted {
@@ -217,6 +221,10 @@ impl AnalysisError for Error {
             Self::Continuation(error) => matches!(error, arclength::Error::Invalid { .. }),
             Self::Start(error) => error.is_bad_request(),
             Self::Report(error) => error.is_bad_request(),
+            Self::Chunks(error) => !matches!(
+                error,
+                ChunkError::Missing { .. } | ChunkError::Damaged { .. } | ChunkError::Report(_)
+            ),
             Self::Identification(error) => {
                 !matches!(error, IdentificationError::NoStart(_) | IdentificationError::ManyMinima { .. })
             }

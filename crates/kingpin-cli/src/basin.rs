@@ -1,10 +1,12 @@
 //! `kingpin basin`: where motions end, depending on where they start.
 
 use crate::classification_options::ClassificationOptions;
+use crate::shard_options::{ShardOptions, run_shard};
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin_analysis::basin::BasinRequest;
+use kingpin_analysis::sharded::ShardedRequest;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin basin --x psi=-1:1:161 --y Omega=-60:60:121 -s v=6 -o basin.png
@@ -42,8 +44,11 @@ pub(crate) struct Basin {
     classification: ClassificationOptions,
 
     /// Go on with the run that is kept in PATH.journal
-    #[arg(long)]
+    #[arg(long, conflicts_with = "shard")]
     resume: bool,
+
+    #[command(flatten)]
+    shard: ShardOptions,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -65,6 +70,9 @@ impl Basin {
             seed: self.seed,
             classification: (&self.classification).into(),
         };
+        if let Some(shard) = self.shard.shard {
+            return run_shard(shard, &ShardedRequest::Basin(request), &self.output, "basin");
+        }
         let output = self.output.prepare()?;
         let analysis = request.validate()?;
         output.warn_of(analysis.warnings());

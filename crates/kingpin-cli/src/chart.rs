@@ -1,9 +1,11 @@
 //! `kingpin chart`: stability of the uniform motion over two parameters.
 
+use crate::shard_options::{ShardOptions, run_shard};
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::{Assignment, SampledInterval};
 use clap::Args;
 use kingpin_analysis::chart::ChartRequest;
+use kingpin_analysis::sharded::ShardedRequest;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin chart --x v=0.1:12:600 --y l=0.02:0.3:400 -o chart.svg";
@@ -25,6 +27,9 @@ pub(crate) struct Chart {
     overlay: Vec<Assignment>,
 
     #[command(flatten)]
+    shard: ShardOptions,
+
+    #[command(flatten)]
     wheel: WheelOptions,
     #[command(flatten)]
     output: OutputOptions,
@@ -42,6 +47,9 @@ impl Chart {
             y: self.y.clone(),
             overlay: self.overlay.clone(),
         };
+        if let Some(shard) = self.shard.shard {
+            return run_shard(shard, &ShardedRequest::Chart(request), &self.output, "chart");
+        }
         let analysis = request.validate()?;
         let output = self.output.prepare()?;
         output.warn_of(analysis.warnings());

@@ -11,10 +11,12 @@ mod folder_options;
 mod hopf;
 mod locus;
 mod margin;
+mod merge;
 mod paper;
 mod report;
 mod safe_kick;
 mod serve;
+mod shard_options;
 mod shimmy;
 mod simulate;
 mod stability;
@@ -53,6 +55,7 @@ enum Command {
     Basin(basin::Basin),
     SafeKick(safe_kick::SafeKick),
     Margin(margin::Margin),
+    Merge(merge::Merge),
     Damper(damper::Damper),
     Fit(fit::Fit),
     Serve(serve::Serve),
@@ -75,6 +78,7 @@ impl Command {
             Self::Basin(command) => command.run(),
             Self::SafeKick(command) => command.run(),
             Self::Margin(command) => command.run(),
+            Self::Merge(command) => command.run(),
             Self::Damper(command) => command.run(),
             Self::Fit(command) => command.run(),
             Self::Serve(command) => command.run(),

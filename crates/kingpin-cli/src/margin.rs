@@ -2,10 +2,12 @@
 
 use crate::classification_options::ClassificationOptions;
 use crate::disturbance_options::DisturbanceOptions;
+use crate::shard_options::{ShardOptions, run_shard};
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::SampledInterval;
 use clap::Args;
 use kingpin_analysis::margin::MarginRequest;
+use kingpin_analysis::sharded::ShardedRequest;
 use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay};
 
 const EXAMPLE: &str = "kingpin margin --along v=1:8:15 --kind release-angle -o margin.svg";
@@ -29,8 +31,11 @@ pub(crate) struct Margin {
     classification: ClassificationOptions,
 
     /// Go on with the run that is kept in PATH.journal
-    #[arg(long)]
+    #[arg(long, conflicts_with = "shard")]
     resume: bool,
+
+    #[command(flatten)]
+    shard: ShardOptions,
 
     #[command(flatten)]
     wheel: WheelOptions,
@@ -50,6 +55,9 @@ impl Margin {
             disturbance: (&self.disturbance).into(),
             classification: (&self.classification).into(),
         };
+        if let Some(shard) = self.shard.shard {
+            return run_shard(shard, &ShardedRequest::Margin(request), &self.output, "margin");
+        }
         let output = self.output.prepare()?;
         let analysis = request.validate()?;
         let journal = analysis.journal(output.first_file(), self.resume)?;

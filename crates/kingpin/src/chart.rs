@@ -13,6 +13,7 @@ use crate::wheel::Wheel;
 use arclength::control::Control;
 use arclength::lanes::{self, Kernel};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Most points of a grid.
 pub const MOST_POINTS: usize = 100_000_000;
@@ -55,6 +56,17 @@ pub struct GrowthRateChart {
     pub rolls: Vec<bool>,
 }
 
+/// Growth rate, stability and rolling at some points of a grid, as in a [`GrowthRateChart`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct GrowthRates {
+    /// Largest real part of the eigenvalues in 1/s; `None` where there is no uniform motion.
+    pub growth_rate: Vec<Option<f64>>,
+    /// Whether the uniform motion exists and is linearly stable; `None` where rounding could decide that either way.
+    pub stable: Vec<Option<bool>>,
+    /// Whether it exists and the ground can hold the wheel in it.
+    pub rolls: Vec<bool>,
+}
+
 impl Wheel {
     /// The growth rate of the uniform motion on a grid of `[columns, rows]` points.
     ///
@@ -77,31 +89,52 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<GrowthRateChart, KingpinError> {
         let (x, y) = axes(plane, points)?;
-        self.check_varies(&[plane.x().key(), plane.y().key()])?;
-        let mut growth_rate = vec![None; x.len() * y.len()];
-        let mut stable = vec![Some(false); x.len() * y.len()];
-        let mut rolls = vec![false; x.len() * y.len()];
-        let rows = (&mut growth_rate[..], &mut stable[..], &mut rolls[..]);
-        let (x_key, y_key) = (plane.x().key(), plane.y().key());
-        let width = x.len();
-        let chunk = rows_per_chunk(width) * width;
-        let progress = control.count(y.len());
-        (rows.0.par_chunks_mut(chunk), rows.1.par_chunks_mut(chunk), rows.2.par_chunks_mut(chunk))
-            .into_par_iter()
-            .zip(y.par_chunks(rows_per_chunk(width)))
-            .try_for_each(|((growth_rate, stable, rolls), y)| {
-                let points = y.iter().flat_map(|&y| x.iter().map(move |&x| (x, y)));
-                let results = growth_rate.iter_mut().zip(stable).zip(rolls);
-                for ((x, y), ((growth_rate, stable), rolls)) in points.zip(results) {
-                    control.check()?;
-                    let wheel = self.with(y_key, y).and_then(|wheel| wheel.with(x_key, x))?;
-                    let Some(point) = wheel.chart_point() else { continue };
-                    (*growth_rate, *stable, *rolls) = (Some(point.growth_rate), point.stable, point.rolls);
-                }
-                progress.advance(y.len());
-                Ok::<_, KingpinError>(())
-            })?;
+        let rates = self.growth_rates(plane, points, 0..x.len() * y.len(), control)?;
+        let GrowthRates { growth_rate, stable, rolls } = rates;
         Ok(GrowthRateChart { x, y, growth_rate, stable, rolls })
+    }
+
+    /// The growth rate of the uniform motion at some points of such a grid, counted row by row: the same numbers as in the whole chart.
+    ///
+    /// # Errors
+    /// As [`growth_rate_chart`](Self::growth_rate_chart).
+    ///
+    /// # Panics
+    /// Panics if the grid has fewer points.
+    pub fn growth_rates(
+        &self,
+        plane: &Plane,
+        points: [usize; 2],
+        range: Range<usize>,
+        control: &Control<'_>,
+    ) -> Result<GrowthRates, KingpinError> {
+        let (x, y) = axes(plane, points)?;
+        assert!(range.end <= x.len() * y.len(), "{range:?} of {} points", x.len() * y.len());
+        self.check_varies(&[plane.x().key(), plane.y().key()])?;
+        let mut growth_rate = vec![None; range.len()];
+        let mut stable = vec![Some(false); range.len()];
+        let mut rolls = vec![false; range.len()];
+        let (x_key, y_key) = (plane.x().key(), plane.y().key());
+        let progress = control.count(range.len());
+        let results = (
+            growth_rate.par_chunks_mut(POINTS_PER_CHUNK),
+            stable.par_chunks_mut(POINTS_PER_CHUNK),
+            rolls.par_chunks_mut(POINTS_PER_CHUNK),
+        );
+        results.into_par_iter().enumerate().try_for_each(|(chunk, (growth_rate, stable, rolls))| {
+            let results = growth_rate.iter_mut().zip(stable).zip(rolls);
+            let first = range.start + chunk * POINTS_PER_CHUNK;
+            for (index, ((growth_rate, stable), rolls)) in (first..).zip(results) {
+                control.check()?;
+                let (x, y) = (x[index % x.len()], y[index / x.len()]);
+                let wheel = self.with(y_key, y).and_then(|wheel| wheel.with(x_key, x))?;
+                let Some(point) = wheel.chart_point() else { continue };
+                (*growth_rate, *stable, *rolls) = (Some(point.growth_rate), point.stable, point.rolls);
+            }
+            progress.advance(range.len().min((chunk + 1) * POINTS_PER_CHUNK) - chunk * POINTS_PER_CHUNK);
+            Ok::<_, KingpinError>(())
+        })?;
+        Ok(GrowthRates { growth_rate, stable, rolls })
     }
 
     /// Stability and rolling of the uniform motion on a grid of `[columns, rows]` points, without eigenvalues.

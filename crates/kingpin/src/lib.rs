@@ -59,7 +59,7 @@ pub mod wheel;
 
 pub use blow_out_of_rest::BlowOutOfRest;
 pub use boundary::Curve;
-pub use chart::{GrowthRateChart, StabilityChart};
+pub use chart::{GrowthRateChart, GrowthRates, StabilityChart};
 pub use contact::ContactForce;
 pub use critical_speed::CriticalSpeed;
 pub use damper::{Condition, SmallestDamper};

@@ -37,6 +37,11 @@ impl Failure {
         Self::new(FAILED, message.into())
     }
 
+    /// That it was stopped.
+    pub(crate) fn interrupted(error: &ReportError) -> Self {
+        Self::new(INTERRUPTED, error.to_string())
+    }
+
     fn of<E: AnalysisError>(error: &E) -> Self {
         let class = if error.is_bad_request() { INVALID } else { FAILED };
         let mut message = error.message(&|field| field.to_owned());

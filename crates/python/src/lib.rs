@@ -14,6 +14,7 @@ mod programs;
 mod result;
 mod run;
 mod stored;
+mod waiting;
 mod wheel;
 
 use pyo3::prelude::*;

@@ -4,19 +4,23 @@ use crate::analyses::Finished;
 use crate::arrow;
 use crate::errors::Failure;
 use crate::stored::Stored;
+use crate::waiting::{GRACE, UNTIL_GONE, unless_interrupted};
 use arclength_analysis::ResultFile;
 use kingpin_report::{Columns, Entries, Schema};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
-use pyo3::types::{PyBytes, PyCapsule, PyDict};
+use pyo3::types::{PyBytes, PyCapsule, PyDict, PyList};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
+
+/// Entries of a list that are made between two looks at signals.
+const LISTED: usize = 1 << 16;
 
 /// A result of an analysis.
 #[pyclass(frozen, module = "arclength._native")]
 pub(crate) struct NativeResult {
-    stored: Box<dyn Stored>,
+    stored: Arc<dyn Stored>,
     /// Computed when they are first asked for.
     columns: OnceLock<Columns>,
     /// What is worth knowing of it.
@@ -29,12 +33,22 @@ pub(crate) struct NativeResult {
 
 impl NativeResult {
     pub(crate) fn new(Finished { result, warnings }: Finished, interrupted: bool) -> Self {
-        Self { stored: result, columns: OnceLock::new(), warnings, interrupted }
+        Self { stored: result.into(), columns: OnceLock::new(), warnings, interrupted }
     }
 
     fn columns(&self) -> &Columns {
         self.columns.get_or_init(|| self.stored.columns())
     }
+}
+
+/// Entries as a list; Ctrl-C stops that.
+fn list<'py, T: Clone + IntoPyObject<'py>>(py: Python<'py>, entries: &[T]) -> PyResult<Bound<'py, PyList>> {
+    let all = PyList::empty(py);
+    for some in entries.chunks(LISTED) {
+        py.check_signals()?;
+        some.iter().try_for_each(|entry| all.append(entry.clone()))?;
+    }
+    Ok(all)
 }
 
 fn text(bytes: Vec<u8>) -> Result<String, Failure> {
@@ -51,7 +65,8 @@ impl NativeResult {
 
     /// The text of its file.
     fn json<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
-        let text = py.detach(|| self.stored.json()).map_err(Failure::from)?;
+        let stored = Arc::clone(&self.stored);
+        let text = unless_interrupted(py, GRACE, move |stop| stored.json(stop))?;
         Ok(PyBytes::new(py, &text))
     }
 
@@ -67,12 +82,14 @@ impl NativeResult {
 
     /// Its picture as SVG, if it has one.
     fn svg(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        Ok(py.detach(|| self.stored.svg()).map_err(Failure::from)?)
+        let stored = Arc::clone(&self.stored);
+        unless_interrupted(py, GRACE, move |_| stored.svg())
     }
 
     /// Writes it to a file of the format that the ending says.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        Ok(py.detach(|| self.stored.write(&path)).map_err(Failure::from)?)
+        let stored = Arc::clone(&self.stored);
+        unless_interrupted(py, UNTIL_GONE, move |stop| stored.write(&path, stop))
     }
 
     /// Names of its columns.
@@ -96,8 +113,8 @@ impl NativeResult {
                 numbers.into_pyarray(py).into_any()
             }
             Entries::Counts(entries) => entries.clone().into_pyarray(py).into_any(),
-            Entries::Booleans(entries) => entries.into_pyobject(py)?.into_any(),
-            Entries::Texts(entries) => entries.into_pyobject(py)?.into_any(),
+            Entries::Booleans(entries) => list(py, entries)?.into_any(),
+            Entries::Texts(entries) => list(py, entries)?.into_any(),
         };
         Ok(Some(entries))
     }

@@ -1,15 +1,16 @@
 //! Any result of any analysis, as what a report is made of.
 
 use kingpin_report::files::{FileFormat, Staged};
-use kingpin_report::{Columns, Report, ReportError, Schema, json};
+use kingpin_report::{Columns, Report, ReportError, Schema, Stoppable, json};
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// A result, whatever its type.
 pub(crate) trait Stored: Send + Sync {
     /// Name and version of its form in JSON.
     fn schema(&self) -> Schema;
-    /// The text of its file.
-    fn json(&self) -> Result<Vec<u8>, ReportError>;
+    /// The text of its file, unless the flag is set meanwhile.
+    fn json(&self, stop: &AtomicBool) -> Result<Vec<u8>, ReportError>;
     /// Its columns.
     fn columns(&self) -> Columns;
     /// Its table for people.
@@ -18,8 +19,8 @@ pub(crate) trait Stored: Send + Sync {
     fn story(&self) -> std::io::Result<Option<Vec<u8>>>;
     /// Its picture as SVG, if it has one.
     fn svg(&self) -> Result<Option<String>, ReportError>;
-    /// Writes it to a file of the format that the ending says.
-    fn write(&self, path: &Path) -> Result<(), ReportError>;
+    /// Writes it to a file of the format that the ending says, unless the flag is set meanwhile.
+    fn write(&self, path: &Path, stop: &AtomicBool) -> Result<(), ReportError>;
 }
 
 impl<R: Report + Send + Sync> Stored for R {
@@ -27,9 +28,9 @@ impl<R: Report + Send + Sync> Stored for R {
         Report::schema(self)
     }
 
-    fn json(&self) -> Result<Vec<u8>, ReportError> {
+    fn json(&self, stop: &AtomicBool) -> Result<Vec<u8>, ReportError> {
         let mut text = Vec::new();
-        json::write(self, &mut text)?;
+        json::write(self, &mut Stoppable::new(&mut text, stop))?;
         Ok(text)
     }
 
@@ -56,8 +57,8 @@ impl<R: Report + Send + Sync> Stored for R {
         Ok(Some(figure.to_svg()?))
     }
 
-    fn write(&self, path: &Path) -> Result<(), ReportError> {
+    fn write(&self, path: &Path, stop: &AtomicBool) -> Result<(), ReportError> {
         let format = FileFormat::of(path, FileFormat::ALL)?;
-        Staged::result(self, path, format)?.publish()
+        Staged::result_unless(stop, self, path, format)?.publish()
     }
 }

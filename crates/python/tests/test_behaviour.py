@@ -104,6 +104,31 @@ def test_ctrl_c_stops_it_and_keeps_what_there_is(analysis, kept):
     assert done.returncode == 0
 
 
+WRITTEN = """
+import os, signal, sys, threading, time
+import arclength
+from arclength.kingpin import Wheel
+chart = Wheel().chart(("v", 0.1, 12, 500), ("l", 0.02, 0.3, 400))
+def interrupt():
+    # Once the file is begun.
+    while not os.listdir():
+        time.sleep(0.001)
+    signal.raise_signal(signal.SIGINT)
+threading.Thread(target=interrupt, daemon=True).start()
+try:
+    chart.save("chart.json")
+    print("written")
+except arclength.Interrupted as interrupted:
+    print(interrupted)
+"""
+
+
+def test_ctrl_c_stops_the_writing_and_leaves_no_file(tmp_path):
+    done = subprocess.run([sys.executable, "-c", WRITTEN], capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    assert done.stdout == "interrupted before the result was written; no file was left behind\n", done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_progress_is_told_and_may_stop_it():
     told = []
     Wheel().chart(("v", 0.1, 12, 200), ("l", 0.02, 0.3, 150), progress=lambda part, place: told.append(part))

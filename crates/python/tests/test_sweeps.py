@@ -461,3 +461,27 @@ def test_an_unknown_keyword_of_an_analysis(tmp_path):
     assert "c_q" in refused.value.allowed
     with pytest.raises(arclength.InvalidInput, match="duration"):
         arclength.sweep(Wheel().simulate, {"v": [1.0]}, tmp_path)
+
+
+def test_chunks_of_the_programs_have_the_same_format(tmp_path, program):
+    chart = ("chart", "--x", "v=1:9:12", "--y", "l=0.05:0.2:10", "-q")
+    assert program("kingpin", *chart, "-o", "whole.parquet").returncode == 0
+    assert program("kingpin", *chart, "--shard", "2/2", "-o", "cells").returncode == 0
+    with pytest.raises(arclength.ComputationFailed, match="4 of 8 chunks are not there, or damaged: 0, 2, 4, 6"):
+        arclength.merge(tmp_path / "cells")
+    assert program("kingpin", *chart, "--shard", "1/2", "-o", "cells").returncode == 0
+    swept = arclength.merge(tmp_path / "cells", tmp_path / "merged.parquet")
+    assert (len(swept), len(swept.files)) == (120, 8)
+    whole = pyarrow.parquet.read_table(tmp_path / "whole.parquet").replace_schema_metadata(None)
+    assert pyarrow.parquet.read_table(tmp_path / "merged.parquet").equals(whole)
+    # The manifest of both is the same.
+    manifest = (tmp_path / "cells" / "manifest.json").read_bytes()
+    assert program("kingpin", "merge", "cells", "-q").returncode == 0
+    assert (tmp_path / "cells" / "manifest.json").read_bytes() == manifest
+    with pytest.raises(arclength.InvalidInput, match="another sweep is in there"):
+        arclength.sweep(circle, GRID, tmp_path / "cells", chunk=4)
+    # The other way round: what is said of a sweep.
+    arclength.sweep(circle, GRID, tmp_path / "swept", chunk=4)
+    refused = program("kingpin", "merge", "swept")
+    assert refused.returncode == 2
+    assert "python -m arclength merge" in refused.stderr

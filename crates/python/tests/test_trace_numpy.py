@@ -78,7 +78,10 @@ def from_constants(x, p):
     "function",
     [
         lambda x, p: np.clip(x, a_min=-1, a_max=1),
-        lambda x, p: np.clip(x, max=p.a, min=p.b) + x.clip(-1, 1),
+        pytest.param(
+            lambda x, p: np.clip(x, max=p.a, min=p.b) + x.clip(-1, 1),
+            marks=pytest.mark.skipif(np.lib.NumpyVersion(np.__version__) < "2.1.0", reason="clip has min and max since NumPy 2.1"),
+        ),
         lambda x, p: np.clip(x, -np.inf, 1) + np.minimum(np.inf, x),
         written_by(lambda x, y: np.clip(x, -1, 1, out=y)),
         written_by(lambda x, y: x.clip(-1, 1, out=y)),

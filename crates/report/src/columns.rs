@@ -37,6 +37,18 @@ impl Entries {
         }
     }
 
+    /// Adds entries of the same type; whether they were.
+    fn append(&mut self, more: Self) -> bool {
+        match (self, more) {
+            (Self::Numbers(entries), Self::Numbers(more)) => entries.extend(more),
+            (Self::Counts(entries), Self::Counts(more)) => entries.extend(more),
+            (Self::Booleans(entries), Self::Booleans(more)) => entries.extend(more),
+            (Self::Texts(entries), Self::Texts(more)) => entries.extend(more),
+            _ => return false,
+        }
+        true
+    }
+
     fn write_entry(&self, row: usize, out: &mut dyn Write) -> io::Result<()> {
         match self {
             Self::Numbers(entries) => match entries[row] {
@@ -135,7 +147,8 @@ impl Columns {
         self.add(name.into(), Entries::Texts(collected(&mut || entries.next())))
     }
 
-    fn add(mut self, name: String, entries: Entries) -> Self {
+    /// Adds a column.
+    pub(crate) fn add(mut self, name: String, entries: Entries) -> Self {
         self.columns.push(Column { name, unit: None, entries });
         self
     }
@@ -146,6 +159,21 @@ impl Columns {
             last.unit = unit.into().filter(|unit| *unit != "1").map(str::to_owned);
         }
         self
+    }
+
+    /// The entries of the column with this name.
+    pub fn named(&self, name: &str) -> Option<&Entries> {
+        self.iter().find(|column| column.name == name).map(|column| &column.entries)
+    }
+
+    /// Adds rows with the same columns; whether they were the same.
+    pub(crate) fn append(&mut self, rows: Self) -> bool {
+        self.columns.len() == rows.columns.len()
+            && self
+                .columns
+                .iter_mut()
+                .zip(rows.columns)
+                .all(|(column, rows)| column.name == rows.name && column.entries.append(rows.entries))
     }
 
     /// The columns.

@@ -34,6 +34,9 @@ pub enum ReportError {
     /// A picture was asked for of a result that has none.
     #[error("cannot write the result as a picture: there is nothing to draw")]
     NothingToDraw,
+    /// Whoever waited for it stopped it.
+    #[error("interrupted before the result was written; no file was left behind")]
+    Stopped,
     /// The picture could not be drawn.
     #[error(transparent)]
     Figure(#[from] FigureError),

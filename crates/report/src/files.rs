@@ -8,6 +8,7 @@ use crate::columns::Columns;
 use crate::destination::{Destination, open_stream};
 use crate::error::ReportError;
 use crate::report::Report;
+use crate::stoppable::Stoppable;
 use crate::unfinished::UnfinishedFile;
 use crate::{json, parquet};
 use kingpin_figure::Figure;
@@ -15,6 +16,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Resolution of PNG files in dots per inch.
 const PICTURE_RESOLUTION: f64 = 300.0;
@@ -173,16 +175,43 @@ impl Staged {
     /// # Errors
     /// [`ReportError::Unwritable`], those of the format and of the drawing.
     pub fn result<R: Report>(result: &R, path: &Path, format: FileFormat) -> Result<Self, ReportError> {
-        let picture = || result.figure()?.ok_or(ReportError::NothingToDraw);
-        Self::new(path, |out| match format {
-            FileFormat::Json => json::write(result, out),
-            FileFormat::Csv => result.columns().write_csv(out).map_err(ReportError::encoding("CSV")),
+        Self::result_unless(&AtomicBool::new(false), result, path, format)
+    }
+
+    /// Stages a result unless the flag is set before it is complete.
+    ///
+    /// # Errors
+    /// [`ReportError::Stopped`], and those of [`result`](Self::result).
+    pub fn result_unless<R: Report>(
+        stop: &AtomicBool,
+        result: &R,
+        path: &Path,
+        format: FileFormat,
+    ) -> Result<Self, ReportError> {
+        // What takes long without writing comes before the file is begun.
+        let staged = |write: &mut dyn FnMut(&mut (dyn Write + Send)) -> Result<(), ReportError>| {
+            if stop.load(Ordering::Relaxed) {
+                return Err(ReportError::Stopped);
+            }
+            Self::new(path, |out| write(&mut Stoppable::new(out, stop)))
+        };
+        let outcome = match format {
+            FileFormat::Json => staged(&mut |out| json::write(result, out)),
+            FileFormat::Csv => {
+                let columns = result.columns();
+                staged(&mut |out| columns.write_csv(out).map_err(ReportError::encoding("CSV")))
+            }
             FileFormat::Parquet => {
                 let columns = result.columns();
-                parquet::write(&columns, &metadata(result, &columns)?, out)
+                let metadata = metadata(result, &columns)?;
+                staged(&mut |out| parquet::write(&columns, &metadata, out))
             }
-            FileFormat::Picture(format) => encode_picture(&picture()?, format, out),
-        })
+            FileFormat::Picture(format) => {
+                let picture = encoded(&result.figure()?.ok_or(ReportError::NothingToDraw)?, format)?;
+                staged(&mut |out| out.write_all(&picture).map_err(ReportError::encoding("a picture")))
+            }
+        };
+        if stop.load(Ordering::Relaxed) { Err(ReportError::Stopped) } else { outcome }
     }
 
     /// Stages a picture.
@@ -190,7 +219,8 @@ impl Staged {
     /// # Errors
     /// As [`result`](Self::result).
     pub fn picture(figure: &Figure, path: &Path, format: PictureFormat) -> Result<Self, ReportError> {
-        Self::new(path, |out| encode_picture(figure, format, out))
+        let picture = encoded(figure, format)?;
+        Self::new(path, |out| out.write_all(&picture).map_err(ReportError::encoding("a picture")))
     }
 
     /// The path as it was asked for.
@@ -237,17 +267,12 @@ fn in_memory(
     Ok(bytes)
 }
 
-fn encode_picture(
-    figure: &Figure,
-    format: PictureFormat,
-    out: &mut (dyn Write + Send),
-) -> Result<(), ReportError> {
-    let picture = match format {
+fn encoded(figure: &Figure, format: PictureFormat) -> Result<Vec<u8>, ReportError> {
+    Ok(match format {
         PictureFormat::Svg => figure.to_svg()?.into_bytes(),
         PictureFormat::Png => figure.to_png(PICTURE_RESOLUTION)?,
         PictureFormat::Pdf => figure.to_pdf(),
-    };
-    out.write_all(&picture).map_err(ReportError::encoding("a picture"))
+    })
 }
 
 fn metadata<R: Report>(result: &R, columns: &Columns) -> Result<[(&'static str, String); 3], ReportError> {
@@ -257,4 +282,75 @@ fn metadata<R: Report>(result: &R, columns: &Columns) -> Result<[(&'static str, 
         ("parameters", serde_json::to_string(&result.parameters()).map_err(failure)?),
         ("units", serde_json::to_string(&columns.units().collect::<BTreeMap<_, _>>()).map_err(failure)?),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameters, Schema};
+    use serde::Serialize;
+
+    /// A result of many rows whose writing stops itself at one of them.
+    struct Long(Vec<Row>);
+
+    struct Row(usize, &'static AtomicBool);
+
+    impl Serialize for Row {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            WRITTEN.fetch_max(self.0, Ordering::Relaxed);
+            if self.0 == 1000 {
+                self.1.store(true, Ordering::Relaxed);
+            }
+            serializer.serialize_u64(self.0 as u64)
+        }
+    }
+
+    impl Serialize for Long {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            use serde::ser::SerializeStruct;
+            let mut fields = serializer.serialize_struct("Long", 1)?;
+            fields.serialize_field("rows", &self.0)?;
+            fields.end()
+        }
+    }
+
+    impl Report for Long {
+        fn schema(&self) -> Schema {
+            Schema::first("long")
+        }
+
+        fn parameters(&self) -> Parameters {
+            Parameters::default()
+        }
+
+        fn write_table(&self, _: &mut dyn Write) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn columns(&self) -> Columns {
+            Columns::new().counts("row", self.0.iter().map(|row| row.0 as u64))
+        }
+    }
+
+    static STOP: AtomicBool = AtomicBool::new(false);
+    static WRITTEN: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
+
+    #[test]
+    fn writing_stops_where_it_is_asked_to_and_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let long = Long((0..100_000).map(|row| Row(row, &STOP)).collect());
+        for ending in ["json", "csv", "parquet"] {
+            let path = folder.path().join("long").with_extension(ending);
+            let format = FileFormat::of(&path, FileFormat::ALL).unwrap();
+            // JSON is stopped under way, the others before they begin.
+            let outcome = Staged::result_unless(&STOP, &long, &path, format);
+            assert!(matches!(outcome, Err(ReportError::Stopped)), "{ending}");
+            assert_eq!(fs_entries(folder.path()), 0, "{ending}");
+        }
+        assert!(WRITTEN.load(Ordering::Relaxed) < 1010, "{WRITTEN:?}");
+    }
+
+    fn fs_entries(folder: &Path) -> usize {
+        std::fs::read_dir(folder).unwrap().count()
+    }
 }

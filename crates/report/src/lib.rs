@@ -4,6 +4,7 @@
 //! [`Columns`], [`parquet`], pictures, and [`files`] that appear whole or not at all. Nothing here knows a model, an option or
 //! a terminal.
 
+pub mod chunks;
 mod columns;
 mod destination;
 mod error;
@@ -15,6 +16,7 @@ mod parameters;
 pub mod parquet;
 mod report;
 mod schema;
+mod stoppable;
 mod story;
 mod table;
 mod unfinished;
@@ -27,6 +29,7 @@ pub use named_numbers::{NamedNumbers, Number, number};
 pub use parameters::Parameters;
 pub use report::Report;
 pub use schema::Schema;
+pub use stoppable::Stoppable;
 pub use story::Story;
 pub use table::{Cell, Table};
 pub use unfinished::{Abandoned, UnfinishedFile, abandon_unfinished};

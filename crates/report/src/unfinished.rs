@@ -78,6 +78,14 @@ impl UnfinishedFile {
     pub fn finish(self, path: &Path) -> io::Result<File> {
         self.file.persist(path).map_err(|error| error.error)
     }
+
+    /// Gives the file its name, unless something has that name.
+    ///
+    /// # Errors
+    /// Those of the file system, [`AlreadyExists`](io::ErrorKind::AlreadyExists) among them; then the file is removed.
+    pub(crate) fn finish_once(self, path: &Path) -> io::Result<File> {
+        self.file.persist_noclobber(path).map_err(|error| error.error)
+    }
 }
 
 /// That nothing unfinished is left, nor begun as long as this lives.

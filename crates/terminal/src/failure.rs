@@ -63,12 +63,13 @@ impl<E: AnalysisError> From<E> for Failure {
     }
 }
 
-/// The option by which a field of a request is given; the file of a model needs none.
+/// The option by which a field of a request is given; the file of a model and the folder of chunks need none.
 fn option(field: &str) -> String {
-    if field == "model" {
-        return "MODEL.ode".to_owned();
+    match field {
+        "model" => "MODEL.ode".to_owned(),
+        "folder" => "FOLDER".to_owned(),
+        field => format!("--{}", field.replace('_', "-")),
     }
-    format!("--{}", field.replace('_', "-"))
 }
 
 impl Failure {

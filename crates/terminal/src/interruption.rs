@@ -1,7 +1,7 @@
 //! Ctrl-C and the signal to terminate, from the first line of a program to its last.
 //!
 //! A signal stops an analysis under way, which then says what there is of its result; it lets a result be written that is written
-//! within a second. At any other time, and when it comes again, it ends the program at once. In no case is an unfinished file left.
+//! within a tenth of a second. At any other time, and when it comes again, it ends the program at once. In no case is an unfinished file left.
 
 use crate::failure::Failure;
 use crate::signals::{self, Signal};
@@ -11,8 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// Time after which an analysis that a signal has not stopped yet is worth a word, and a result that is not written yet is given up.
+/// Time after which an analysis that a signal has not stopped yet is worth a word.
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Time after which a result that is not written yet is given up.
+const DELIVERY: Duration = Duration::from_millis(100);
 
 /// What the program is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +107,7 @@ fn received(signal: Signal) {
             return;
         }
         // A result that was computed is not thrown away where it is written soon.
-        Stage::Delivery if is_first => std::thread::sleep(PATIENCE),
+        Stage::Delivery if is_first => std::thread::sleep(DELIVERY),
         _ => {}
     }
     // The program ends before anything else can be begun.

@@ -1,6 +1,7 @@
 //! What a basin of attraction is asked for by, and how it is computed.
 
-use super::result::{BasinResult, Starts};
+use super::result::{BasinResult, FATE, Starts};
+use crate::by_chunks::{ByChunks, Keep, in_a_chunk};
 use crate::classification::{Classification, NamedFate};
 use crate::error::Error;
 use crate::journal::Journal;
@@ -9,9 +10,16 @@ use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Control, SampledInterval};
 use kingpin::Wheel;
 use kingpin::basin::{Axis, BasinMap, Destinations, Fate, Tile};
+use kingpin_report::{Columns, Entries};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// Most chunks of a run that is divided into shards: each is two files.
+const MOST_CHUNKS: usize = 10_000;
 
 /// Where motions end, depending on where they start: two states of the initial condition vary, the others are those of the
 /// uniform motion.
@@ -68,7 +76,11 @@ impl BasinRequest {
     /// # Errors
     /// What is wrong with the wheel or a field; no uniform motion.
     pub fn validate(&self) -> Result<BasinAnalysis, Error> {
-        let wheel = self.wheel.read()?;
+        self.validate_for(self.wheel.read()?)
+    }
+
+    /// The same for a wheel that was read.
+    pub(crate) fn validate_for(&self, wheel: Wheel) -> Result<BasinAnalysis, Error> {
         let axes = self.axes(&wheel)?;
         let settings = self.classification.settings(&wheel)?;
         let contact = self.classification.contact_or_rolling();
@@ -162,11 +174,15 @@ impl BasinAnalysis {
     ) -> Result<BasinResult, Error> {
         let map = self.map()?;
         let fates = follow(&map, control, journal)?;
+        Ok(self.result(&map, fates))
+    }
+
+    fn result(&self, map: &BasinMap<'_>, fates: Vec<Fate>) -> BasinResult {
         let starts = match self.sample {
             None => Starts::grid(&self.axes, self.counts),
             Some((_, seed)) => Starts::sample(&self.axes, map.initial_states(), seed),
         };
-        Ok(BasinResult::new(self.destinations.clone(), &self.axes, starts, fates))
+        BasinResult::new(self.destinations.clone(), &self.axes, starts, fates)
     }
 
     fn map(&self) -> Result<BasinMap<'_>, Error> {
@@ -174,6 +190,65 @@ impl BasinAnalysis {
             None => BasinMap::grid(&self.destinations, &self.axes, self.counts)?,
             Some((count, seed)) => BasinMap::samples(&self.destinations, &self.axes, count, seed)?,
         })
+    }
+}
+
+impl ByChunks for BasinAnalysis {
+    type Result = BasinResult;
+
+    fn computation(&self) -> &Value {
+        &self.computation
+    }
+
+    fn points(&self) -> usize {
+        self.sample.map_or(self.counts[0] * self.counts[1], |(count, _)| count)
+    }
+
+    /// Whole tiles, by the number of which the folder does not overflow.
+    fn chunk(&self, shards: usize) -> Result<usize, Error> {
+        let map = self.map()?;
+        let most = map.tiles().div_ceil(MOST_CHUNKS);
+        Ok(map.states_of_a_tile() * in_a_chunk(map.tiles(), most, shards))
+    }
+
+    fn compute(&self, chunks: &[Range<usize>], keep: Keep<'_>, control: &Control<'_>) -> Result<(), Error> {
+        let map = self.map()?;
+        let tile = map.states_of_a_tile();
+        let tiles_of = |chunk: &Range<usize>| chunk.start / tile..chunk.end.div_ceil(tile);
+        let wanted: Vec<usize> = chunks.iter().flat_map(tiles_of).collect();
+        // The fates of the tiles of every chunk that are known.
+        let known: Vec<Mutex<BTreeMap<usize, Vec<Fate>>>> = chunks.iter().map(|_| Mutex::default()).collect();
+        let on_tile = |found: &Tile| {
+            let of = |chunk: &Range<usize>| chunk.contains(&found.first);
+            let Some(chunk) = chunks.iter().position(of) else { return };
+            let mut tiles = known[chunk].lock().unwrap_or_else(PoisonError::into_inner);
+            tiles.insert(found.index, found.fates.clone());
+            if tiles.len() == tiles_of(&chunks[chunk]).len() {
+                let fates: Vec<Fate> = tiles.values().flatten().copied().collect();
+                keep(chunk, &self.columns_of(&map.initial_states()[chunks[chunk].clone()], &fates));
+            }
+        };
+        Ok(map.run_tiles(&wanted, control, &on_tile).map(drop)?)
+    }
+
+    fn put_together(&self, columns: &Columns, _: &Control<'_>) -> Result<Option<BasinResult>, Error> {
+        let Some(Entries::Texts(names)) = columns.named(FATE) else { return Ok(None) };
+        let named =
+            |name: &Option<String>| Fate::ALL.into_iter().find(|fate| Some(fate.name()) == name.as_deref());
+        let fates: Option<Vec<Fate>> = names.iter().map(named).collect();
+        let map = self.map()?;
+        Ok(fates.map(|fates| self.result(&map, fates)))
+    }
+}
+
+impl BasinAnalysis {
+    /// The columns of a chunk, as in the result.
+    fn columns_of(&self, states: &[[f64; 7]], fates: &[Fate]) -> Columns {
+        let values = |axis: usize| states.iter().map(move |state| self.axes[axis].value_in(state));
+        Columns::new()
+            .numbers(self.axes[0].name(), values(0))
+            .numbers(self.axes[1].name(), values(1))
+            .texts(FATE, fates.iter().map(|fate| Some(fate.name().to_owned())))
     }
 }
 

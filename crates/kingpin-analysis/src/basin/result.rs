@@ -14,6 +14,9 @@ use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 
+/// The column of the fates.
+pub(super) const FATE: &str = "fate";
+
 /// Most characters across and down in the map that is printed.
 const PRINTED: [usize; 2] = [72, 24];
 /// Size in points of the marks of random initial conditions.
@@ -269,7 +272,7 @@ impl Report for BasinResult {
             .unit(self.x.unit)
             .numbers(self.y.state, upwards)
             .unit(self.y.unit)
-            .texts("fate", self.fates.iter().map(|fate| Some(fate.0.name().to_owned())))
+            .texts(FATE, self.fates.iter().map(|fate| Some(fate.0.name().to_owned())))
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {

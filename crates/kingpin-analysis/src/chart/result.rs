@@ -17,6 +17,11 @@ use serde::Serialize;
 use std::io::{self, Write};
 use std::iter::repeat_n;
 
+/// Columns of what is known at every point.
+pub(super) const GROWTH_RATE: &str = "growth_rate";
+pub(super) const STABLE: &str = "stable";
+pub(super) const ROLLS: &str = "rolls";
+
 /// Most characters across and down in the chart that is printed.
 const PRINTED: [usize; 2] = [72, 24];
 /// Part of the growth rates whose absolute values the colours resolve; the others have the colours of the ends.
@@ -203,10 +208,10 @@ impl Report for ChartResult {
                     .chain(limits.iter().map(|point| point.at[1])),
             )
             .unit(self.y.unit)
-            .optional_numbers("growth_rate", self.growth_rate.iter().copied().chain(repeat_n(None, points)))
+            .optional_numbers(GROWTH_RATE, self.growth_rate.iter().copied().chain(repeat_n(None, points)))
             .unit("1/s")
-            .booleans("stable", self.stable.iter().copied().chain(repeat_n(None, points)))
-            .booleans("rolls", self.rolls.iter().copied().map(Some).chain(repeat_n(None, points)));
+            .booleans(STABLE, self.stable.iter().copied().chain(repeat_n(None, points)))
+            .booleans(ROLLS, self.rolls.iter().copied().map(Some).chain(repeat_n(None, points)));
         if self.overlays.is_empty() {
             return columns;
         }

@@ -7,6 +7,7 @@
 
 mod checksum;
 
+use crate::computation::difference;
 use crate::error::Error;
 use checksum::{Checked, Checksum};
 use kingpin_report::UnfinishedFile;
@@ -206,25 +207,6 @@ fn read<T: DeserializeOwned>(path: &Path, computation: &Value) -> Result<BTreeMa
 
 fn changed(line: usize) -> String {
     format!("line {line} was changed after it was kept: it does not fit its checksum")
-}
-
-/// The first field in which two computations differ.
-fn difference(kept: &Value, asked: &Value) -> Option<String> {
-    if kept == asked {
-        return None;
-    }
-    if let (Some(kept), Some(asked)) = (kept.as_object(), asked.as_object()) {
-        // The parameters first: other fields may differ because of them.
-        let part = |nested: bool| asked.iter().filter(move |(_, value)| value.is_object() == nested);
-        let differing = part(true).chain(part(false)).find_map(|(name, value)| {
-            difference(kept.get(name).unwrap_or(&Value::Null), value).map(|text| match value.is_object() {
-                true => text,
-                false => format!("{name} {text}"),
-            })
-        });
-        return differing.or(Some("it has other fields".to_owned()));
-    }
-    Some(format!("was {kept}, now it is {asked}"))
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The smallest disturbance that does not return along a parameter, beside the unstable limit cycle.
 
+mod by_chunks;
 mod found;
 mod request;
 mod result;

@@ -6,7 +6,7 @@ use super::unstable_cycles::unstable_cycles;
 use crate::along::along;
 use crate::classification::{Classification, Contact};
 use crate::disturbance::{DisturbanceRequest, reached};
-use crate::error::Error;
+use crate::error::{Error, unless_stopped};
 use crate::journal::Journal;
 use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
@@ -18,7 +18,6 @@ use kingpin::parallel;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most values of the parameter.
 const MOST_POINTS: usize = 10_000;
@@ -73,6 +72,11 @@ impl MarginRequest {
     /// # Errors
     /// What is wrong with the wheel or a field.
     pub fn validate(&self) -> Result<MarginAnalysis, Error> {
+        self.validate_for(self.wheel.read()?)
+    }
+
+    /// The same for a wheel that was read.
+    pub(crate) fn validate_for(&self, wheel: Wheel) -> Result<MarginAnalysis, Error> {
         let along = along(&self.along.interval)?;
         let (key, count) = (along.key(), self.along.count);
         if !(2..=MOST_POINTS).contains(&count) || self.along.interval.end.is_infinite() {
@@ -84,7 +88,6 @@ impl MarginRequest {
             ));
         }
         let (start, end) = along.ends();
-        let wheel = self.wheel.read()?;
         self.disturbance.check(&wheel.with(key, end)?)?;
         if self.classification.duration.is_some() {
             // A duration that makes no sense is refused before anything is computed.
@@ -135,32 +138,57 @@ impl MarginAnalysis {
     /// A motion that cannot be followed, [`Error::Journal`], and [`Error::Interrupted`] where the control stops it.
     pub fn run(&self, control: &Control<'_>, journal: &Journal<Found>) -> Result<MarginResult, Error> {
         let finished = journal.finished();
-        let done = AtomicUsize::new(finished.len());
-        let seek = |index: usize| {
+        let wanted: Vec<usize> =
+            (0..self.values.len()).filter(|index| !finished.contains_key(index)).collect();
+        let known = finished.len() as f64 / self.values.len() as f64;
+        let keep = |index: usize, found: &Found| journal.keep(index, found, control.stop());
+        let computed = self.seek(&wanted, &keep, &control.part(known..1.0))?;
+        let found = journal.checked(computed, self.values.len())?;
+        self.result(found, control).map_err(|error| match error {
+            Error::Stopped => journal.interrupted(self.values.len(), self.values.len()),
+            error => error,
+        })
+    }
+
+    /// Seeks the edges at some of the values, and hands each over as soon as it is known, until all are or the control stops it.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed.
+    pub(super) fn seek(
+        &self,
+        wanted: &[usize],
+        keep: &(dyn Fn(usize, &Found) + Sync),
+        control: &Control<'_>,
+    ) -> Result<Vec<(usize, Found)>, Error> {
+        let progress = control.count(wanted.len());
+        let seek = |&index: &usize| {
             let wheel = self.wheel.with(self.along.key(), self.values[index])?;
             let found =
                 Found::seek(&wheel, &self.disturbance, &self.classification, self.contact, &control.quiet())?;
-            journal.keep(index, &found, control.stop());
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            control.done(done as f64 / self.values.len() as f64);
-            Ok(found)
+            keep(index, &found);
+            progress.advance(1);
+            Ok((index, found))
         };
-        let computed = parallel::try_map_indices(self.values.len(), |index| {
-            if finished.contains_key(&index) || control.is_stopped() {
+        let computed = parallel::try_map(wanted, |index| {
+            if control.is_stopped() {
                 return Ok(None);
             }
             match seek(index) {
-                Ok(found) => Ok(Some((index, found))),
+                Ok(found) => Ok(Some(found)),
                 Err(Error::Stopped) => Ok(None),
                 Err(error) => Err(error),
             }
         })?;
-        let computed: Vec<(usize, Found)> = computed.into_iter().flatten().collect();
-        let found = journal.checked(computed, self.values.len())?;
+        Ok(computed.into_iter().flatten().collect())
+    }
+
+    /// The result of what was found at all values, beside the unstable limit cycles.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] where the control stops it.
+    pub(super) fn result(&self, found: Vec<Found>, control: &Control<'_>) -> Result<MarginResult, Error> {
         let cycles = unstable_cycles(&self.wheel, self.along, &self.values, control)?;
-        if control.is_stopped() {
-            return Err(journal.interrupted(self.values.len(), self.values.len()));
-        }
+        unless_stopped(control)?;
         let directions = self.disturbance.disturbance().directions();
         let resolution = |(&value, found): (&f64, &Found)| {
             let largest = self.disturbance.largest(&self.wheel.with(self.along.key(), value)?);
@@ -177,5 +205,20 @@ impl MarginAnalysis {
             found,
             cycles,
         ))
+    }
+
+    /// The values of the parameter.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The parameter.
+    pub(super) fn along(&self) -> Along {
+        self.along
+    }
+
+    /// What tells it from any other.
+    pub(super) fn computation(&self) -> &Value {
+        &self.computation
     }
 }

@@ -19,6 +19,7 @@ mod long_values;
 mod monitors;
 mod overlays;
 mod readme;
+mod sharded;
 mod shimmy;
 mod studies;
 mod tables;

@@ -196,6 +196,11 @@ impl<'a> BasinMap<'a> {
         &self.initial
     }
 
+    /// Number of initial states of a tile; the last may have fewer.
+    pub fn states_of_a_tile(&self) -> usize {
+        self.tile
+    }
+
     /// Number of tiles.
     pub fn tiles(&self) -> usize {
         self.initial.len().div_ceil(self.tile)
@@ -213,18 +218,21 @@ impl<'a> BasinMap<'a> {
         finished: impl Fn(usize) -> bool + Sync,
         on_tile: impl Fn(&Tile) + Sync,
     ) -> Result<Vec<Tile>, SimulationError> {
-        self.run_told_to(control, &finished, &on_tile)
-    }
-
-    /// [`run`](Self::run), compiled once and not for every caller.
-    fn run_told_to(
-        &self,
-        control: &Control<'_>,
-        finished: &dyn Fn(usize) -> bool,
-        on_tile: &(dyn Fn(&Tile) + Sync),
-    ) -> Result<Vec<Tile>, SimulationError> {
         let wanted: Vec<usize> = (0..self.tiles()).filter(|&index| !finished(index)).collect();
         let known = self.tiles() - wanted.len();
+        self.run_tiles(&wanted, &control.part(known as f64 / self.tiles() as f64..1.0), &on_tile)
+    }
+
+    /// Computes some of the tiles, whose progress is that of the control; otherwise as [`run`](Self::run).
+    ///
+    /// # Errors
+    /// A motion that cannot be followed.
+    pub fn run_tiles(
+        &self,
+        wanted: &[usize],
+        control: &Control<'_>,
+        on_tile: &(dyn Fn(&Tile) + Sync),
+    ) -> Result<Vec<Tile>, SimulationError> {
         if wanted.is_empty() {
             return Ok(Vec::new());
         }
@@ -235,7 +243,7 @@ impl<'a> BasinMap<'a> {
             Err(SimulationError::Interrupted(_)) => return Ok(Vec::new()),
             destinations => destinations?,
         };
-        let progress = control.part(known as f64 / self.tiles() as f64..1.0).count(wanted.len());
+        let progress = control.count(wanted.len());
         let compute = |&index: &usize| {
             if control.is_stopped() {
                 return Ok(None);
@@ -250,7 +258,7 @@ impl<'a> BasinMap<'a> {
             progress.advance(1);
             Ok(Some(tile))
         };
-        parallel::try_map(&wanted, compute).map(|tiles| tiles.into_iter().flatten().collect())
+        parallel::try_map(wanted, compute).map(|tiles| tiles.into_iter().flatten().collect())
     }
 }
 
