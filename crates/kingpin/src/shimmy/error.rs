@@ -119,6 +119,7 @@ impl From<SimulationError> for Refusal {
     fn from(error: SimulationError) -> Self {
         match error {
             SimulationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            SimulationError::Integration(error) => error.into(),
             error => Self::Integration(error.to_string()),
         }
     }
@@ -128,6 +129,8 @@ impl From<IntegrationError> for Refusal {
     fn from(error: IntegrationError) -> Self {
         match error {
             IntegrationError::Interrupted(interrupted) => Self::Interrupted(interrupted),
+            // Steps shrink to nothing only where slip does: there the direction of the friction is undefined, and nothing else is.
+            IntegrationError::StepTooSmall { .. } => Self::Grazing(Grazing::SlipVanishes),
             error => Self::Integration(error.to_string()),
         }
     }
