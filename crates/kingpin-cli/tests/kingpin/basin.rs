@@ -191,6 +191,25 @@ fn an_unstable_uniform_motion_has_no_safe_kick() {
 }
 
 #[test]
+fn where_there_are_no_motions_to_show_the_picture_says_why() {
+    let folder = Folder::new();
+    for (command, says) in [
+        ("safe-kick -s v=9", "small disturbances grow: none is safe"),
+        ("safe-kick --kind release-angle --largest 1e-3 --duration 1", "all that were tried return"),
+    ] {
+        let run = folder.succeed(&format!("{command} -q"));
+        let with = folder.succeed(&format!("{command} -q -o kick.json -o kick.svg"));
+        assert_eq!(run.output, with.output, "{command}");
+        let picture = String::from_utf8(crate::read(&folder.path("kick.svg"))).unwrap();
+        assert!(picture.contains(says), "{command}: {picture}");
+        let result: Value = serde_json::from_slice(&crate::read(&folder.path("kick.json"))).unwrap();
+        assert!(result["fails"].is_null(), "{command}");
+    }
+    // A margin of nothing but unstable motions is drawn, too.
+    folder.succeed("margin --along v=9:10:2 -q -o margin.svg");
+}
+
+#[test]
 fn margins_have_the_cycles_wherever_the_interval_ends() {
     let folder = Folder::new();
     // The Hopf point is at 8.43 m/s.
