@@ -225,6 +225,23 @@ fn margins_have_the_cycles_wherever_the_interval_ends() {
     assert!(whole["indicator"]["correlation"].is_null() && whole["remarks"].as_array().unwrap().is_empty());
 }
 
+/// The wheel without dampers is unstable at every speed, and there are cycles all the same.
+#[test]
+fn a_margin_of_unstable_motions_says_that_nothing_is_safe() {
+    let folder = Folder::new();
+    let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+    let margin = format!("margin --wheel {wheels}/dolly.toml --contact rolling --along v=2:40:3 -q");
+    let result = folder.json(&margin);
+    assert!(result["indicator"].is_null(), "{result}");
+    for point in result["points"].as_array().unwrap() {
+        assert_eq!(point["safe"], 0.0, "{point}");
+        assert!(point["unstable_amplitude"].is_null() && point["ratio"].is_null(), "{point}");
+    }
+    let output = folder.succeed(&margin).output;
+    assert!(output.contains("at all of these values small motions grow: no disturbance is safe"), "{output}");
+    assert!(!output.contains("per rad of amplitude") && !output.contains("Hopf point"), "{output}");
+}
+
 #[test]
 fn margins_say_why_there_is_no_cycle_and_what_is_undecided() {
     let folder = Folder::new();
