@@ -198,7 +198,7 @@ fn where_there_are_no_motions_to_show_the_picture_says_why() {
         ("safe-kick --kind release-angle --largest 1e-3 --duration 1", "all that were tried return"),
     ] {
         let run = folder.succeed(&format!("{command} -q"));
-        let with = folder.succeed(&format!("{command} -q -o kick.json -o kick.svg"));
+        let with = folder.succeed(&format!("{command} -o kick.json -o kick.svg"));
         assert_eq!(run.output, with.output, "{command}");
         let picture = String::from_utf8(crate::read(&folder.path("kick.svg"))).unwrap();
         assert!(picture.contains(says), "{command}: {picture}");
