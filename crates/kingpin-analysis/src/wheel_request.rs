@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use arclength_analysis::Assignment;
-use kingpin::{KingpinError, Wheel};
+use kingpin::{Key, KingpinError, Wheel};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -32,13 +32,21 @@ impl WheelRequest {
         })
     }
 
-    /// The options of a command that ask for the same wheel, with a space behind each.
+    /// The options of a command that ask for the same wheel, with a space behind each. What a later setting replaces is left out.
     pub(crate) fn options(&self) -> String {
         let file = self.wheel.iter().map(|path| format!("--wheel {} ", quoted(&path.display().to_string())));
+        let stored = |setting: &Assignment| setting.key.parse::<Key>().map(Key::sets).unwrap_or_default();
+        let is_replaced = |index: usize| {
+            let (own, later) = (stored(&self.set[index]), &self.set[index + 1..]);
+            let replaces = |setting: &Assignment| own.iter().all(|key| stored(setting).contains(key));
+            !own.is_empty() && later.iter().any(replaces)
+        };
         let set = self
             .set
             .iter()
-            .map(|Assignment { key, value }| format!("-s {} ", quoted(&format!("{key}={value}"))));
+            .enumerate()
+            .filter(|(index, _)| !is_replaced(*index))
+            .map(|(_, Assignment { key, value })| format!("-s {} ", quoted(&format!("{key}={value}"))));
         file.chain(set).collect()
     }
 
@@ -81,5 +89,17 @@ mod tests {
         };
         assert_eq!(request.options(), "--wheel 'my wheels/it'\\''s.toml' -s v=4 -s r=inf ");
         assert_eq!(WheelRequest::default().options(), "");
+    }
+
+    #[test]
+    fn settings_that_later_ones_replace_are_left_out() {
+        let set = |key: &str, value: &str| Assignment { key: key.into(), value: value.into() };
+        let all = [("v", "1.5"), ("k_q", "80"), ("M_f", "0.05"), ("k", "90"), ("v", "1"), ("k_u", "70")];
+        let request =
+            WheelRequest { wheel: None, set: all.into_iter().map(|(key, value)| set(key, value)).collect() };
+        // What sets two stays where only one of them is set again.
+        assert_eq!(request.options(), "-s M_f=0.05 -s k=90 -s v=1 -s k_u=70 ");
+        let radius = WheelRequest { wheel: None, set: vec![set("r", "2"), set("r", "inf")] };
+        assert_eq!(radius.options(), "-s r=inf ");
     }
 }

@@ -1,28 +1,22 @@
 //! What follows from estimated parameters, with what is left uncertain of it: the critical speeds, and the largest blow that is
 //! safe.
 //!
-//! Critical speeds are cheap and may not exist at all, so they are computed for many wheels whose parameters are drawn from the joint
-//! distribution of the estimates. A safe blow takes many motions; its interval is that of the delta method, with differences over
-//! the whole intervals of the parameters in place of derivatives.
+//! Critical speeds are cheap, so their intervals are those of their profile: all parameters are fitted again with the speed held. A safe
+//! blow takes many motions; its interval is that of the delta method, with differences over the whole intervals of the parameters in
+//! place of derivatives.
 
 use crate::classification::{Classification, Contact};
 use crate::disturbance::DisturbanceRequest;
 use crate::error::Error;
 use arclength_analysis::Control;
-use kingpin::identification::{Identified, JointDistribution};
+use kingpin::identification::{ConsequenceInterval, Identification, Identified, JointDistribution};
 use kingpin::parallel;
 use kingpin::simulation::SimulationError;
 use kingpin::{Key, Tyre, Wheel};
 use serde::Serialize;
 
-/// Wheels that are drawn.
-const DRAWS: usize = 1000;
-/// The first of them, for what takes longer.
-const DRAWS_WITH_FRICTION: usize = 250;
-/// Fewest of them from which an interval can be told.
-const FEWEST_DRAWS: usize = 200;
-/// Parts of the draws outside a 95 per cent interval, on either side.
-const OUTSIDE: f64 = 0.025;
+/// Part of a speed by which it is left on either side.
+const ASIDE: f64 = 1e-6;
 
 /// Something that follows from the parameters, with its 95 per cent interval.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,9 +27,9 @@ pub struct Consequence {
     pub lower: Option<f64>,
     /// Upper end of its interval; nothing where it is unknown, or where there may be no such value.
     pub upper: Option<f64>,
-    /// `samples` or `differences`; nothing without an interval.
+    /// `profile` or `differences`; nothing without an interval.
     pub method: Option<&'static str>,
-    /// Part of the wheels that were drawn which have no such value, being stable at all speeds.
+    /// Part of the wheels drawn from the joint distribution of the estimates which have no such value, being stable at all speeds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub without: Option<f64>,
 }
@@ -43,7 +37,7 @@ pub struct Consequence {
 /// What follows from the estimates.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Consequences {
-    /// Smallest speed in m/s at which the uniform motion changes its stability.
+    /// Largest speed in m/s up to which the uniform motion is stable, from standstill on; 0 where it is unstable from there.
     pub critical_speed: Consequence,
     /// Smallest speed in m/s beyond which small motions grow in spite of dry friction about the king pin, whatever its moment; only
     /// in straight towing.
@@ -70,25 +64,26 @@ impl Consequences {
     /// # Errors
     /// A motion that cannot be followed, an interruption.
     pub(super) fn of(
+        identification: &Identification,
         identified: &Identified,
         wheel: &Wheel,
         with_blow: bool,
         control: &Control<'_>,
     ) -> Result<Self, Error> {
         let distribution = identified.distribution.as_ref();
-        let drawn = distribution.map(|distribution| distribution.wheels(wheel, DRAWS)).unwrap_or_default();
-        let critical_speed = from_samples(wheel, &drawn, &critical_speed);
-        crate::error::unless_stopped(control)?;
-        control.done(0.05);
+        let by_profile = |of: &(dyn Fn(&Wheel) -> f64 + Sync)| -> Result<Consequence, Error> {
+            let interval = identification.interval_of(identified, wheel, of, &control.quiet())?;
+            Ok(from_profile(of(wheel), interval))
+        };
+        let critical_speed = by_profile(&critical_speed)?;
+        control.done(0.1);
         let has_friction =
             wheel.get(Key::MF) > 0.0 || identified.estimates.iter().any(|estimate| estimate.key == Key::MF);
         let is_straight = wheel.get(Key::TurningRadius).is_infinite() && wheel.tyre() == Tyre::Rigid;
         let with_friction = |wheel: &Wheel| wheel.critical_speed_with_friction().unwrap_or(f64::INFINITY);
-        let fewer = &drawn[..drawn.len().min(DRAWS_WITH_FRICTION)];
         let critical_speed_with_friction =
-            (has_friction && is_straight).then(|| from_samples(wheel, fewer, &with_friction));
-        crate::error::unless_stopped(control)?;
-        control.done(0.15);
+            (has_friction && is_straight).then(|| by_profile(&with_friction)).transpose()?;
+        control.done(0.2);
         let takes_blow = with_blow
             && wheel.tyre() == Tyre::Rigid
             && wheel.get(Key::V) > 0.0
@@ -96,7 +91,7 @@ impl Consequences {
         let contact = Classification::default().contact_by_load(wheel);
         let largest = DisturbanceRequest::default().largest(wheel);
         let disturbance = DisturbanceRequest { largest: Some(largest), ..DisturbanceRequest::default() };
-        let rest = control.part(0.15..1.0);
+        let rest = control.part(0.2..1.0);
         let blow = takes_blow.then(|| safe_blow(wheel, &disturbance, contact, distribution, &rest));
         let (blow, blow_failure) = match blow {
             // What the records say stands, whatever becomes of a wheel that is hit.
@@ -114,32 +109,28 @@ impl Consequences {
     }
 }
 
-/// The critical speed: infinite where the motion is stable at all speeds, zero where it is at none.
+/// The speed up to which the motion is stable: infinite where it is stable at all speeds, zero where it is unstable from standstill on.
 fn critical_speed(wheel: &Wheel) -> f64 {
-    let always = || match wheel.uniform_motion().ok().and_then(|motion| motion.is_stable()) {
-        Some(false) => 0.0,
-        _ => f64::INFINITY,
-    };
-    wheel.critical_speed().map_or_else(always, |critical| critical.speed)
+    let is_stable = |wheel: &Wheel| wheel.uniform_motion().ok().and_then(|motion| motion.is_stable());
+    match wheel.critical_speed() {
+        // Where stability is regained it is missing below.
+        Some(critical) => match wheel.with(Key::V, critical.speed * (1.0 - ASIDE)) {
+            Ok(slower) if is_stable(&slower) == Some(false) => 0.0,
+            _ => critical.speed,
+        },
+        None if is_stable(wheel) == Some(false) => 0.0,
+        None => f64::INFINITY,
+    }
 }
 
-fn from_samples(wheel: &Wheel, drawn: &[Wheel], of: &(dyn Fn(&Wheel) -> f64 + Sync)) -> Consequence {
-    let value = of(wheel);
+fn from_profile(value: f64, interval: Option<ConsequenceInterval>) -> Consequence {
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
-    if drawn.len() < FEWEST_DRAWS {
-        return Consequence { value: finite(value), lower: None, upper: None, method: None, without: None };
-    }
-    let mut values: Vec<f64> = parallel::map(drawn, of);
-    values.sort_by(f64::total_cmp);
-    let quantile = |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
-    let without = values.iter().filter(|value| value.is_infinite()).count() as f64 / values.len() as f64;
-    // Where a bound holds a parameter, hardly any draw is as extreme as the estimates.
     Consequence {
         value: finite(value),
-        lower: finite(quantile(OUTSIDE).min(value)),
-        upper: finite(quantile(1.0 - OUTSIDE).max(value)),
-        method: Some("samples"),
-        without: Some(without),
+        lower: interval.and_then(|interval| finite(interval.lower)),
+        upper: interval.and_then(|interval| finite(interval.upper)),
+        method: interval.map(|_| "profile"),
+        without: interval.map(|interval| interval.without),
     }
 }
 

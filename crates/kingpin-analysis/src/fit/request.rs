@@ -222,7 +222,7 @@ impl FitAnalysis {
         }
         let rest = control.part(PART_OF_FIT..1.0);
         let consequences = match identified.undetermined.is_empty() {
-            true => Some(Consequences::of(&identified, &wheel, self.with_blow, &rest)?),
+            true => Some(Consequences::of(&self.identification, &identified, &wheel, self.with_blow, &rest)?),
             false => None,
         };
         FitResult::new(wheel, &self.keys, &self.files, &self.records, identified, consequences)

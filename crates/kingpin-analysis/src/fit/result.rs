@@ -335,20 +335,25 @@ fn tell(
     let width = lower.zip(*upper).map(|(lower, upper)| (upper - lower) / 4.0);
     let text = |value: f64| rounded(value, width);
     let value = value.map_or_else(|| nothing.to_owned(), |value| format!("{} {unit}", text(value)));
-    if *without == Some(1.0) {
+    if *without == Some(1.0) && lower.is_none() {
         return writeln!(out, "{name}: {value}, for all samples of the estimates");
     }
     let how = match *method {
-        Some("samples") => "by samples of the estimates",
+        Some("profile") => "by fits with it held",
         Some(_) => "by the delta method, with differences",
         None => return writeln!(out, "{name}: {value}; its interval is not known"),
     };
-    let percent = without.map(|part| format!("{:.0} %", 100.0 * part)).unwrap_or_default();
+    let none = match without {
+        Some(part) if *part >= 0.01 => {
+            format!("{:.0} % of the samples of the estimates have none", 100.0 * part)
+        }
+        _ => "there may be none".to_owned(),
+    };
     let interval = match (lower, upper) {
         (Some(lower), Some(upper)) => format!("{} to {} {unit}", text(*lower), text(*upper)),
-        (Some(lower), None) => format!("at least {} {unit}, {percent} have none", text(*lower)),
+        (Some(lower), None) => format!("at least {} {unit}, {none}", text(*lower)),
         (None, Some(upper)) => format!("at most {} {unit}", text(*upper)),
-        (None, None) => format!("none, {percent} have none"),
+        (None, None) => format!("none: {none}"),
     };
     writeln!(out, "{name}: {value}; 95 % interval {interval} ({how})")
 }

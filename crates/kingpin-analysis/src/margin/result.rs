@@ -16,6 +16,9 @@ use kingpin_report::{Cell, Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 
+/// What is said where nothing is safe at any value.
+const NONE_IS_SAFE: &str = "at all of these values small motions grow: no disturbance is safe, and there is no limit cycle that bounds what is";
+
 /// One value of the parameter.
 #[derive(Debug, Serialize)]
 pub struct MarginPoint {
@@ -28,7 +31,7 @@ pub struct MarginPoint {
     pub found: Found,
     /// The largest disturbance that returned in the direction in which fewer do; nothing where it is undecided what lies beyond.
     pub safe: Option<f64>,
-    /// Half the range of the caster angle of the unstable limit cycle, in rad.
+    /// Half the range of the caster angle of the unstable limit cycle, in rad; nothing where no disturbance is safe, and it bounds nothing.
     pub unstable_amplitude: Option<f64>,
     /// The safe disturbance in units of it.
     pub ratio: Option<f64>,
@@ -39,6 +42,7 @@ impl MarginPoint {
         let edges = [found.positive, found.negative].into_iter().flatten();
         let nearest = edges.min_by(|a, b| a.fails.abs().total_cmp(&b.fails.abs()));
         let safe = nearest.filter(|edge| !edge.is_undecided()).map(|edge| edge.returns.abs());
+        let unstable_amplitude = unstable_amplitude.filter(|_| safe != Some(0.0));
         let ratio = safe.zip(unstable_amplitude).map(|(safe, amplitude)| safe / amplitude);
         Self { value, resolution, found, safe, unstable_amplitude, ratio }
     }
@@ -168,6 +172,11 @@ impl MarginResult {
                 MarginPoint::new(value, resolution, cell, amplitude)
             })
             .collect();
+        let mut remarks = cycles.remarks;
+        if !points.is_empty() && points.iter().all(|point| point.safe == Some(0.0)) {
+            // Which cycles there are elsewhere is of no use then.
+            remarks = vec![NONE_IS_SAFE.to_owned()];
+        }
         Self {
             wheel,
             interval,
@@ -176,7 +185,7 @@ impl MarginResult {
             unit: kind.unit(),
             contact: model.name(),
             indicator: Indicator::of(&points),
-            remarks: cycles.remarks,
+            remarks,
             points,
         }
     }

@@ -19,6 +19,19 @@ pub(super) fn seek(wheel: &WheelRequest, fastest: f64, control: &Control<'_>) ->
     DamperRequest::new(wheel.clone(), up_to).run(control)
 }
 
+/// The same for small motions only, at the radius of the wheel.
+///
+/// # Errors
+/// [`Error::Stopped`], no uniform motion up to the speed.
+pub(super) fn seek_for_small_motions(
+    wheel: &WheelRequest,
+    fastest: f64,
+    control: &Control<'_>,
+) -> Result<DamperResult, Error> {
+    let up_to = Assignment { key: "v".to_owned(), value: fastest.to_string() };
+    DamperRequest { small_motions: true, ..DamperRequest::new(wheel.clone(), up_to) }.run(control)
+}
+
 /// What is said of them.
 pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
     let up_to = readable(dampers.up_to);
@@ -58,14 +71,24 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
     if let Some(own) = dampers.replaced_dampers() {
         text.push_str(&format!(" All this is without the wheel's own dampers ({own})."));
     }
-    let check = "The dampers with which the motion gains its stability, sought over all speeds; cycles followed from the Hopf points of weaker dampers along speed and \
+    let check = if dampers.isola_free.is_none() {
+        "The dampers with which the motion gains its stability, sought over all speeds. Large cycles were not sought."
+    } else {
+        "The dampers with which the motion gains its stability, sought over all speeds; cycles followed from the Hopf points of weaker dampers along speed and \
                  damping, their folds in both, and strong random kicks with a hundredth more than the damper. What was searched is no proof \
-                 that there is no other large cycle.";
+                 that there is no other large cycle."
+    };
     Finding::new(subject, text, check).undecided_if(dampers.c_q.is_none() && dampers.c_psi.is_none())
 }
 
-/// The same in a few words: what it takes that nothing was found which does not return or, where that is not known, for small motions.
-pub(super) fn in_short(dampers: &DamperResult) -> String {
+/// The same in a few words, of a path where that has to be said: what it takes that nothing was found which does not return or, where that is
+/// not known, for small motions.
+pub(super) fn in_short(dampers: &DamperResult, path: Option<&str>) -> String {
+    let path = path.map_or_else(String::new, |path| format!("{path}, "));
+    format!("{path}{}", requirement(dampers))
+}
+
+fn requirement(dampers: &DamperResult) -> String {
     let up_to = format!("up to {} m/s", readable(dampers.up_to));
     let quantities = |values: [Option<f64>; 2]| {
         let units = [("c_q", "N s/m"), ("c_psi", "N m s/rad")];

@@ -207,10 +207,14 @@ impl ReportAnalysis {
         found.take(&subject, rolling.map(|rolling| self.without_dry_friction(rolling)))?;
         let chart = self.chart(own_radius, &control.part(CHARTED));
         found.take("chart", chart.map(|chart| self.without_dry_friction(chart)))?;
+        let turns = own_radius.is_finite();
         let subject = "dampers, straight";
         let damped = dampers::seek(&self.request_at(f64::INFINITY), self.fastest, &control.part(DAMPED));
         let large_cycles = self.search_for_large_cycles(damped.as_ref().ok(), stable_here);
-        verdict.dampers = damped.as_ref().ok().map(dampers::in_short);
+        verdict.dampers = damped
+            .as_ref()
+            .ok()
+            .map(|dampers| dampers::in_short(dampers, turns.then_some(straight.as_str())));
         let damped = damped.map(|dampers| {
             self.without_dry_friction(Found::new(
                 dampers::finding(subject.to_owned(), &dampers),
@@ -218,6 +222,17 @@ impl ReportAnalysis {
             ))
         });
         found.take(subject, damped)?;
+        if turns {
+            // Straight towing says little of what it takes on the wheel's own circle; small motions there are quickly looked at.
+            let subject = format!("dampers, {circle}");
+            let damped = dampers::seek_for_small_motions(&self.request.wheel, self.fastest, &control.quiet());
+            verdict.dampers_on_circle =
+                damped.as_ref().ok().map(|dampers| dampers::in_short(dampers, Some(&format!("at {circle}"))));
+            let damped = damped.map(|dampers| {
+                self.without_dry_friction(Found::new(dampers::finding(subject.clone(), &dampers), None))
+            });
+            found.take(&subject, damped)?;
+        }
         let subject = format!("limit cycles, {own}");
         let followed =
             self.cycles(&subject, (stable_here, &hopf_points), large_cycles, &control.part(FOLLOWED));
@@ -577,6 +592,31 @@ mod tests {
             assert_eq!(text.contains("wheel's own"), told.is_some(), "{text}");
             assert!(told.is_none_or(|told| text.ends_with(told)), "{text}");
         }
+    }
+
+    #[test]
+    fn dampers_on_the_wheels_own_circle_are_told_with_those_of_straight_towing() {
+        let up_to = 37.0;
+        let wheel = |r: &str| WheelRequest {
+            wheel: Some(format!("{WHEELS}/nosegear.toml").into()),
+            set: vec![Assignment { key: "r".to_owned(), value: r.to_owned() }],
+        };
+        let dampers = |r: &str| dampers::seek_for_small_motions(&wheel(r), up_to, &Control::none()).unwrap();
+        let (straight, circle) = (dampers("inf"), dampers("2"));
+        // A damper that is enough straight is too weak on the circle: with 24.5 N m s/rad it is unstable at 34 m/s.
+        assert!(
+            circle.c_psi.unwrap() > 1.3 * straight.c_psi.unwrap(),
+            "{:?} {:?}",
+            circle.c_psi,
+            straight.c_psi
+        );
+        let said = dampers::in_short(&circle, Some("at r = 2 m"));
+        assert!(
+            said.starts_with("at r = 2 m, for small motions to die out up to 37 m/s it takes c_q"),
+            "{said}"
+        );
+        let text = dampers::finding("dampers, r = 2 m".to_owned(), &circle);
+        assert!(!text.check.contains("kicks"), "{}", text.check);
     }
 
     #[test]

@@ -12,13 +12,14 @@ pub(super) struct Verdict {
     pub blow: Option<String>,
     pub rolling: Option<String>,
     pub dampers: Option<String>,
+    pub dampers_on_circle: Option<String>,
 }
 
 impl Verdict {
     /// All of it, joined.
     pub(super) fn finding(self) -> Finding {
-        let Self { straight, circle, dry_friction, shimmy, blow, rolling, dampers } = self;
-        let parts = [straight, circle, dry_friction, shimmy, blow, rolling, dampers];
+        let Self { straight, circle, dry_friction, shimmy, blow, rolling, dampers, dampers_on_circle } = self;
+        let parts = [straight, circle, dry_friction, shimmy, blow, rolling, dampers, dampers_on_circle];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         Finding::new("verdict", sentence(&parts.join("; ")), "")
     }

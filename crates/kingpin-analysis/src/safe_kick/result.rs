@@ -8,7 +8,7 @@ use crate::parameters::parameters_of;
 use crate::wheel_request::WheelRequest;
 use kingpin::basin::{ClassificationSettings, ContactModel, Disturbance, DisturbedMotion, Fate, SafeKick};
 use kingpin::{Key, Tyre, Wheel};
-use kingpin_figure::{Axis, Color, Figure, FigureError, Legend, Line, Panel, palette};
+use kingpin_figure::{Axis, Color, Figure, FigureError, Legend, Line, Note, Panel, palette};
 use kingpin_report::history::drawn;
 use kingpin_report::numbers::{readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
@@ -327,6 +327,32 @@ impl SafeKickResult {
     }
 }
 
+/// What the picture of a result without motions says.
+const NONE_IS_SAFE: &str = "small disturbances grow: none is safe";
+
+impl SafeKickResult {
+    /// The picture where there are no motions on two sides of an edge: it says why.
+    fn without_motions(&self) -> Figure {
+        let tried = format!("{} up to {} {}", self.kind, readable(self.largest), self.unit);
+        let [first, second] = match self.nearest() {
+            Some(edge) if edge.is_unstable() => [NONE_IS_SAFE.to_owned(), String::new()],
+            Some(_) => ["nothing was found".to_owned(), format!("beyond what returns: {tried}")],
+            None => ["all that were tried return:".to_owned(), tried],
+        };
+        let sentence = format!("{first} {second}");
+        let description = format!("{}: {}", sentence.trim_end(), self.described(description::of));
+        let mut panel = Panel::new(
+            Axis::new("$t$ (s)").limits(0.0, self.duration),
+            Axis::new("$\\psi$ (rad)").limits(-1.0, 1.0),
+        )
+        .note(Note::new((0.5 * self.duration, 0.1), first));
+        if !second.is_empty() {
+            panel = panel.note(Note::new((0.5 * self.duration, -0.1), second));
+        }
+        Figure::single_column().description(description).panel(panel)
+    }
+}
+
 impl Report for SafeKickResult {
     fn schema(&self) -> Schema {
         Schema::first("kingpin.safe-kick")
@@ -352,7 +378,7 @@ impl Report for SafeKickResult {
         self.write_edges(out, [self.positive, self.negative])?;
         let unstable = self.positive.is_some_and(|edge| edge.is_unstable());
         if unstable {
-            writeln!(out, "\nsmall disturbances grow: none is safe")?;
+            writeln!(out, "\n{NONE_IS_SAFE}")?;
             return Ok(());
         }
         if let Some(sentence) = self.what_was_tried() {
@@ -419,7 +445,9 @@ impl Report for SafeKickResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        let Some(edge) = self.nearest().filter(|_| self.fails.is_some()) else { return Ok(None) };
+        let Some(edge) = self.nearest().filter(|_| self.fails.is_some()) else {
+            return Ok(Some(self.without_motions()));
+        };
         let beyond = if edge.is_found() { "does not return" } else { "undecided" };
         let motions: Vec<(&DisturbedMotionResult, &str, Color)> =
             [(&self.fails, beyond, palette::VERMILION), (&self.returns, "returns", palette::BLUE)]

@@ -45,7 +45,7 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
         maps.push(Map { speed, fates: tiles.into_iter().flat_map(|tile| tile.fates).collect() });
         control.done((index + 1) as f64 / SPEEDS.len() as f64);
     }
-    Ok(Study { findings, drawings: vec![drawing(&maps)?], pictures: Vec::new() })
+    Ok(Study { findings, drawings: vec![drawing(&maps)?], pictures: Vec::new(), notes: Vec::new() })
 }
 
 fn values(largest: f64) -> Vec<f64> {

@@ -51,7 +51,12 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
     })?;
     control.done(0.9);
     let findings = sections.iter().map(finding).collect();
-    Ok(Study { findings, drawings: vec![drawing(&charts, &sections)], pictures: Vec::new() })
+    Ok(Study {
+        findings,
+        drawings: vec![drawing(&charts, &sections)],
+        pictures: Vec::new(),
+        notes: Vec::new(),
+    })
 }
 
 fn chart(damper: Key, damping: f64, control: &Control<'_>) -> Result<Boundary, Error> {

@@ -54,7 +54,7 @@ impl StudyRequest {
         let mut result = StudyResult { wheel, ..StudyResult::default() };
         for (done, &name) in self.studies.iter().enumerate() {
             control.at(name.as_str());
-            let Study { findings, drawings, pictures } =
+            let Study { findings, drawings, pictures, notes } =
                 name.compute(wheel.as_ref(), control).map_err(|error| match error {
                     Error::Stopped if done > 0 => Error::Interrupted {
                         done,
@@ -65,6 +65,7 @@ impl StudyRequest {
                 })?;
             result.files.extend(write(&self.out, &drawings, &pictures)?);
             result.findings.extend(findings.into_iter().map(|finding| (name, finding)));
+            result.notes.extend(notes.into_iter().map(|note| (name, note)));
         }
         Ok(result)
     }

@@ -17,6 +17,8 @@ pub struct StudyResult {
     pub wheel: Option<Wheel>,
     /// The findings of every study.
     pub findings: Vec<(StudyName, Finding)>,
+    /// What every study says in words: that nothing was found and what was searched, what was left out.
+    pub notes: Vec<(StudyName, String)>,
     /// The files that were written.
     pub files: Vec<PathBuf>,
 }
@@ -33,8 +35,15 @@ impl Serialize for StudyResult {
         #[derive(Serialize)]
         struct Fields<'a> {
             findings: Vec<Row<'a>>,
+            notes: Vec<Note<'a>>,
             files: &'a [PathBuf],
         }
+        #[derive(Serialize)]
+        struct Note<'a> {
+            study: &'static str,
+            text: &'a str,
+        }
+        let notes = self.notes.iter().map(|(name, text)| Note { study: name.as_str(), text }).collect();
         let row = |(name, finding): &'_ (StudyName, Finding)| -> (&'static str, f64) {
             (name.as_str(), finding.value)
         };
@@ -46,7 +55,7 @@ impl Serialize for StudyResult {
                 Row { study, quantity: &entry.1.quantity, value, unit: entry.1.unit }
             })
             .collect();
-        Fields { findings, files: &self.files }.serialize(serializer)
+        Fields { findings, notes, files: &self.files }.serialize(serializer)
     }
 }
 
@@ -79,6 +88,9 @@ impl Report for StudyResult {
             table.row([Cell::from(finding.quantity.clone()), finding.cell(), finding.unit.into()]);
         }
         table.write(out)?;
+        for (name, note) in &self.notes {
+            writeln!(out, "\n{}: {note}", name.as_str())?;
+        }
         writeln!(out)?;
         self.files.iter().try_for_each(|file| writeln!(out, "{}", file.display()))
     }

@@ -50,6 +50,8 @@ struct Subject {
     speeds: (f64, f64),
     /// What the dampers are raised by.
     damping: f64,
+    /// What the speed to start at is, in words; nothing for the paper's wheel.
+    place: &'static str,
 }
 
 impl Subject {
@@ -57,11 +59,21 @@ impl Subject {
     fn both(given: Option<&Wheel>) -> Result<[Self; 2], Error> {
         let Some(given) = given else {
             let wheel = wheel(&[(Key::FAz, LOAD)])?;
-            return Ok(DAMPINGS.map(|damping| Self { wheel, start: START, speeds: SPEEDS, damping }));
+            return Ok(DAMPINGS.map(|damping| Self {
+                wheel,
+                start: START,
+                speeds: SPEEDS,
+                damping,
+                place: "",
+            }));
         };
-        let (reference, parts) = match given.critical_speed() {
-            Some(critical) => (critical.speed, PARTS),
-            None => (given.get(Key::V), PARTS_OF_OWN),
+        let (reference, parts, place) = match given.critical_speed() {
+            Some(critical) => {
+                (critical.speed, PARTS, ", 0.995 of the critical speed, where this study begins")
+            }
+            None => {
+                (given.get(Key::V), PARTS_OF_OWN, ", 0.995 of the wheel's own speed, where this study begins")
+            }
         };
         let impedance = |wheel: &Wheel| {
             let spin = wheel.get(Key::JWxi) / wheel.get(Key::WheelRadius).powi(2);
@@ -73,6 +85,7 @@ impl Subject {
             start: (1e3 * STARTS_AT * reference).round() / 1e3,
             speeds: (rounded(parts.0 * reference), rounded(parts.1 * reference)),
             damping: if damping == 0.0 { 0.0 } else { rounded(damping * scale) },
+            place,
         }))
     }
 
@@ -118,7 +131,12 @@ pub(super) fn study(given: Option<&Wheel>, control: &Control<'_>) -> Result<Stud
     control.done(0.9);
     let findings = all.iter().map(Motions::findings).collect::<Result<Vec<_>, _>>()?.concat();
     let animation = animation::animation(&all[0].at_start)?;
-    Ok(Study { findings, drawings: vec![drawing(&all)?], pictures: vec![("animation.svg", animation)] })
+    Ok(Study {
+        findings,
+        drawings: vec![drawing(&all)?],
+        pictures: vec![("animation.svg", animation)],
+        notes: Vec::new(),
+    })
 }
 
 impl Motions {
@@ -130,10 +148,11 @@ impl Motions {
             ShimmyError::Interrupted(interrupted) => interrupted.into(),
             // What a search that succeeds needs is wrong, or there is no such motion.
             other => Error::NothingFound(format!(
-                "no shimmy with sliding phases was found at {}, v = {} m/s: the caster was released {RELEASE_ANGLE} rad from the uniform \
-                 motion and the motion followed for {SETTLING_TIME} s: {other}",
+                "no shimmy with sliding phases was found with {} at v = {} m/s{}: the caster was released {RELEASE_ANGLE} rad from the uniform \
+                 motion and the motion followed for {SETTLING_TIME} s: {other}; `kingpin shimmy` seeks it over all speeds",
                 subject.dampers(),
-                subject.start
+                subject.start,
+                subject.place
             )),
         })?;
         let along = Along::new(Key::V, subject.speeds.0, subject.speeds.1)?;

@@ -81,7 +81,7 @@ pub(super) fn study(control: &Control<'_>) -> Result<Study, Error> {
         Map::compute(ContactModel::Sliding, SLIDING_POINTS, SLIDING_DURATION, &step)?,
     ];
     let findings = maps.iter().flat_map(Map::findings).collect();
-    Ok(Study { findings, drawings: vec![drawing(&maps)?], pictures: Vec::new() })
+    Ok(Study { findings, drawings: vec![drawing(&maps)?], pictures: Vec::new(), notes: Vec::new() })
 }
 
 fn values((low, high): (f64, f64), count: usize) -> Vec<f64> {

@@ -7,7 +7,7 @@ use kingpin_report::{Cell, Columns};
 const DIGITS: usize = 9;
 
 /// What a study gives.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Study {
     /// The numbers that matter, in the order in which they are told.
     pub findings: Vec<Finding>,
@@ -15,6 +15,8 @@ pub(super) struct Study {
     pub drawings: Vec<Drawing>,
     /// Names and contents of further pictures.
     pub pictures: Vec<(&'static str, String)>,
+    /// What is to be said in words: that nothing was found and what was searched, what was left out.
+    pub notes: Vec<String>,
 }
 
 /// A number with what it is.

@@ -191,6 +191,25 @@ fn an_unstable_uniform_motion_has_no_safe_kick() {
 }
 
 #[test]
+fn where_there_are_no_motions_to_show_the_picture_says_why() {
+    let folder = Folder::new();
+    for (command, says) in [
+        ("safe-kick -s v=9", "small disturbances grow: none is safe"),
+        ("safe-kick --kind release-angle --largest 1e-3 --duration 1", "all that were tried return"),
+    ] {
+        let run = folder.succeed(&format!("{command} -q"));
+        let with = folder.succeed(&format!("{command} -o kick.json -o kick.svg"));
+        assert_eq!(run.output, with.output, "{command}");
+        let picture = String::from_utf8(crate::read(&folder.path("kick.svg"))).unwrap();
+        assert!(picture.contains(says), "{command}: {picture}");
+        let result: Value = serde_json::from_slice(&crate::read(&folder.path("kick.json"))).unwrap();
+        assert!(result["fails"].is_null(), "{command}");
+    }
+    // A margin of nothing but unstable motions is drawn, too.
+    folder.succeed("margin --along v=9:10:2 -q -o margin.svg");
+}
+
+#[test]
 fn margins_have_the_cycles_wherever_the_interval_ends() {
     let folder = Folder::new();
     // The Hopf point is at 8.43 m/s.
@@ -204,6 +223,23 @@ fn margins_have_the_cycles_wherever_the_interval_ends() {
     // Two values have no correlation worth the name.
     let whole = folder.json("margin --along v=4:6:2 --kind release-angle -q");
     assert!(whole["indicator"]["correlation"].is_null() && whole["remarks"].as_array().unwrap().is_empty());
+}
+
+/// The wheel without dampers is unstable at every speed, and there are cycles all the same.
+#[test]
+fn a_margin_of_unstable_motions_says_that_nothing_is_safe() {
+    let folder = Folder::new();
+    let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+    let margin = format!("margin --wheel {wheels}/dolly.toml --contact rolling --along v=2:40:3 -q");
+    let result = folder.json(&margin);
+    assert!(result["indicator"].is_null(), "{result}");
+    for point in result["points"].as_array().unwrap() {
+        assert_eq!(point["safe"], 0.0, "{point}");
+        assert!(point["unstable_amplitude"].is_null() && point["ratio"].is_null(), "{point}");
+    }
+    let output = folder.succeed(&margin).output;
+    assert!(output.contains("at all of these values small motions grow: no disturbance is safe"), "{output}");
+    assert!(!output.contains("per rad of amplitude") && !output.contains("Hopf point"), "{output}");
 }
 
 #[test]

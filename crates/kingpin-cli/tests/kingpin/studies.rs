@@ -52,22 +52,30 @@ fn the_isola_of_a_similar_wheel_is_similar() {
 fn where_there_is_no_isola_that_is_said_with_what_was_searched() {
     let folder = Folder::new();
     // Longer than critical: no damper is needed, nothing can be detached.
-    let run = folder.run("study isola --quiet -s l=0.08");
-    assert_eq!(run.exit_code, 1);
+    let run = folder.succeed("study isola --quiet -s l=0.08 -s r=inf -s k_u=inf");
     assert!(
-        run.messages.contains("no isola") && run.messages.contains("stable at every speed"),
+        run.output.contains("no isola") && run.output.contains("stable at every speed"),
         "{}",
-        run.messages
+        run.output
     );
+    assert!(!run.output.contains("replaces"), "{}", run.output);
     // The cycles of the trolley end where its Hopf points meet.
     let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
-    let run = folder.run(&format!("study isola --quiet --wheel {wheels}/trolley.toml"));
-    assert_eq!(run.exit_code, 1);
-    for word in
-        ["no isola was found", "from c_q = 5", "Searched were the branches from the Hopf points at c_q = 39"]
-    {
-        assert!(run.messages.contains(word), "{}", run.messages);
+    let command = format!("study isola --quiet --wheel {wheels}/trolley.toml -s r=2");
+    let output = folder.succeed(&command).output;
+    for words in [
+        "no isola was found",
+        "from c_q = 5",
+        "Searched were the branches from the Hopf points at c_q = 39",
+        "a Hopf point at c_q = 51.0",
+        "it replaces r = 2 m by r = inf, k_u = 30000 N/m by k_u = inf",
+    ] {
+        assert!(output.contains(words), "{words}: {output}");
     }
+    assert!(!output.contains("the parameter"), "{output}");
+    let result = folder.json(&command);
+    assert_eq!(result["findings"].as_array().unwrap().len(), 0);
+    assert!(result["notes"][0]["text"].as_str().unwrap().starts_with("no isola was found"), "{result}");
     assert!(!folder.path("studies").join("figure7.svg").exists());
 }
 
@@ -106,6 +114,22 @@ fn the_sliding_study_of_a_trolley_ends_in_symmetric_shimmy() {
     assert!((last - before).abs() < 0.02 * largest, "{last} {before}");
     let swing = angles[1900..].iter().copied().fold(0.0, f64::max);
     assert!((swing / largest - 1.0).abs() < 0.02, "{swing} {largest}");
+}
+
+/// The dolly on a circle does not shimmy at the speed at which the study begins.
+#[test]
+fn where_no_sliding_shimmy_is_found_it_is_said_where_it_was_sought() {
+    let wheels = concat!(env!("CARGO_MANIFEST_DIR"), "/../kingpin/examples/wheels");
+    let run = Folder::new().run(&format!("study sliding --quiet --wheel {wheels}/dolly.toml -s r=2"));
+    assert_eq!(run.exit_code, 1);
+    for words in [
+        "no shimmy with sliding phases was found",
+        "at v = 1.128 m/s, 0.995 of the critical speed, where this study begins",
+        "`kingpin shimmy` seeks it over all speeds",
+    ] {
+        assert!(run.messages.contains(words), "{words}: {}", run.messages);
+    }
+    assert!(!run.messages.contains("1.6787554630915"), "{}", run.messages);
 }
 
 #[test]

@@ -100,6 +100,18 @@ pub struct Identified {
     pub converged: bool,
     /// How likely other parameters are; nothing where some are not determined.
     pub distribution: Option<JointDistribution>,
+    /// Where the sum of squares is smallest.
+    pub(super) fit: Fit,
+}
+
+/// Where the sum of squares is smallest, for what is computed from there on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fit {
+    pub unknowns: Vec<f64>,
+    /// Standard deviations by which residuals are divided, for every column of every record.
+    pub deviations: Vec<Vec<f64>>,
+    /// Half width of intervals in standard errors.
+    pub half_width: f64,
 }
 
 /// The number of values less that of the unknowns that are not held by a bound.
@@ -187,6 +199,11 @@ pub(super) fn identified(
         }),
         converged: minimum.converged,
         distribution,
+        fit: Fit {
+            unknowns: minimum.unknowns.clone(),
+            deviations: problem.deviations.clone(),
+            half_width: half_width(freedom),
+        },
     })
 }
 

@@ -9,6 +9,7 @@
 //! The noise is taken to be independent from sample to sample and normal; [`Whiteness`] says whether that may be so. The model is
 //! that of a wheel that rolls.
 
+mod consequence;
 mod distributions;
 mod error;
 mod identified;
@@ -25,6 +26,7 @@ mod start;
 mod tests;
 mod whiteness;
 
+pub use consequence::ConsequenceInterval;
 pub use error::IdentificationError;
 pub use identified::{ChiSquared, Estimate, FittedColumn, FittedRecord, Identified, NotSeparated};
 pub use interval::{Interval, IntervalMethod};
@@ -221,14 +223,7 @@ impl Identification {
     pub fn run(&self, control: &Control<'_>) -> Result<Identified, IdentificationError> {
         self.check_motion()?;
         let unknowns = unknowns(&self.records, &self.keys, &self.starts, &self.offsets)?;
-        let mut problem = Problem {
-            records: &self.records,
-            keys: &self.keys,
-            starts: &self.starts,
-            unknowns: &unknowns,
-            deviations: self.first_deviations()?,
-            samples: self.records.iter().map(|record| record.times.len()).collect(),
-        };
+        let mut problem = self.problem(&unknowns, self.first_deviations()?);
         if problem.count() <= unknowns.len() {
             return Err(IdentificationError::TooFewValues {
                 values: problem.count(),
@@ -260,6 +255,18 @@ impl Identification {
             }
         }
         Err(IdentificationError::ManyMinima { returns: MOST_RETURNS })
+    }
+
+    /// The residuals of all samples, divided by these deviations.
+    fn problem<'a>(&'a self, unknowns: &'a [Unknown], deviations: Vec<Vec<f64>>) -> Problem<'a> {
+        Problem {
+            records: &self.records,
+            keys: &self.keys,
+            starts: &self.starts,
+            unknowns,
+            deviations,
+            samples: self.records.iter().map(|record| record.times.len()).collect(),
+        }
     }
 
     /// Whether the deviations of all columns were given.

@@ -11,7 +11,7 @@ use arclength::integration::IntegrationError;
 pub enum ShimmyError {
     /// The motion dies out: the wheel rolls or slides steadily in the end.
     #[error(
-        "the motion dies out: in the last {window} s the caster angle varies by {range:e} rad only; start from a larger disturbance"
+        "the motion dies out: in the last {window} s the caster angle varies by {range:.1e} rad only; start from a larger disturbance"
     )]
     DiesOut {
         /// Time in s that was looked at.
@@ -21,7 +21,7 @@ pub enum ShimmyError {
     },
     /// The motion does not repeat itself.
     #[error(
-        "the motion does not repeat itself within {longest_period} s (it comes back to {nearest:e} of its size at best): \
+        "the motion does not repeat itself within {longest_period} s (it comes back to {nearest:.1e} of its size at best): \
          let it settle for longer than {settling_time} s, or allow a longer period; it may be irregular"
     )]
     NotPeriodic {
@@ -102,13 +102,13 @@ pub enum Refusal {
     #[error("the linear equations are singular")]
     Singular,
     /// Period and extrema of the motion are known too badly.
-    #[error("the motion is known to a part of {error:e} only")]
+    #[error("the motion is known to a part of {error:.1e} only")]
     Inexact {
         /// Error relative to the period and the range of the angle.
         error: f64,
     },
     /// The updates do not become small.
-    #[error("the last update is {update:e} of the size of the motion")]
+    #[error("the last update is {update:.1e} of the size of the motion")]
     Diverged {
         /// Length of the last update.
         update: f64,

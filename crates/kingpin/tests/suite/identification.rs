@@ -265,16 +265,77 @@ fn intervals_hold_the_truth_where_a_bound_holds_another_parameter() {
         // A binomial number with 24 trials of 0.95 is below 19 once in 1000 times (scipy.stats.binom).
         assert!(covering >= 19, "{key}: {covering} of {REPETITIONS}");
     }
-    // What is drawn for what follows lies about the truth, too: the critical speed of most wheels is near that of the truth.
-    let critical = |wheel: &Wheel| wheel.critical_speed().map_or(f64::INFINITY, |critical| critical.speed);
-    let holds = |identified: &&Identified| {
-        let drawn = identified.distribution.as_ref().unwrap().wheels(&identified.wheel, 400);
-        let mut speeds: Vec<f64> = drawn.iter().map(critical).collect();
-        speeds.sort_by(f64::total_cmp);
-        let estimate = critical(&identified.wheel);
-        let [low, high] = [0.025, 0.975].map(|part: f64| speeds[(part * speeds.len() as f64) as usize]);
-        (low.min(estimate)..=high.max(estimate)).contains(&critical(&truth))
+    // What follows goes with these intervals.
+    let of = |(seed, identified): (usize, &Identified)| {
+        let record = noisy(&exact, 0.003, seed as u64);
+        let identification =
+            Identification::new(vec![record], &keys).unwrap().start("Omega", Start::Uniform).unwrap();
+        identification
+            .interval_of(identified, &identified.wheel, &critical, &Control::none())
+            .unwrap()
+            .unwrap()
     };
-    let covering = all.iter().filter(holds).count();
+    let speed = critical(&truth);
+    let intervals: Vec<_> = all.par_iter().enumerate().map(of).collect();
+    let covering =
+        intervals.iter().filter(|interval| (interval.lower..=interval.upper).contains(&speed)).count();
+    println!("critical speed: {covering} of {REPETITIONS}");
     assert!(covering >= 19, "critical speed: {covering} of {REPETITIONS}");
+}
+
+/// The critical speed; infinite where there is none.
+fn critical(wheel: &Wheel) -> f64 {
+    wheel.critical_speed().map_or(f64::INFINITY, |critical| critical.speed)
+}
+
+#[test]
+fn the_interval_of_the_critical_speed_holds_the_truth_and_goes_with_those_of_the_parameters() {
+    // A nose wheel on a circle: stiffness and dampers are correlated by 0.998 to 1, and the truth has one damper and the friction at
+    // their bound.
+    const REPETITIONS: usize = 40;
+    let set = [
+        ("l", "0.09"),
+        ("r", "2"),
+        ("m_w", "5"),
+        ("m_c", "3"),
+        ("J_wxi", "0.08"),
+        ("J_wzeta", "0.045"),
+        ("J_Cz", "0.02"),
+        ("R", "0.17"),
+        ("l_c", "0.03"),
+        ("v", "18.447"),
+        ("k", "6e4"),
+        ("c_psi", "3"),
+    ];
+    let truth = wheel(&set);
+    let speed = critical(&truth);
+    let exact = released(&truth, 0.01, 0.12, 161);
+    let keys = [Key::K, Key::CQ, Key::CPsi, Key::MF];
+    let of = |seed: usize| {
+        let record = noisy(&exact, 0.0005, seed as u64);
+        let identification = Identification::new(vec![record], &keys).unwrap();
+        let found = identification.run(&Control::none()).unwrap();
+        let interval =
+            identification.interval_of(&found, &found.wheel, &critical, &Control::none()).unwrap().unwrap();
+        println!("{seed}: {:.4} {:.4} {:.4}", critical(&found.wheel), interval.lower, interval.upper);
+        // Another value of c_psi that is likely is one of another critical speed.
+        let of_c_psi = found.estimates[2].interval;
+        (interval, [of_c_psi.lower, of_c_psi.upper].map(Option::unwrap), critical(&found.wheel))
+    };
+    let all: Vec<_> = (0..REPETITIONS).into_par_iter().map(of).collect();
+    let covering =
+        all.iter().filter(|(interval, ..)| (interval.lower..=interval.upper).contains(&speed)).count();
+    println!("critical speed: {covering} of {REPETITIONS}");
+    // A binomial number with 40 trials of 0.95 is below 34 once in 300 times.
+    assert!(covering >= 34, "{covering} of {REPETITIONS}");
+    // An estimate is no end of its interval where the ends for the parameters lie on both sides.
+    let one_sided = |(interval, [lower, upper], estimate): &&([f64; 2], [f64; 2], f64)| {
+        lower < upper && (interval[0] > 0.999 * estimate || interval[1] < 1.001 * estimate)
+    };
+    let ends: Vec<_> = all
+        .iter()
+        .map(|(interval, of_c_psi, estimate)| ([interval.lower, interval.upper], *of_c_psi, *estimate))
+        .collect();
+    let one_sided = ends.iter().filter(one_sided).count();
+    assert_eq!(one_sided, 0, "{ends:?}");
 }

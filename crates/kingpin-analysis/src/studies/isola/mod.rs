@@ -11,7 +11,7 @@ use super::wheel::{rounded, wheel};
 use crate::error::{Error, unless_stopped};
 use crate::last_fold::LastFold;
 use arclength::branch::SpecialKind;
-use arclength::continuation::{Settings, Stop};
+use arclength::continuation::{Settings, Stop, Wording};
 use arclength::cycle::{CycleBranch, CycleEnd, CyclePoint, Cycles};
 use arclength::equilibrium::{Equilibria, HopfPoint};
 use arclength::locus::{CycleLocus, CycleLocusBranch};
@@ -200,8 +200,44 @@ fn lateral_wheel(given: Option<&Wheel>) -> Result<Wheel, KingpinError> {
 }
 
 pub(super) fn study(given: Option<&Wheel>, control: &Control<'_>) -> Result<Study, Error> {
-    let isola = Isola::compute(&lateral_wheel(given)?, control)?;
-    Ok(Study { findings: isola.findings(), drawings: vec![isola.drawing()], pictures: Vec::new() })
+    let notes = given.and_then(replaced).into_iter();
+    Ok(match Isola::compute(&lateral_wheel(given)?, control)? {
+        Outcome::Isola(isola) => Study {
+            findings: isola.findings(),
+            drawings: vec![isola.drawing()],
+            pictures: Vec::new(),
+            notes: notes.collect(),
+        },
+        Outcome::None(why) => {
+            Study { notes: std::iter::once(why).chain(notes).collect(), ..Study::default() }
+        }
+    })
+}
+
+/// Which parameters of a wheel that is given the study replaces; nothing where they are those of the study.
+fn replaced(given: &Wheel) -> Option<String> {
+    let (radius, damping, stiffness) =
+        (given.get(Key::TurningRadius), given.get(Key::CQ), given.get(Key::KU));
+    let mut left_out = Vec::new();
+    if radius.is_finite() {
+        left_out.push(format!("r = {} m by r = inf", readable(radius)));
+    }
+    if stiffness.is_finite() {
+        left_out.push(format!("k_u = {} N/m by k_u = inf", readable(stiffness)));
+    }
+    if damping > 0.0 {
+        left_out.push(format!("c_q = {} N s/m by the dampers that are told", readable(damping)));
+    }
+    let said = "the study is about straight running with lateral elasticity only; of this wheel it replaces";
+    (!left_out.is_empty()).then(|| format!("{said} {}", left_out.join(", ")))
+}
+
+/// What comes of a search.
+pub(super) enum Outcome {
+    /// An isola.
+    Isola(Box<Isola>),
+    /// None, and what was searched.
+    None(String),
 }
 
 /// The branches of cycles from Hopf points, every branch once.
@@ -229,9 +265,9 @@ fn none_found(
     attached: &[CycleBranch],
     bridged: &CycleBranch,
     (damping, speed): (f64, f64),
-) -> Error {
+) -> String {
     let found: Vec<String> = attached.iter().map(|branch| told(branch, "v", "m/s")).collect();
-    Error::NothingFound(format!(
+    format!(
         "no isola was found. Straight running is stable at every speed from c_q = {} N s/m on; the largest cycles at c_q = {damping} N s/m, \
          followed in the damping at v = {} m/s, end before that: {}. Searched were the branches from the Hopf points at c_q = {damping} \
          N s/m: {}",
@@ -239,7 +275,7 @@ fn none_found(
         readable(speed),
         told(bridged, "c_q", "N s/m"),
         found.join("; ")
-    ))
+    )
 }
 
 /// The folds of a closed branch in speed and damping.
@@ -257,15 +293,15 @@ fn folds_of(field: &LateralWheel, closed: &CycleBranch, ranges: &Ranges) -> Resu
 }
 
 impl Isola {
-    pub(super) fn compute(wheel: &Wheel, control: &Control<'_>) -> Result<Self, Error> {
-        let birth = HopfVertex::of(wheel).ok_or_else(|| {
-            Error::NothingFound(
+    pub(super) fn compute(wheel: &Wheel, control: &Control<'_>) -> Result<Outcome, Error> {
+        let Some(birth) = HopfVertex::of(wheel) else {
+            return Ok(Outcome::None(
                 "no isola: with lateral elasticity only (k_u = inf) straight running of this wheel is stable at every speed however weak \
                  the lateral damper is, so that there are no cycles that a damper could detach; that follows from the Hopf \
                  condition, nothing else was searched"
                     .to_owned(),
-            )
-        })?;
+            ));
+        };
         let mut ranges = Ranges::of(&birth)?;
         let Ranges { with_hopf_points, bridged: dampings, .. } = ranges;
         let field = wheel.lateral(&[Key::V, Key::CQ])?;
@@ -284,12 +320,12 @@ impl Isola {
         };
         // Where no cycle has that speed, the largest of all is followed.
         let bridge = largest(&|point| point.value == ranges.bridge).or_else(|| largest(&|_| true));
-        let bridge = bridge.ok_or_else(|| {
-            Error::NothingFound(format!(
+        let Some(bridge) = bridge else {
+            return Ok(Outcome::None(format!(
                 "no isola: straight running has no Hopf point at c_q = {with_hopf_points} N s/m for v from {} to {} m/s, and so no cycles",
                 ranges.hopf_speeds.0, ranges.hopf_speeds.1
-            ))
-        })?;
+            )));
+        };
         let speed = bridge.value;
         ranges.bridge = speed;
         let follow =
@@ -298,7 +334,7 @@ impl Isola {
         let strongest = bridged.points.iter().map(|point| point.value).fold(0.0, f64::max);
         if strongest < ranges.detached {
             if strongest <= birth.damping {
-                return Err(none_found(&birth, &attached, &bridged, (with_hopf_points, speed)));
+                return Ok(Outcome::None(none_found(&birth, &attached, &bridged, (with_hopf_points, speed))));
             }
             // Between the two the branch is detached.
             ranges.detached = 0.5 * (birth.damping + strongest);
@@ -335,7 +371,9 @@ impl Isola {
         control.done(0.9);
         unless_stopped(control)?;
         let death = largest_damping(&field, &folds)?;
-        Ok(Self { hopf_points, attached, undamped_angle, closed, shown, folds, birth, death, ranges })
+        let isola =
+            Self { hopf_points, attached, undamped_angle, closed, shown, folds, birth, death, ranges };
+        Ok(Outcome::Isola(Box::new(isola)))
     }
 
     /// Folds of the closed branch by speed.
@@ -390,7 +428,8 @@ fn settings() -> Settings {
 /// The range of a branch and why it ends, in words.
 fn told(branch: &CycleBranch, key: &str, unit: &str) -> String {
     let values = || branch.points.iter().map(|point| point.value);
-    let ends: Vec<String> = branch.stops.iter().flatten().map(ToString::to_string).collect();
+    let wording = Wording::of([(key, Some(unit))]);
+    let ends: Vec<String> = branch.stops.iter().flatten().map(|stop| stop.explain(&wording).cause).collect();
     format!(
         "{key} from {} to {} {unit} ({})",
         readable(values().fold(f64::INFINITY, f64::min)),
