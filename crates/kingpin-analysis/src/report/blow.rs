@@ -32,6 +32,10 @@ pub(super) fn seek(
 /// # Errors
 /// The picture cannot be drawn.
 pub(super) fn illustration(result: &SafeKickResult) -> Result<Option<Illustration>, Error> {
+    if result.fails.is_none() {
+        // The words are in the finding.
+        return Ok(None);
+    }
     let contact = contact_in_words(&result.wheel, result.contact);
     let shown = result.shown().replace("impulse", "blow");
     Illustration::of(result, format!("Caster angle over time after {shown}: {contact}."))

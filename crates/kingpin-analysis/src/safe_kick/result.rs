@@ -336,7 +336,7 @@ impl SafeKickResult {
         let tried = format!("{} up to {} {}", self.kind, readable(self.largest), self.unit);
         let [first, second] = match self.nearest() {
             Some(edge) if edge.is_unstable() => [NONE_IS_SAFE.to_owned(), String::new()],
-            Some(_) => ["nothing was found".to_owned(), format!("beyond what returns: {tried}")],
+            Some(_) => ["none was found to end elsewhere:".to_owned(), tried],
             None => ["all that were tried return:".to_owned(), tried],
         };
         let sentence = format!("{first} {second}");
