@@ -124,7 +124,7 @@ impl Wheel {
     }
 
     /// Smallest speed in m/s at which a change of stability is looked for.
-    pub(crate) fn slowest_speed(&self) -> f64 {
+    fn slowest_speed(&self) -> f64 {
         let straight = match self.tyre() {
             Tyre::Rigid => self.critical_speeds_straight(),
             _ => Vec::new(),

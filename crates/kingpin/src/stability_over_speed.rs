@@ -64,8 +64,7 @@ impl Wheel {
         };
         changes.sort_by(f64::total_cmp);
         changes.dedup_by(|next, before| (*next - *before).abs() <= SAME_CHANGE * *before);
-        let slowest = self.slowest_speed();
-        let searched = [slowest, scanned.last().copied().unwrap_or(slowest)];
+        let searched = ends_of(&scanned);
         let parts = self.parts(scanned, &changes);
         Ok(StabilityOverSpeed { searched, parts, changes, is_complete, not_followed })
     }
@@ -77,8 +76,7 @@ impl Wheel {
         not_followed: &mut Vec<[f64; 2]>,
         control: &Control<'_>,
     ) -> Result<Vec<f64>, KingpinError> {
-        let mut slow = self.slowest_speed();
-        let fastest = scanned.last().copied().unwrap_or(slow);
+        let [mut slow, fastest] = ends_of(scanned);
         let mut changes = Vec::new();
         while slow < fastest {
             let fast = (DECADE * slow).min(fastest);
@@ -132,6 +130,11 @@ impl Wheel {
         }
         parts
     }
+}
+
+/// The lowest and the highest of some speeds in ascending order.
+fn ends_of(speeds: &[f64]) -> [f64; 2] {
+    [speeds.first(), speeds.last()].map(|speed| speed.copied().unwrap_or_default())
 }
 
 /// Up to which speed between two there is the same word as at the slower one.

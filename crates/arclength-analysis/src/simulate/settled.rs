@@ -76,15 +76,18 @@ pub(crate) fn settled_orbit(
     let origin = longest.map_or(0.0, |index| 0.5 * (behind[index] + next(index)));
     let origin = if origin >= period { origin - period } else { origin };
     let mut times = even(origin, origin + period, MESH_SAMPLES);
-    for _ in 0..MOST_REFINEMENTS {
-        let added = quick_stretches(&settled.follow(&times)?, SAME_BREAK * period);
-        if added.is_empty() {
-            break;
+    let mut refinements = 0;
+    let whole = loop {
+        let motion = settled.follow(&times)?;
+        let added = quick_stretches(&motion, SAME_BREAK * period);
+        if added.is_empty() || refinements == MOST_REFINEMENTS {
+            break motion;
         }
+        drop(motion);
+        refinements += 1;
         times.extend(added);
         times.sort_by(f64::total_cmp);
-    }
-    let whole = settled.follow(&times)?;
+    };
     let breaks: Vec<f64> = distinct(&whole.breaks, period)
         .into_iter()
         .filter(|time| origin < *time && *time < origin + period)
