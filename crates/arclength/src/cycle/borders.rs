@@ -4,8 +4,10 @@
 use super::curve::{CycleCurve, Fitted, find_exact_segments};
 use super::extrema::{Extremes, extremes};
 use super::gate::GateFunction;
+use super::limit_cycle::LimitCycle;
 use super::passages::Touch;
 use super::segments::Segments;
+use crate::collocation::equations::Collocation;
 use crate::collocation::mesh::{SAME_TIME, fit_jumps, jump_times, widen_beside_jumps};
 use crate::collocation::problem::BoundaryValueEquations;
 use crate::continuation::{Adaptation, Curve, Equations, correct};
@@ -226,6 +228,25 @@ impl CycleCurve<'_> {
         vectors.iter_mut().for_each(|vector| turn(vector));
         collocation.set_mesh(mesh, unknown);
     }
+}
+
+/// Gives an orbit whose mesh does not tell the borders apart that it passes mesh points at them; `vector` is carried over.
+///
+/// # Errors
+/// [`Error::TooManyBorders`].
+pub(super) fn tell_borders_apart(
+    collocation: &mut Collocation<LimitCycle<'_>>,
+    unknown: &mut Vec<f64>,
+    vector: &mut Vec<f64>,
+) -> Result<(), Error> {
+    find_exact_segments(collocation, unknown)?;
+    let Some(segments) = collocation.problem.segments.take() else { return Ok(()) };
+    // At a jump there are two mesh points.
+    if !segments.has_jumps() && segments.crowd_on(collocation.mesh()) {
+        let finer = with_points(collocation.mesh(), &segments.times);
+        collocation.move_to_mesh(finer, unknown, &mut [vector]);
+    }
+    Ok(())
 }
 
 /// A mesh with more points; those of before that are close to one of them give way.

@@ -138,15 +138,16 @@ impl Segments {
         })
     }
 
+    /// Whether two gates have the same nearest point of a mesh.
+    pub(crate) fn crowd_on(&self, mesh: &[f64]) -> bool {
+        let points: Vec<usize> = self.times.iter().map(|time| nearest_inside(mesh, *time)).collect();
+        points.windows(2).any(|pair| pair[0] >= pair[1])
+    }
+
     /// Moves the gates to the nearest points of a mesh, each to another one inside it, those where the state jumps to their own; where
     /// there are too few points, a visit beyond a border is left out.
     pub(crate) fn snap_to(&mut self, mesh: &[f64]) {
-        let nearest = |time: f64| {
-            let after = mesh.partition_point(|point| *point < time).clamp(1, mesh.len() - 1);
-            let index = if mesh[after] - time < time - mesh[after - 1] { after } else { after - 1 };
-            index.clamp(1, mesh.len() - 2)
-        };
-        let mut points: Vec<usize> = self.times.iter().map(|time| nearest(*time)).collect();
+        let mut points: Vec<usize> = self.times.iter().map(|time| nearest_inside(mesh, *time)).collect();
         let jumps = |gate: &Gate| !gate.events.is_empty();
         for index in 1..points.len() {
             // Beside a jump there is another point.
@@ -319,6 +320,13 @@ impl Segments {
         }
         None
     }
+}
+
+/// The number of the point of a mesh that is nearest to a time, of those inside it.
+fn nearest_inside(mesh: &[f64], time: f64) -> usize {
+    let after = mesh.partition_point(|point| *point < time).clamp(1, mesh.len() - 1);
+    let index = if mesh[after] - time < time - mesh[after - 1] { after } else { after - 1 };
+    index.clamp(1, mesh.len() - 2)
 }
 
 /// Number of steps that are exact to rounding over a short time.

@@ -1,5 +1,6 @@
 //! Asking for a branch of limit cycles: where it starts, how it is followed.
 
+use super::borders::tell_borders_apart;
 use super::branch::{CycleBranch, CyclePoint, FollowedParameter};
 use super::curve::{Birth, CycleCurve, CycleInspection};
 use super::end::CycleEnd;
@@ -366,7 +367,13 @@ impl<'a> Asked<'a> {
         unknown.extend([orbit.period, self.parameters[self.active]]);
         let mut tangent = vec![0.0; unknown.len()];
         tangent[unknown.len() - 1] = self.bound.width();
-        Departure { unknown, tangent, mesh: orbit.mesh.clone(), degree: orbit.degree }
+        let mut collocation = Collocation::new(self.problem(), orbit.mesh.clone(), orbit.degree);
+        // Where that fails the search for segments fails again, and says why.
+        let mesh = match tell_borders_apart(&mut collocation, &mut unknown, &mut tangent) {
+            Ok(()) => collocation.mesh().to_vec(),
+            Err(_) => orbit.mesh.clone(),
+        };
+        Departure { unknown, tangent, mesh, degree: orbit.degree }
     }
 
     /// Follows the branch through a cycle both ways.
@@ -386,7 +393,9 @@ impl<'a> Asked<'a> {
             match self.follow(&start, Birth::Unknown, request, observer) {
                 // At a fold the parameter stands still: the size of the cycle changes.
                 Err(Error::NotFound { sought, cause }) => {
-                    start.tangent = orbit.deviation();
+                    let end = start.unknown.len() - 2;
+                    let states = start.unknown[..end].to_vec();
+                    start.tangent = Orbit { mesh: start.mesh.clone(), states, ..orbit.clone() }.deviation();
                     start.tangent.extend([0.0, 0.0]);
                     // A cycle elsewhere is not the one that was given.
                     let is_there = |followed: &FollowedCycles| {
