@@ -142,6 +142,9 @@ impl ShimmyResult {
         control: &Control<'_>,
     ) -> Result<SeenFromAbove, Error> {
         let wheel = self.wheel.with(self.interval.key(), point.value)?;
+        if let Some(orbit) = &point.orbit {
+            return SeenFromAbove::of_cycle(&wheel, orbit, samples);
+        }
         let mut state = [0.0; 7];
         for (value, (_, known)) in state.iter_mut().zip(&point.state.0) {
             *value = *known;

@@ -1,4 +1,4 @@
-//! `kingpin shimmy`: large shimmy of a wheel that may slide, along a parameter.
+//! `kingpin shimmy`: large shimmy of a wheel that may slide or has a tyre, along a parameter.
 
 use crate::wheel_options::{WheelOptions, parameter_help};
 use arclength_analysis::{Interval, Values};
@@ -9,11 +9,12 @@ use kingpin_terminal::{Failure, OutputOptions, ProgressDisplay, requested_values
 const EXAMPLE: &str =
     "kingpin shimmy --along v=7:9.6 -s F_Az=-100 -s c_u=0.1 -s c_q=0.1 -o shimmy.json -o shimmy.svg";
 
-/// Large shimmy in which the wheel rolls and slides by turns, along a parameter
+/// Large shimmy in which the wheel rolls and slides by turns, or swings on its tyre, along a parameter
 ///
 /// At five values spread over the interval the wheel is kicked, from an angle of 1.2 rad down to 0.2 rad and by a blow. A motion that
 /// settles on shimmy with sliding is refined to a periodic one and followed both ways, stable or not, through the changes of its
-/// phases. What was tried is told with --explain, and where nothing is found.
+/// phases. With a tyre shimmy is a smooth cycle; a small release is tried too, and all different cycles are followed. What was tried is
+/// told with --explain, and where nothing is found.
 #[derive(Args, Debug)]
 #[command(after_help = format!("Example: {EXAMPLE}"), after_long_help = parameter_help(EXAMPLE))]
 pub(crate) struct Shimmy {

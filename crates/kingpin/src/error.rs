@@ -34,7 +34,7 @@ impl fmt::Display for Position {
 }
 
 /// What there is of a wheel with a tyre.
-const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, curves in two parameters, simulations, fits, basins, safe kicks and their margins";
+const TAKES_TYRE: &str = "uniform motions, their stability, charts, Hopf points, dampers, cycles, shimmy, curves in two parameters, simulations, fits, basins, safe kicks and their margins";
 
 /// Why a wheel has no uniform motion.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -41,6 +41,7 @@ pub mod identification;
 mod keys;
 pub mod lateral;
 pub mod linear_stability;
+mod motion_integrator;
 mod origin;
 pub mod parallel;
 pub mod parameters;

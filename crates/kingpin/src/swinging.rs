@@ -9,6 +9,7 @@
 use crate::contact::ContactForce;
 use crate::error::KingpinError;
 use crate::lateral::LateralWheel;
+use crate::motion_integrator::motion_integrator;
 use crate::parameters::{Key, Tyre};
 use crate::simulation::SimulationError;
 use crate::sliding::model::FrictionMoment;
@@ -104,7 +105,7 @@ impl Wheel {
             comes_to_rest: self.swing_factor().is_some_and(|factor| factor.abs() < 1.0),
             ends_at_border: true,
             reports_slip: false,
-            integrator: Integrator::with_tolerance(tolerance),
+            integrator: motion_integrator(tolerance),
         })
     }
 }

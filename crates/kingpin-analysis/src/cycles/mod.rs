@@ -10,5 +10,6 @@ pub use followed::NotFollowed;
 pub(crate) use followed::{Followed, from_hopf_points};
 pub(crate) use picture::{bifurcation_diagram, needs_more_friction, stability};
 pub use point::CyclePointResult;
+pub(crate) use point::{ROLLING_LIMIT, ROLLING_LIMIT_NAME, at_cycle};
 pub use request::{CyclesAnalysis, CyclesRequest};
 pub use result::{BranchResult, CyclesResult};

@@ -20,10 +20,10 @@ use std::f64::consts::TAU;
 const CASTER_ANGLE: usize = 2;
 
 /// Label of cycles whose largest friction force is mu_s N.
-pub(super) const ROLLING_LIMIT: &str = "RL";
+pub(crate) const ROLLING_LIMIT: &str = "RL";
 
 /// What such a cycle is.
-pub(super) const ROLLING_LIMIT_NAME: &str = "rolling limit";
+pub(crate) const ROLLING_LIMIT_NAME: &str = "rolling limit";
 
 /// A cycle, or the Hopf point at which a branch starts or ends.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -72,7 +72,7 @@ impl CyclePointResult {
 ///
 /// # Errors
 /// A value that the wheel does not take.
-pub(super) fn at_cycle(
+pub(crate) fn at_cycle(
     branch: u64,
     cycle: CyclePoint,
     label: Option<String>,

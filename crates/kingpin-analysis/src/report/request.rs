@@ -442,14 +442,15 @@ impl ReportAnalysis {
         if self.is_everywhere(stable_speeds) {
             return Ok(Found::default());
         }
-        if Classification::default().contact_by_load(&self.wheel) != Contact::Sliding {
+        let has_tyre = self.wheel.tyre() != Tyre::Rigid && self.wheel.get(Key::MF) == 0.0;
+        if !has_tyre && Classification::default().contact_by_load(&self.wheel) != Contact::Sliding {
             if stable == Some(true) {
                 return Ok(Found::default());
             }
             let reason = if may_slide(&self.wheel) {
                 "no load on the king pin is given (F_Az = 0), and with it how much friction there is"
             } else {
-                "shimmy that slides is computed of a wheel without a tyre, with a finite k_u"
+                "shimmy is computed of a wheel that may slide, with a finite k_u, or of one with a tyre and without dry friction"
             };
             let text =
                 format!("What the wheel settles on where small motions grow is not computed: {reason}.");

@@ -6,6 +6,7 @@ use crate::error::{Error, unless_stopped};
 use crate::shimmy::{ShimmyPointResult, ShimmyRequest, ShimmyResult};
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Control, Interval};
+use kingpin::Tyre;
 use kingpin_report::numbers::{readable, significant};
 
 /// The slowest speed, as part of the fastest, of a wheel whose small motions grow at every speed; and that of one whose small motions grow from some
@@ -80,7 +81,7 @@ impl Searched {
         let is_left_open = self.stable != Some(true);
         match shimmy {
             Shimmy::None(tried) => {
-                let text = format!("No shimmy with sliding was found at speeds from {range}.");
+                let text = format!("No shimmy was found at speeds from {range}.");
                 let undecided = is_left_open || tried.contains(UNSETTLED);
                 Finding::new(subject, text, format!("{tried}.")).undecided_if(undecided)
             }
@@ -184,9 +185,12 @@ fn extent(result: &ShimmyResult) -> Option<String> {
     }
     let ([smallest, largest], [slowest, fastest]) = (ends(reach), ends(|point| point.period.recip()));
     let force = stable(result).filter_map(|point| point.forces.king_pin_force_max).fold(0.0, f64::max);
+    let how = match result.wheel.tyre() {
+        Tyre::Rigid => "Sliding bounds the motion: stable shimmy, rolling and sliding in turn,",
+        _ => "Stable shimmy",
+    };
     let mut text = format!(
-        "Sliding bounds the motion: stable shimmy, rolling and sliding in turn, was found {} at least, with caster angles that reach {} to {} rad, \
-         {} to {} times a second",
+        "{how} was found {} at least, with caster angles that reach {} to {} rad, {} to {} times a second",
         in_words(&parts),
         significant(smallest, 3),
         significant(largest, 3),
@@ -202,13 +206,18 @@ fn extent(result: &ShimmyResult) -> Option<String> {
 /// What the wheel does at its own speed.
 fn motion(point: &ShimmyPointResult, speed: f64) -> String {
     let mut text = format!(
-        "At {} m/s the caster angle swings from {} to {} rad with a period of {} s, and the wheel slides for {} % of it",
+        "At {} m/s the caster angle swings from {} to {} rad with a period of {} s",
         readable(speed),
         significant(point.psi_min, 4),
         significant(point.psi_max, 4),
-        significant(point.period, 5),
-        significant(PER_CENT * point.sliding_fraction, 3)
+        significant(point.period, 5)
     );
+    if point.sliding_fraction > 0.0 {
+        text += &format!(
+            ", and the wheel slides for {} % of it",
+            significant(PER_CENT * point.sliding_fraction, 3)
+        );
+    }
     let forces = &point.forces;
     if let (Some(friction), Some(ratio)) = (forces.friction_max, forces.friction_ratio_max) {
         text += &format!(
@@ -246,10 +255,13 @@ fn check(result: &ShimmyResult) -> String {
 /// The picture cannot be drawn.
 pub(super) fn illustration(shimmy: &Shimmy, radius: f64) -> Result<Option<Illustration>, Error> {
     let Shimmy::Found(result) = shimmy else { return Ok(None) };
+    let slides = result.wheel.tyre() == Tyre::Rigid;
     let radius = if radius.is_infinite() { "∞".to_owned() } else { format!("{} m", readable(radius)) };
     let caption = format!(
-        "Largest and smallest caster angle of the shimmy that remains over the speed at <i>r</i> = {radius}, rolling and sliding; solid \
-         where stable, dashed where unstable. GR: the order of rolling and sliding changes."
+        "Largest and smallest caster angle of the shimmy that remains over the speed at <i>r</i> = {radius}{}; solid where stable, dashed \
+         where unstable.{}",
+        if slides { ", rolling and sliding" } else { "" },
+        if slides { " GR: the order of rolling and sliding changes." } else { "" }
     );
     Illustration::of(result.as_ref(), caption)
 }
@@ -289,7 +301,7 @@ mod tests {
         let dampers = [("c_u", "50"), ("c_q", "300"), ("c_psi", "2")];
         let (searched, found) = sought(&dampers, true);
         let told = searched.finding("shimmy".to_owned(), &found);
-        assert!(told.text.starts_with("No shimmy with sliding was found") && !told.undecided, "{told:?}");
+        assert!(told.text.starts_with("No shimmy was found") && !told.undecided, "{told:?}");
         assert!(told.check.contains("it dies out"), "{}", told.check);
         assert!(searched.in_short(&found).is_none() && illustration(&found, 2.0).unwrap().is_none());
         // Where small motions grow something has to be.

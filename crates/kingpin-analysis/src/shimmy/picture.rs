@@ -1,12 +1,12 @@
 //! The diagram of shimmy: largest and smallest caster angle over the parameter, beside the uniform motion.
 
-use super::point::{GRAZING, ShimmyPointResult};
+use super::point::{GRAZING, ShimmyPointResult, what};
 use crate::along::drawn_as;
 use crate::uniform_curve::uniform_motion;
 use crate::{axis_label, description};
 use arclength_analysis::labels::kind;
-use kingpin::Wheel;
 use kingpin::branches::Along;
+use kingpin::{Tyre, Wheel};
 use kingpin_figure::{
     Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
 };
@@ -31,7 +31,8 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
             )
             .color(palette::VERMILION);
             let first = largest && number == 1;
-            panel = panel.curve(if first { curve.legend("shimmy with sliding, extremes") } else { curve });
+            panel =
+                panel.curve(if first { curve.legend(format!("{}, extremes", what(wheel))) } else { curve });
         }
         for point in points {
             if let Some(label) = &point.label {
@@ -43,7 +44,8 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
     let dashes = dashes.and(points.iter().any(|point| point.stable == Some(false)), false);
     panel = dashes.legend().fold(panel, Panel::legend_entry);
     let description = format!(
-        "Caster angle of shimmy with sliding phases and of the uniform motion against {key} at {}",
+        "Caster angle of {} and of the uniform motion against {key} at {}",
+        if wheel.tyre() == Tyre::Rigid { "shimmy with sliding phases" } else { "shimmy" },
         description::of(wheel, &[along.key()])
     );
     Figure::single_column().description(description).panel(panel)

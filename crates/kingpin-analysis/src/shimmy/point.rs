@@ -1,11 +1,15 @@
-//! A periodic motion with sliding phases in a result.
+//! A periodic motion in a result: with sliding phases, or a cycle of a wheel with a tyre.
 
+use crate::cycles::{CyclePointResult, at_cycle};
 use crate::forces::ForcesResult;
+use arclength::branch::SpecialKind;
+use arclength::cycle::{CyclePoint, Orbit};
 use arclength_analysis::branch::{pairs, stability};
 use arclength_analysis::labels::is_bifurcation;
-use kingpin::Key;
-use kingpin::shimmy::{PeriodicSliding, SlidingBranchPoint, SlidingRole};
+use kingpin::branches::Along;
+use kingpin::shimmy::{SlidingBranchPoint, SlidingRole};
 use kingpin::sliding::{Contact, KingPin, SLIDING_STATE_NAMES};
+use kingpin::{Key, KingpinError, Tyre, Wheel};
 use kingpin_report::numbers::{readable, significant};
 use kingpin_report::{Cell, NamedNumbers};
 use num_complex::Complex64;
@@ -30,12 +34,12 @@ pub struct ShimmyPhase {
     pub duration: f64,
 }
 
-/// A periodic motion with sliding phases.
+/// A periodic motion of a wheel that may slide, or of one with a tyre.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShimmyPointResult {
     /// Number of the branch, from 1.
     pub branch: u64,
-    /// LPC, PD, NS where it bifurcates, AT where it was asked for, GR where its phases change.
+    /// LPC, PD, NS where it bifurcates, AT where it was asked for, GR where its phases change, RL where a tyre takes all the static friction.
     pub label: Option<String>,
     /// Value of the parameter.
     #[serde(with = "kingpin_report::number")]
@@ -79,13 +83,34 @@ pub struct ShimmyPointResult {
     /// What changes at a point GR.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remark: Option<String>,
+    /// The cycle of a wheel with a tyre.
+    #[serde(skip)]
+    pub orbit: Option<Box<Orbit>>,
 }
 
-/// A motion of a branch with its label and its forces.
+/// Why a motion stands in a branch, before labels are numbered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Role {
+    Step,
+    Special(SpecialKind),
+    Grazing,
+    RollingLimit,
+}
+
+impl From<SlidingRole> for Role {
+    fn from(role: SlidingRole) -> Self {
+        match role {
+            SlidingRole::Step => Self::Step,
+            SlidingRole::Requested => Self::Special(SpecialKind::Requested),
+            SlidingRole::Bifurcation(kind) => Self::Special(kind),
+            SlidingRole::Grazing(_) => Self::Grazing,
+        }
+    }
+}
+
+/// A motion of a branch with its forces.
 pub(super) fn at_motion(
-    branch: u64,
     point: &SlidingBranchPoint,
-    label: Option<String>,
     forces: Option<kingpin::shimmy::ShimmyForces>,
 ) -> ShimmyPointResult {
     let motion = &point.motion;
@@ -109,8 +134,8 @@ pub(super) fn at_motion(
     forces_result.rolls = Some(phases.iter().all(|phase| phase.contact == "rolling"));
     let state = SLIDING_STATE_NAMES.map(str::to_owned).into_iter().zip(motion.state());
     ShimmyPointResult {
-        branch,
-        label,
+        branch: 0,
+        label: None,
         value: point.value,
         period: motion.period,
         psi_max: motion.psi_max,
@@ -134,7 +159,58 @@ pub(super) fn at_motion(
             SlidingRole::Grazing(change) => Some(change.to_string()),
             _ => None,
         },
+        orbit: None,
     }
+}
+
+/// A cycle of a wheel with a tyre: it rolls all along.
+///
+/// # Errors
+/// A value that the wheel does not take.
+pub(super) fn at_smooth_cycle(
+    cycle: CyclePoint,
+    role: Role,
+    wheel: &Wheel,
+    along: &Along,
+) -> Result<ShimmyPointResult, KingpinError> {
+    let orbit = cycle.orbit.clone();
+    let here = wheel.with(along.key(), cycle.value)?;
+    let states = here.rolling_model(&[])?.full_state(&orbit.state_at(0.0), &[]);
+    let names = here.states().iter().map(|name| (*name).to_owned());
+    let CyclePointResult { psi_max, psi_min, psi_0, deviation_max, deviation_min, forces, cycle, .. } =
+        at_cycle(0, cycle, None, (wheel, along))?;
+    let phase = ShimmyPhase {
+        contact: "rolling",
+        king_pin: None,
+        start: 0.0,
+        end: cycle.period,
+        duration: cycle.period,
+    };
+    let bifurcates = matches!(role, Role::Special(kind) if kind != SpecialKind::Requested);
+    Ok(ShimmyPointResult {
+        branch: 0,
+        label: None,
+        value: cycle.value,
+        period: cycle.period,
+        psi_max,
+        psi_min,
+        psi_0,
+        deviation_max,
+        deviation_min,
+        turns: 0,
+        multipliers: cycle.multipliers,
+        trivial_multiplier_error: cycle.trivial_multiplier_error,
+        stable: cycle.stable.filter(|_| !bifurcates),
+        error_estimate: cycle.error_estimate,
+        forces,
+        sliding_power: None,
+        dry_friction_power: None,
+        sliding_fraction: 0.0,
+        phases: vec![phase],
+        state: NamedNumbers(names.zip(states).collect()),
+        remark: (role == Role::RollingLimit).then(|| "needs all of the static friction".to_owned()),
+        orbit: Some(Box::new(orbit)),
+    })
 }
 
 impl ShimmyPointResult {
@@ -184,10 +260,15 @@ fn largest_modulus(multipliers: &[[Option<f64>; 2]]) -> Option<f64> {
     others.map(|(_, multiplier)| multiplier.norm()).max_by(f64::total_cmp)
 }
 
+/// What shimmy of a wheel is called: that of a rigid one slides.
+pub(super) fn what(wheel: &Wheel) -> &'static str {
+    if wheel.tyre() == Tyre::Rigid { "shimmy with sliding" } else { "shimmy" }
+}
+
 /// The order in which branches are told: by ascending value.
-pub(super) fn ascending(points: &mut [SlidingBranchPoint]) -> bool {
+pub(super) fn ascending(points: &mut [(ShimmyPointResult, Role)]) -> bool {
     let reversed = match points {
-        [first, .., last] => first.value > last.value,
+        [(first, _), .., (last, _)] => first.value > last.value,
         _ => false,
     };
     if reversed {
@@ -197,10 +278,10 @@ pub(super) fn ascending(points: &mut [SlidingBranchPoint]) -> bool {
 }
 
 /// Whether a value lies between those of a branch.
-pub(super) fn covers(points: &[SlidingBranchPoint], value: f64) -> bool {
-    let stable = |motion: &PeriodicSliding| motion.stable != Some(false);
+pub(super) fn covers(points: &[(ShimmyPointResult, Role)], value: f64) -> bool {
     points.windows(2).any(|pair| {
-        let [one, two] = [pair[0].value, pair[1].value];
-        (one.min(two)..=one.max(two)).contains(&value) && stable(&pair[0].motion) && stable(&pair[1].motion)
+        let [one, two] = [&pair[0].0, &pair[1].0];
+        let between = one.value.min(two.value)..=one.value.max(two.value);
+        between.contains(&value) && [one, two].iter().all(|point| point.stable != Some(false))
     })
 }

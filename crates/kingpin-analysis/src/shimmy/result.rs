@@ -1,57 +1,129 @@
-//! Branches of shimmy with sliding as a result.
+//! Branches of shimmy as a result.
 
 use super::picture;
-use super::point::{GRAZING, ShimmyPointResult, ascending, at_motion};
+use super::point::{GRAZING, Role, ShimmyPointResult, ascending, at_motion, at_smooth_cycle, what};
 use super::search::Attempt;
 use crate::along::varying;
+use crate::cycles::{ROLLING_LIMIT, ROLLING_LIMIT_NAME};
 use crate::description;
 use crate::error::Error;
 use crate::forces::{self, ForcesResult};
 use crate::parameters::parameters_of;
 use crate::states;
 use arclength::branch::{LabelCounter, SpecialKind};
+use arclength_analysis::cycles::{UnlocatedResult, warnings};
 use arclength_analysis::{Control, End, VaryingParameter};
-use kingpin::Wheel;
-use kingpin::branches::Along;
-use kingpin::shimmy::{
-    ShimmyError, ShimmyForces, SlidingBranch, SlidingBranchEnd, SlidingBranchPoint, SlidingRole,
-};
+use kingpin::branches::{Along, WheelCycles};
+use kingpin::shimmy::{ShimmyError, SlidingBranch, SlidingBranchEnd};
 use kingpin::sliding::SLIDING_STATE_NAMES;
+use kingpin::{Tyre, Wheel};
 use kingpin_figure::{Figure, FigureError};
 use kingpin_report::numbers::{counted, readable};
 use kingpin_report::{Columns, NamedNumbers, Parameters, Report, Schema, Story, Table};
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// A branch that was followed, with the forces of its motions.
+/// A branch that was followed, by ascending value of the parameter.
 pub(super) struct ShimmyBranch {
     attempt: Attempt,
-    pub points: Vec<SlidingBranchPoint>,
-    forces: Vec<Option<ShimmyForces>>,
-    ends: [SlidingBranchEnd; 2],
+    pub points: Vec<(ShimmyPointResult, Role)>,
+    ends: [End; 2],
+    unlocated: Vec<UnlocatedResult>,
 }
 
 impl ShimmyBranch {
-    /// The branch by ascending value of the parameter.
-    ///
-    /// # Errors
-    /// A motion that cannot be followed again.
-    pub(super) fn new(attempt: Attempt, branch: SlidingBranch, control: &Control<'_>) -> Result<Self, Error> {
-        let SlidingBranch { mut points, mut ends, .. } = branch;
+    fn new(
+        attempt: Attempt,
+        mut points: Vec<(ShimmyPointResult, Role)>,
+        along: &VaryingParameter,
+        end: impl Fn(usize, NamedNumbers) -> End,
+        unlocated: Vec<UnlocatedResult>,
+    ) -> Self {
+        let last = |point: Option<&(ShimmyPointResult, Role)>| {
+            let values = point
+                .map(|(point, _)| [(along.key.clone(), point.value), ("period".to_owned(), point.period)]);
+            NamedNumbers(values.into_iter().flatten().collect())
+        };
+        let lasts = [last(points.first()), last(points.last())];
+        let mut index = 0;
+        let mut ends = lasts.map(|last| {
+            index += 1;
+            end(index - 1, last)
+        });
         if ascending(&mut points) {
             ends.reverse();
         }
-        let mut forces = Vec::with_capacity(points.len());
-        for (index, point) in points.iter().enumerate() {
-            control.at(&format!("forces, {} of {}", index + 1, points.len()));
-            forces.push(match point.motion.forces(&Control::none()) {
+        Self { attempt, points, ends, unlocated }
+    }
+
+    /// Periods of the motions that it has at a value, between two of its points by the straight line.
+    pub(super) fn periods_at(&self, value: f64) -> impl Iterator<Item = f64> {
+        self.points.windows(2).filter_map(move |pair| {
+            let [(one, _), (two, _)] = pair else { return None };
+            let part =
+                if one.value == two.value { 0.0 } else { (value - one.value) / (two.value - one.value) };
+            (0.0..=1.0).contains(&part).then(|| one.period + part * (two.period - one.period))
+        })
+    }
+
+    /// Of motions that slide, with their forces.
+    ///
+    /// # Errors
+    /// A motion that cannot be followed again.
+    pub(super) fn of_sliding(
+        attempt: Attempt,
+        branch: &SlidingBranch,
+        along: &Along,
+        control: &Control<'_>,
+    ) -> Result<Self, Error> {
+        let mut points = Vec::with_capacity(branch.points.len());
+        for (index, point) in branch.points.iter().enumerate() {
+            control.at(&format!("forces, {} of {}", index + 1, branch.points.len()));
+            let forces = match point.motion.forces(&Control::none()) {
                 Ok(forces) => Some(forces),
                 // At a grazing rounding may change the phases.
                 Err(ShimmyError::NotConverged { .. }) => None,
                 Err(error) => return Err(error.into()),
-            });
+            };
+            points.push((at_motion(point, forces), point.role.into()));
         }
-        Ok(Self { attempt, points, forces, ends })
+        let along = varying(along);
+        let end = |index: usize, last| told(&branch.ends[index], &along, last);
+        Ok(Self::new(attempt, points, &along, end, Vec::new()))
+    }
+
+    /// Of the cycles of a wheel with a tyre.
+    ///
+    /// # Errors
+    /// A value that the wheel does not take.
+    pub(super) fn of_cycles(attempt: Attempt, cycles: WheelCycles, along: &Along) -> Result<Self, Error> {
+        let WheelCycles {
+            wheel,
+            points,
+            stops,
+            unlocated,
+            rolling_limits,
+            missed_rolling_limits,
+            monitors,
+            ..
+        } = cycles;
+        let points = points.into_iter().enumerate().map(|(index, point)| {
+            let role = match point.label {
+                _ if rolling_limits.contains(&index) => Role::RollingLimit,
+                Some(label) => Role::Special(label.kind),
+                None => Role::Step,
+            };
+            Ok((at_smooth_cycle(point, role, &wheel, along)?, role))
+        });
+        let points = points.collect::<Result<Vec<_>, Error>>()?;
+        let along = varying(along);
+        let end = |index: usize, last| {
+            End::monitored(stops[index].as_ref(), std::slice::from_ref(&along), &monitors, last)
+        };
+        let missed = missed_rolling_limits.into_iter();
+        let missed = missed.map(|between| UnlocatedResult { test: ROLLING_LIMIT_NAME.to_owned(), between });
+        let unlocated = unlocated.iter().map(UnlocatedResult::from).chain(missed).collect();
+        Ok(Self::new(attempt, points, &along, end, unlocated))
     }
 }
 
@@ -68,9 +140,12 @@ pub struct ShimmyBranchResult {
     pub last: [NamedNumbers; 2],
     /// What to try at either end, where anything is left to do.
     pub remedies: [Option<String>; 2],
+    /// What was detected but not located.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unlocated: Vec<UnlocatedResult>,
 }
 
-/// Branches of shimmy with sliding along a parameter.
+/// Branches of shimmy along a parameter.
 #[derive(Clone, Debug, Serialize)]
 pub struct ShimmyResult {
     /// The wheel; its value of the parameter that varies is anywhere.
@@ -105,39 +180,34 @@ impl ShimmyResult {
     ) -> Self {
         let along = varying(&interval);
         let is_asked = |value: f64| at.iter().any(|asked| interval.as_found(*asked) == value);
-        let (mut labels, mut grazings) = (LabelCounter::default(), 0);
+        let (mut labels, mut grazings, mut rolling_limits) = (LabelCounter::default(), 0, 0);
         let (mut points, mut branches) = (Vec::new(), Vec::new());
         for (number, branch) in (1..).zip(found) {
-            let ShimmyBranch { attempt, points: motions, forces, ends } = branch;
-            for (point, forces) in motions.iter().zip(forces) {
-                let label = match point.role {
-                    SlidingRole::Step if !is_asked(point.value) => None,
+            let ShimmyBranch { attempt, points: motions, ends, unlocated } = branch;
+            for (point, role) in motions {
+                let label = match role {
+                    Role::Step if !is_asked(point.value) => None,
                     // A branch may start at a value that was asked for.
-                    SlidingRole::Step | SlidingRole::Requested => {
-                        Some(labels.next(SpecialKind::Requested).to_string())
-                    }
-                    SlidingRole::Bifurcation(kind) => Some(labels.next(kind).to_string()),
-                    SlidingRole::Grazing(_) => {
+                    Role::Step => Some(labels.next(SpecialKind::Requested).to_string()),
+                    Role::Special(kind) => Some(labels.next(kind).to_string()),
+                    Role::Grazing => {
                         grazings += 1;
                         Some(format!("{GRAZING}{grazings}"))
                     }
+                    Role::RollingLimit => {
+                        rolling_limits += 1;
+                        Some(format!("{ROLLING_LIMIT}{rolling_limits}"))
+                    }
                 };
-                points.push(at_motion(number, point, label, forces));
+                points.push(ShimmyPointResult { branch: number, label, ..point });
             }
-            let last = |point: Option<&SlidingBranchPoint>| {
-                let values = point.map(|point| {
-                    [(along.key.clone(), point.value), ("period".to_owned(), point.motion.period)]
-                });
-                NamedNumbers(values.into_iter().flatten().collect())
-            };
-            let lasts = [last(motions.first()), last(motions.last())];
-            let told: Vec<End> = ends.iter().zip(lasts).map(|(end, last)| told(end, &along, last)).collect();
             branches.push(ShimmyBranchResult {
                 branch: number,
                 from: format!("{} at {}", attempt.kick(), along.at(attempt.value)),
-                ends: [0, 1].map(|index| told[index].cause.clone()),
-                remedies: [0, 1].map(|index| told[index].remedy.clone()),
-                last: [0, 1].map(|index| told[index].last.clone()),
+                ends: [0, 1].map(|index| ends[index].cause.clone()),
+                remedies: [0, 1].map(|index| ends[index].remedy.clone()),
+                last: ends.map(|end| end.last),
+                unlocated,
             });
         }
         let is_there = |value: f64| points.iter().any(|point: &ShimmyPointResult| point.value == value);
@@ -148,7 +218,13 @@ impl ShimmyResult {
     /// What was asked for and not found.
     pub fn warnings(&self) -> Vec<String> {
         let missed = |value: &f64| format!("no shimmy at {}: no branch passes there", self.along.at(*value));
-        self.missed.iter().map(missed).collect()
+        let unlocated = self.branches.iter().flat_map(|branch| warnings(&branch.unlocated, &self.along));
+        self.missed.iter().map(missed).chain(unlocated).collect()
+    }
+
+    /// Names of the states that every motion starts from.
+    fn states(&self) -> &'static [&'static str] {
+        if self.wheel.tyre() == Tyre::Rigid { &SLIDING_STATE_NAMES } else { self.wheel.states() }
     }
 
     fn points_of(&self, branch: &ShimmyBranchResult) -> Vec<&ShimmyPointResult> {
@@ -226,7 +302,8 @@ impl Report for ShimmyResult {
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
         writeln!(
             out,
-            "shimmy with sliding at {}",
+            "{} at {}",
+            what(&self.wheel),
             description::on_lines(&self.wheel, &[self.interval.key()])
         )?;
         for branch in &self.branches {
@@ -285,11 +362,7 @@ impl Report for ShimmyResult {
             .booleans("stable", points().map(|point| point.stable))
             .numbers("error_estimate", points().map(|point| point.error_estimate))
             .numbers("trivial_multiplier_error", points().map(|point| point.trivial_multiplier_error))
-            .complex_numbers(
-                "multiplier",
-                SLIDING_STATE_NAMES.len(),
-                points().map(|point| &point.multipliers),
-            )
+            .complex_numbers("multiplier", self.states().len(), points().map(|point| &point.multipliers))
             .numbers("turns", points().map(|point| f64::from(point.turns)))
             .optional_numbers("psi_0", points().map(|point| point.psi_0))
             .unit("rad")
@@ -301,7 +374,7 @@ impl Report for ShimmyResult {
             .texts("phases", points().map(|point| Some(point.phases_in_words())))
             .optional_numbers("sliding_power", points().map(|point| point.sliding_power))
             .unit("W");
-        let columns = SLIDING_STATE_NAMES.iter().fold(columns, |columns, &name| {
+        let columns = self.states().iter().fold(columns, |columns, &name| {
             columns
                 .optional_numbers(name, points().map(move |point| point.state.named(name)))
                 .unit(states::unit(name))

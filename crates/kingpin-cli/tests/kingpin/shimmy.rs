@@ -121,8 +121,7 @@ fn what_cannot_slide_here_is_refused() {
     let folder = Folder::new();
     for (set, reason) in [
         ("-s k_u=inf", "k_u = inf"),
-        ("-s tyre=linear -s sigma=0.03 -s C_alpha=400", "tyre = linear"),
-        ("-s tyre=linear -s sigma=0.03 -s C_alpha=400", "cycles"),
+        ("-s tyre=linear -s sigma=0.03 -s C_alpha=400 -s M_f=0.1", "shimmy with a tyre"),
         ("-s F_Az=100", "F_Az = 100"),
         ("--at 3", "--at"),
         ("--steps 0", "steps"),
@@ -131,4 +130,49 @@ fn what_cannot_slide_here_is_refused() {
         assert_eq!(run.exit_code, 2, "{set}: {}", run.messages);
         assert!(run.messages.contains(reason), "{set}: {}", run.messages);
     }
+}
+
+/// With a tyre shimmy is a smooth cycle: what kicked motions settle on, here of a nose gear with `c_u = 0`, on which the longitudinal motion
+/// rings for long. A small release and a larger one lead to different ones; `simulate` settles on the same.
+#[test]
+fn shimmy_with_a_tyre_is_what_a_simulation_settles_on() {
+    let folder = Folder::new();
+    let wheel = format!("--wheel {WHEELS}/nosegear.toml -s tyre=brush -s sigma=0.3 -s a=0.1 -s C_alpha=1e5");
+    let result = folder.json(&format!("shimmy {wheel} --along v=28:32 --at 30"));
+    let point = points(&result).iter().find(|point| point["label"] == "AT1").unwrap();
+    let number = |field: &str| point[field].as_f64().unwrap();
+    assert_eq!((&point["stable"], &point["phases"][0]["contact"]), (&true.into(), &"rolling".into()));
+    assert_eq!(point["state"].as_object().unwrap().len(), 7);
+
+    let history =
+        folder.json(&format!("simulate {wheel} -s v=30 --perturb psi=0.05 --duration 60 --points 120001"));
+    let column = |name: &str| -> Vec<f64> {
+        history[name].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+    };
+    let (times, angles) = (column("t"), column("psi"));
+    let end = times.len() - 10_000;
+    let (times, angles) = (&times[end..], &angles[end..]);
+    let largest = angles.iter().copied().fold(0.0, f64::max);
+    assert!((largest / number("psi_max") - 1.0).abs() < 1e-4, "{largest}");
+    let passes: Vec<f64> = times
+        .windows(2)
+        .zip(angles.windows(2))
+        .filter(|(_, angle)| angle[0] < 0.0 && angle[1] >= 0.0)
+        .map(|(time, angle)| time[0] - (time[1] - time[0]) * angle[0] / (angle[1] - angle[0]))
+        .collect();
+    let period = (passes[passes.len() - 1] - passes[0]) / (passes.len() - 1) as f64;
+    assert!((period / number("period") - 1.0).abs() < 1e-6, "{period}");
+}
+
+#[test]
+fn shimmy_with_a_tyre_and_dry_friction_is_refused() {
+    let run = Folder::new().run(
+        "shimmy -s tyre=linear -s sigma=0.03 -s a=0.01 -s C_alpha=400 -s F_Az=-20 -s M_f=0.1 --along v=1:5",
+    );
+    assert_eq!(run.exit_code, 2);
+    assert!(
+        run.messages.contains("shimmy with a tyre with dry friction about the king pin"),
+        "{}",
+        run.messages
+    );
 }

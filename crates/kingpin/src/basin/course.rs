@@ -1,6 +1,7 @@
 //! A motion followed piece by piece, with the slope and the curvature of the caster angle at many times.
 
 use super::fate::Target;
+use crate::motion_integrator::motion_integrator;
 use crate::rolling::RollingWheel;
 use crate::shimmy::passage::passages;
 use crate::simulation::{SIMULATION_TOLERANCE, SimulationError};
@@ -9,7 +10,7 @@ use crate::swinging::{FreeState, Stretch, SwingingWheel};
 use crate::wheel::Wheel;
 use arclength::VectorField;
 use arclength::control::Control;
-use arclength::integration::{Integrator, autonomous};
+use arclength::integration::autonomous;
 use std::f64::consts::TAU;
 
 /// The motion at one time.
@@ -78,7 +79,7 @@ impl<'a> Course<'a> {
         match self {
             Self::Rolling { field, state } => {
                 let field = &**field;
-                let integrator = Integrator::with_tolerance(SIMULATION_TOLERANCE);
+                let integrator = motion_integrator(SIMULATION_TOLERANCE);
                 let solution = integrator.under(control).sample(autonomous(field, &[]), &*state, &times)?;
                 nodes.extend(solution.samples().map(|(time, state)| {
                     let mut rate = [0.0; 5];

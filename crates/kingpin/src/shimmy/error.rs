@@ -50,6 +50,14 @@ pub enum ShimmyError {
         /// What happened.
         cause: Refusal,
     },
+    /// The cycle on which a damped motion settled is lost as the damper is taken away.
+    #[error(
+        "the motion settles with a longitudinal damper, c_u = {c_u} N s/m, and its cycle is lost as that is taken away"
+    )]
+    LostWithoutDamper {
+        /// The damper in N s/m.
+        c_u: f64,
+    },
     /// A motion could not be simulated.
     #[error(transparent)]
     Simulation(SimulationError),

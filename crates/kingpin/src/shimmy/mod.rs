@@ -18,6 +18,7 @@ mod kicks;
 pub(crate) mod passage;
 mod return_map;
 mod search;
+mod settled_cycle;
 #[cfg(test)]
 mod tests;
 mod variation;

@@ -13,7 +13,7 @@ use arclength::control::Control;
 use std::f64::consts::{PI, TAU};
 
 /// Tolerance while a motion settles: what is left is for Newton's method.
-const SETTLING_TOLERANCE: f64 = 1e-9;
+pub(super) const SETTLING_TOLERANCE: f64 = 1e-9;
 /// What settling is of the whole time, roughly.
 const PART_OF_SETTLING: f64 = 0.8;
 /// Samples of a natural period of the springs while returns are looked for.
@@ -25,7 +25,7 @@ const MUCH_NEARER: f64 = 4.0;
 /// Distance below which interpolation cannot tell returns apart.
 const RESOLUTION: f64 = 5e-4;
 /// A motion whose caster angle varies by less than this, in rad, has died out.
-const AT_REST: f64 = 1e-3;
+pub(super) const AT_REST: f64 = 1e-3;
 
 /// How a periodic motion is searched for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,7 +90,7 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<PeriodicSliding, ShimmyError> {
         search.check()?;
-        self.check_shimmy()?;
+        self.sliding()?;
         let (settling, control) = (control.part(0.0..PART_OF_SETTLING), &control.quiet());
         let sliding = self.sliding()?.tolerance(SETTLING_TOLERANCE);
         let initial = sliding.rolling_state(initial);

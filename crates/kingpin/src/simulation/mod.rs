@@ -15,11 +15,12 @@ mod tests;
 pub use error::SimulationError;
 pub(crate) use sampling::sampling_times;
 
+use crate::motion_integrator::motion_integrator;
 use crate::rolling::STATE_NAMES;
 use crate::sliding::{KingPin, Phase, phase_at};
 use crate::{ContactForce, Key, Wheel};
 use arclength::control::Control;
-use arclength::integration::{Event, Integrator, Statistics, autonomous};
+use arclength::integration::{Event, Statistics, autonomous};
 
 /// Relative tolerance of a simulation; the absolute one is a hundredth of it in SI units.
 pub const SIMULATION_TOLERANCE: f64 = 1e-11;
@@ -160,7 +161,7 @@ impl Wheel {
         }
         let reserve = |state: &[f64]| self.contact_force(&full_state(state)).static_reserve();
         let mut events = [Event::new(|_, state| reserve(state)).falling()];
-        let solution = Integrator::with_tolerance(SIMULATION_TOLERANCE).under(control).with_events(
+        let solution = motion_integrator(SIMULATION_TOLERANCE).under(control).with_events(
             autonomous(&model, &[]),
             0.0,
             &free,

@@ -57,6 +57,7 @@ pub use regime::KingPin;
 pub use smoothed::SmoothedSlidingWheel;
 
 use crate::error::KingpinError;
+use crate::motion_integrator::motion_integrator;
 use crate::rolling::RollingWheel;
 use crate::simulation::SimulationError;
 use crate::wheel::Wheel;
@@ -191,7 +192,7 @@ impl Wheel {
             rolling: self.rolling(&[])?,
             rolls_always,
             comes_to_rest: self.swing_factor().is_some_and(|factor| factor.abs() < 1.0),
-            while_rolling: rolling_integrator(SLIDING_TOLERANCE),
+            while_rolling: motion_integrator(SLIDING_TOLERANCE),
             while_sliding: sliding_integrator(SLIDING_TOLERANCE, VANISHING_SLIP),
             onset_slip: ONSET_SLIP,
             vanishing_slip: VANISHING_SLIP,
@@ -200,23 +201,18 @@ impl Wheel {
     }
 }
 
-/// Tolerances while rolling.
-fn rolling_integrator(tolerance: f64) -> Integrator {
-    Integrator::with_tolerance(tolerance)
-}
-
 /// Tolerances while sliding: the direction of the slip must be known down to where the slip vanishes.
 fn sliding_integrator(tolerance: f64, vanishing_slip: f64) -> Integrator {
     let mut absolute = [0.01 * tolerance; 7];
     absolute[S1] = SLIP_RESOLUTION * vanishing_slip;
     absolute[S2] = SLIP_RESOLUTION * vanishing_slip;
-    Integrator::default().relative_tolerance(tolerance).absolute_tolerances(&absolute)
+    motion_integrator(tolerance).absolute_tolerances(&absolute)
 }
 
 impl SlidingWheel {
     /// Sets the relative tolerance of the integration.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
-        self.while_rolling = rolling_integrator(tolerance);
+        self.while_rolling = motion_integrator(tolerance);
         self.while_sliding = sliding_integrator(tolerance, self.vanishing_slip);
         self
     }

@@ -17,6 +17,7 @@ mod linear_stability;
 mod paper_form;
 mod random_wheels;
 mod stability_over_speed;
+mod stiff_motions;
 mod tyre;
 mod tyre_equations;
 mod tyre_kicks;
