@@ -188,6 +188,9 @@ pub trait Curve: Equations {
         false
     }
 
+    /// Takes note that a point which was only bracketed may lie this far away, in the metric.
+    fn widen(&self, _point: &mut Self::Point, _reach: f64) {}
+
     /// The kind of a located point, where it is not that of the test function that led to it.
     fn kind_at(&self, _point: &Self::Point) -> Option<Self::Kind> {
         None

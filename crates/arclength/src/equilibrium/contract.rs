@@ -163,6 +163,12 @@ impl Curve for EquilibriumCurve<'_> {
         }
     }
 
+    fn widen(&self, point: &mut EquilibriumInspection, reach: f64) {
+        if let Some(SpecialPoint::Degenerate { location_error, .. }) = point.special.as_deref_mut() {
+            *location_error = location_error.max(reach * self.system.scales[self.dimension()]);
+        }
+    }
+
     fn kind_at(&self, point: &EquilibriumInspection) -> Option<SpecialKind> {
         point.special.as_ref().map(|special| special.kind())
     }

@@ -38,6 +38,10 @@ const AGREEMENT: f64 = 1e-6;
 /// Square of the moduli of a located pair, as a part of that next to it, below which both eigenvalues are zero: that is no Hopf point, nor a
 /// neutral saddle.
 const COLLAPSED: f64 = 1e-8;
+/// Ratio of the imaginary part of a bracketed eigenvalue to what is left of its real part up to which it may be real.
+const SLOW: f64 = 1e3;
+/// Distance from zero, in the metric, of eigenvalues that are critical at a point which is only bracketed.
+const CRITICAL: f64 = 1e-5;
 /// Relative difference of the frequencies of two pairs.
 const DISTINCT: f64 = 1e-6;
 
@@ -107,13 +111,28 @@ fn degenerate(
     if narrowed.is_none() && distance > settings.shortest_jump {
         return Err(Error::OtherBranch);
     }
-    let mut node = narrowed.unwrap_or_else(|| nearer_end(curve, before, after, test));
+    let node = narrowed.unwrap_or_else(|| nearer_end(curve, before, after, test));
+    Ok(bracketed(curve, node, of, LAST_BRACKET * distance))
+}
+
+/// A point that was only bracketed, between places this far apart in the metric. Where several eigenvalues are zero at once solutions are
+/// known to the root of rounding only, and signs may change elsewhere: their distance from zero tells how far. Which of them are stable
+/// is rounding there.
+fn bracketed(curve: &EquilibriumCurve<'_>, mut node: Node, of: SpecialKind, distance: f64) -> Node {
     let n = curve.dimension();
-    let value = node.unknown[n];
-    let location_error = LAST_BRACKET * distance * curve.system.scales[n];
+    let spectrum = &node.point.spectrum;
+    let away = |(value, rate): (&Complex64, &Complex64)| {
+        if value.re == 0.0 { 0.0 } else { value.re.abs() / rate.re.abs() }
+    };
+    let critical = spectrum.eigenvalues.iter().zip(&node.point.rates).map(|pair| (*pair.0, away(pair)));
+    let critical: Vec<(Complex64, f64)> = critical.filter(|(_, away)| *away < CRITICAL).collect();
+    let farthest = critical.iter().map(|(_, away)| *away).fold(distance, f64::max);
+    let values: Vec<Complex64> = critical.into_iter().map(|(value, _)| value).collect();
+    node.point.spectrum.stability = spectrum.stability_beside(&values);
+    let (value, location_error) = (node.unknown[n], farthest * curve.system.scales[n]);
     node.point.special =
         Some(Box::new(SpecialPoint::Degenerate { of, value, location_error, at_border: false }));
-    Ok(node)
+    node
 }
 
 /// Completes a located point of the curve.
@@ -398,13 +417,14 @@ pub(super) fn branch_point(
 pub(super) fn crossing(
     curve: &mut EquilibriumCurve<'_>,
     before: &Node,
-    mut near: Node,
+    near: Node,
     change: usize,
     half: f64,
 ) -> Result<Vec<Event<SpecialKind, EquilibriumInspection>>, Error> {
     let eigenvalues = &near.point.spectrum.eigenvalues;
     let closest = eigenvalues.iter().min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
-    let oscillates = closest.is_some_and(|value| value.im != 0.0);
+    // Real ones that are zero together may be taken for a slow pair by as much as they are off.
+    let oscillates = closest.is_some_and(|value| value.im.abs() > SLOW * value.re.abs());
     if oscillates && change > 0 && change.is_multiple_of(2) {
         let pairs = critical_pairs(eigenvalues).into_iter().filter(|pair| pair[0].im != 0.0);
         let mut hopf: Vec<Node> = Vec::new();
@@ -423,11 +443,7 @@ pub(super) fn crossing(
         }
     }
     let of = if oscillates { SpecialKind::Hopf } else { SpecialKind::BranchPoint };
-    let n = curve.dimension();
-    let value = near.unknown[n];
-    let location_error = half * curve.system.scales[n];
-    near.point.special =
-        Some(Box::new(SpecialPoint::Degenerate { of, value, location_error, at_border: false }));
+    let near = bracketed(curve, near, of, half);
     Ok(vec![Event { kind: of, is_located: false, solution: near }])
 }
 

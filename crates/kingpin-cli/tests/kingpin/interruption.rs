@@ -39,7 +39,7 @@ fn ended(child: Child, what: &str) -> Output {
 #[test]
 fn long_commands_end_soon_and_write_nothing() {
     let commands = [
-        "simulate --duration 1e9 --perturb psi=0.1 -o a.json",
+        "simulate --duration 1e9 -s v=8.43 --perturb psi=0.1 -o a.json",
         "simulate --duration 1e9 --perturb psi=0.2 --contact sliding -s l=0.03 -s v=0.5 -s r=inf -s c_u=0.1 -s c_q=0.1 -o a.json",
         "safe-kick --kind release-angle -s v=8.43 --duration 1e7 -o a.json",
         "chart --x v=0.1:10:3100 --y l=0.03:0.2:3100 -o a.json",

@@ -79,6 +79,7 @@ impl<C: Curve> Scan<'_, C> {
             .collect();
         placed.sort_by(|one, other| one.0.total_cmp(&other.0));
         drop_shadows(&mut placed);
+        let mut placed = self.join_shadows(placed);
         placed.dedup_by(|next, previous| self.is_repeated(next, previous));
         let mut each: Vec<(f64, EventOf<C>)> = Vec::with_capacity(placed.len());
         for (place, event) in placed {
@@ -90,6 +91,29 @@ impl<C: Curve> Scan<'_, C> {
             }
         }
         each
+    }
+
+    /// Makes one of what was only bracketed at one place: where several exponents come to zero together solutions are known to the root of
+    /// rounding only, and all signs around are rounding. It has the first kind in the list of test functions, and reaches as far as they.
+    fn join_shadows(&self, placed: Vec<(f64, EventOf<C>)>) -> Vec<(f64, EventOf<C>)> {
+        let tests = self.curve.test_functions();
+        let rank = |kind: C::Kind| tests.iter().position(|test| test.kind == kind);
+        let mut joined: Vec<(f64, EventOf<C>)> = Vec::with_capacity(placed.len());
+        let mut last = f64::NEG_INFINITY;
+        for (place, event) in placed {
+            match joined.last_mut() {
+                Some((first, known)) if !event.is_located && !known.is_located && place - last <= SHADOW => {
+                    let reach = place - *first;
+                    if rank(event.kind) < rank(known.kind) {
+                        *known = event;
+                    }
+                    self.curve.widen(&mut known.solution.point, reach);
+                }
+                _ => joined.push((place, event)),
+            }
+            last = place;
+        }
+        joined
     }
 
     /// Drops what was taken for a fold and is the turn of the parameter at a branch point.

@@ -6,6 +6,7 @@ mod degenerate_fields;
 mod double_zero;
 mod random_fields;
 mod requests;
+mod rings;
 mod symmetry;
 mod units;
 
