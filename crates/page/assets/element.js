@@ -74,3 +74,21 @@ export function pressable(element, press) {
     press(event);
   });
 }
+
+/**
+ * Draws once in every frame in which something has changed; what is done is drawn at once.
+ * @param {() => void} draw
+ * @returns {(isDone: boolean) => void}
+ */
+export function inFrames(draw) {
+  let frame = 0;
+  const now = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    draw();
+  };
+  return (isDone) => {
+    if (isDone) now();
+    else frame ||= requestAnimationFrame(now);
+  };
+}

@@ -1,5 +1,6 @@
 //! Branches of shimmy with sliding as a result.
 
+use super::drawn::DrawnPoint;
 use super::picture;
 use super::point::{GRAZING, ShimmyPointResult, ascending, at_motion};
 use super::search::Attempt;
@@ -311,7 +312,8 @@ impl Report for ShimmyResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        Ok(Some(picture::diagram(&self.wheel, &self.interval, &self.points)))
+        let points: Vec<DrawnPoint> = self.points.iter().map(DrawnPoint::from).collect();
+        Ok(Some(picture::diagram(&self.wheel, &self.interval, &points)))
     }
 
     fn story(&self) -> Option<Story> {
