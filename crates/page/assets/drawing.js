@@ -97,7 +97,8 @@ class Collector {
       const color = colorOf(style.fill);
       const [from, to] = [place([x, y]), place([x + 1, y])];
       const degrees = (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
-      const text = element.textContent ?? "";
+      // Print has a sign of its own for what a keyboard writes as a hyphen.
+      const text = (element.textContent ?? "").replace(/^-(?=[\d.])/, "−");
       return color && text ? [{ kind: "text", text, at: from, size: this.scale * parseFloat(style.fontSize), anchor: ANCHORS[style.textAnchor] ?? 0, degrees, color }] : [];
     }
     const drawn = this.style(element, style);

@@ -169,9 +169,10 @@ async function compute(name, path, request, signal = abort.signal) {
       else if (kind === "map") answer.map = JSON.parse(text);
       else if (kind === "warning") answer.warnings.push(text);
       else if (kind === "failure") throw new Refusal(JSON.parse(text).error);
-      else if (kind === "result") Object.assign(answer, { text, data: JSON.parse(text) });
+      // A chart is a picture already; its numbers are only saved.
+      else if (kind === "result") Object.assign(answer, { text, data: name === "chart" ? null : JSON.parse(text) });
     });
-    if (!answer.data) throw new Refusal({ message: "it was stopped" });
+    if (!answer.text) throw new Refusal({ message: "it was stopped" });
     return answer;
   } finally {
     if (running.get(name) === entry) {

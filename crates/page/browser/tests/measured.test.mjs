@@ -42,6 +42,22 @@ test("sizes of both pages", async () => {
   tell("page for a wheel", await sizeOf(servers.kingpin, ["", "style.css", "wheel.css", "icon.svg", "wheel.js"]) / 1000, "kB");
 });
 
+test("what the thread of a page computes until its diagram is there, however busy the machine is", async () => {
+  for (const [what, server] of [["any model", servers.arclength], ["a wheel", servers.kingpin]]) {
+    const opened = await open(browser, "about:blank");
+    const { page } = opened;
+    const session = await page.context().newCDPSession(page);
+    await session.send("Performance.enable", { timeDomain: "threadTicks" });
+    const spent = async () => (await session.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value;
+    const before = await spent();
+    await page.goto(server.url, { waitUntil: "commit" });
+    await page.locator("#diagrams svg.drawn").waitFor();
+    tell(`${what}, computed by the page until its diagram`, 1000 * (await spent() - before), "ms");
+    await opened.settled();
+    await opened.close();
+  }
+});
+
 test("the page for any model: ready, a slider", async () => {
   const start = performance.now();
   const opened = await open(browser, servers.arclength.url);

@@ -81,6 +81,15 @@ test("branches grow point by point, labels offer what starts there, and every po
   await done(page);
   await page.locator("#steps button.label", { hasText: "HB1" }).click();
   await page.locator("#branch-point dl", { hasText: "first lyapunov" }).waitFor();
+  // The same cycles once more: while they are followed nothing else is computed.
+  await page.locator('#diagrams .target[data-label="cycles.json:AT1"]').first().press("Enter");
+  await page.locator("dialog").getByRole("button", { name: "The cycles through it" }).click();
+  await page.locator('#steps li[data-step="cycles-2.json"][data-state="done"]').waitFor();
+  await done(page);
+  await opened.picture("wheel-twice");
+  await page.getByRole("button", { name: "remove cycles-2.json" }).click();
+  await done(page);
+  assert.ok(await page.evaluate(() => window.grown) > 0);
   // The pointer alone: a label, what starts there.
   await page.locator('#diagrams .target[data-label="cycles.json:HB1"]').first().click();
   await page.locator("dialog").getByRole("button", { name: "Curve of Hopf points in two parameters" }).click();
@@ -112,7 +121,6 @@ test("branches grow point by point, labels offer what starts there, and every po
   await page.getByRole("button", { name: "remove locus.json" }).click();
   await done(page);
   assert.equal(await page.locator("#steps li").count(), 1);
-  assert.ok(await page.evaluate(() => window.grown) > 0);
   await opened.close();
 });
 
