@@ -143,7 +143,10 @@ class Diagram {
     this.title.textContent = group.title;
     const running = group.steps.some((step) => results.get(step.name)?.running);
     clearTimeout(this.timer);
-    if (running) this.picture.setAttribute("aria-busy", "true");
+    if (running) {
+      this.element.hidden = false;
+      this.picture.setAttribute("aria-busy", "true");
+    }
     if (!running) {
       this.since = 0;
       this.isShown = this.finish();
@@ -209,7 +212,7 @@ class Diagram {
     }
     this.drawn = signature;
     this.picture.setAttribute("aria-busy", "true");
-    this.tools.hidden = !names.length;
+    this.element.hidden = !names.length;
     if (!names.length) {
       this.picture.replaceChildren();
       this.picture.classList.remove("growing");

@@ -5,7 +5,7 @@ import { Chain } from "./chain.js";
 import { commands, pythonLines } from "./commands.js";
 import { Diagrams } from "./diagram.js";
 import { Editor } from "./editor.js";
-import { byId, html, inFrames } from "./element.js";
+import { byId, html, inFrames, numberIn } from "./element.js";
 import { choose } from "./menu.js";
 import { readable, sliderRange } from "./numbers.js";
 import { PointView, parametersAt } from "./point.js";
@@ -296,9 +296,9 @@ byId("along-key").addEventListener("change", (event) => {
 });
 byId("along").addEventListener("submit", (event) => {
   event.preventDefault();
-  const value = (/** @type {string} */ id) => Number(/** @type {HTMLInputElement} */ (byId(id)).value);
   const key = /** @type {HTMLSelectElement} */ (byId("along-key")).value;
-  const [first, second] = [value("along-start"), value("along-end")];
+  const [first, second] = [numberIn(byId("along-start")), numberIn(byId("along-end"))];
+  if (first === null || second === null) return;
   const along = { key, start: Math.min(first, second), end: Math.max(first, second) };
   // Another question: what started from the answer to the old one would not fit.
   void change({ ...state, steps: [{ kind: "equilibria", name: "equilibria.json", along }] });

@@ -4,7 +4,7 @@
 import { Above } from "./above.js";
 import { Refusal } from "./ask.js";
 import { captureMenu } from "./capture.js";
-import { byId, html } from "./element.js";
+import { byId, html, numberIn } from "./element.js";
 import { extent, readable } from "./numbers.js";
 import { Plane } from "./plane.js";
 import { draw } from "./plot.js";
@@ -74,8 +74,14 @@ export class Motions {
       this.hasChosen = true;
       page.changed();
     });
-    byId("let-go").addEventListener("click", () => void this.release([["psi", Number(field("kick").value)]], 0));
-    byId("hit").addEventListener("click", () => void this.release([], Number(field("blow").value) * Number(field("blow-side").value)));
+    byId("let-go").addEventListener("click", () => {
+      const kick = numberIn(field("kick"));
+      if (kick !== null) void this.release([["psi", kick]], 0);
+    });
+    byId("hit").addEventListener("click", () => {
+      const blow = numberIn(field("blow"));
+      if (blow !== null) void this.release([], blow * Number(field("blow-side").value));
+    });
     const tellPlay = () => (byId("play").textContent = this.above.isPlaying ? "Pause" : "Play");
     tellPlay();
     byId("play").addEventListener("click", () => {
@@ -215,6 +221,7 @@ export class Motions {
    */
   async release(perturb, blow) {
     const { page } = this;
+    if (numberIn(field("duration")) === null) return;
     this.abort.abort();
     this.abort = new AbortController();
     // Another wheel ends it too.

@@ -2,7 +2,7 @@
 
 import { Refusal, ask, askFile, listen } from "./ask.js";
 import { Branches } from "./branches.js";
-import { byId, html } from "./element.js";
+import { byId, html, numberIn } from "./element.js";
 import { commandLines, pythonLines } from "./lines.js";
 import { Motions } from "./motions.js";
 import { readable, sliderRange } from "./numbers.js";
@@ -34,7 +34,7 @@ const FIRST = ["v", "l", "r", "k_u", "k_q", "c_q", "c_psi", "M_f"];
 const COARSE = [48, 30];
 const FINE = [240, 141];
 /** Time that the sliders must rest before something long begins, in milliseconds. */
-const REST = 250;
+const REST = 150;
 
 /** @type {State} */
 let state = { wheel: { parameters: {}, tyre: "rigid" }, x: interval("v", 0.1, 12), y: interval("l", 0.02, 0.3), along: interval("v", 0.2, 9) };
@@ -225,7 +225,10 @@ async function change(next, isEntry = true) {
     if (isEntry && isOther) await new Promise((resolve) => setTimeout(resolve, REST));
     if (signal.aborted) return;
     leaveOut();
-    await Promise.all([once("chart", ofChart, () => showChart(signal, FINE)), branches.show(signal)]);
+    const fine = once("chart", ofChart, () => showChart(signal, FINE));
+    // After a slider the chart is what is looked at.
+    if (isEntry) await fine;
+    if (!signal.aborted) await Promise.all([fine, branches.show(signal)]);
     if (!signal.aborted && state.shimmy) await once("shimmy", JSON.stringify([wheel, along]), () => showShimmy(signal));
     if (!signal.aborted && state.basin) await once("basin", JSON.stringify([wheel, field("slides").checked]), () => motions.showBasin(signal));
     if (!signal.aborted && state.report) await once("report", ofVerdict, () => showReport(signal));
@@ -480,9 +483,10 @@ function rangeOf(key) {
   return [Math.max(low, key.lowest), Math.min(high, key.highest)];
 }
 
-/** An interval of the page. @param {string} id */
+/** An interval of the page; nothing where its ends are no numbers. @param {string} id */
 function fields(id) {
-  return interval(field(`${id}-key`).value, Number(field(`${id}-start`).value), Number(field(`${id}-end`).value));
+  const [start, end] = [numberIn(field(`${id}-start`)), numberIn(field(`${id}-end`))];
+  return start === null || end === null ? null : interval(field(`${id}-key`).value, start, end);
 }
 
 /** Axes that suit a wheel. @param {Wheel} wheel @returns {State} */
@@ -504,11 +508,13 @@ for (const id of ["x", "y", "along"]) {
 }
 byId("axes").addEventListener("submit", (event) => {
   event.preventDefault();
-  void change({ ...state, x: fields("x"), y: fields("y") });
+  const [x, y] = [fields("x"), fields("y")];
+  if (x && y) void change({ ...state, x, y });
 });
 byId("along").addEventListener("submit", (event) => {
   event.preventDefault();
-  void change({ ...state, along: fields("along") });
+  const along = fields("along");
+  if (along) void change({ ...state, along });
 });
 byId("stop").addEventListener("click", () => {
   for (const { run } of running.values()) if (run) ask("/api/stop", { run: Number(run) }).catch(() => {});

@@ -101,6 +101,24 @@ test("a slider moves the diagram, and a number is exact", async () => {
   await opened.close();
 });
 
+test("what is no number is told beside its field, and nothing else happens", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await opened.settled();
+  const before = page.url();
+  const from = page.locator("#along-start");
+  await from.fill("abc");
+  await page.locator("#follow").click();
+  assert.match(await from.evaluate((element) => element.validationMessage), /a number/);
+  assert.equal(await from.inputValue(), "abc");
+  assert.equal(page.url(), before);
+  await from.fill("-0.5");
+  await page.locator("#follow").click();
+  await page.waitForFunction(() => document.querySelector("#lines").textContent.includes("alpha=-0.5:2.5"));
+  await opened.settled();
+  await opened.close();
+});
+
 test("while a slider moves the picture is always there, and follows", async () => {
   const opened = await open(browser, server.url);
   const { page } = opened;

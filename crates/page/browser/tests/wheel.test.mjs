@@ -355,6 +355,11 @@ test("a value that is not allowed says what is", async () => {
   await page.locator("#quantity-l").fill("-1");
   await page.locator("#quantity-l").press("Tab");
   assert.match(await page.locator("#quantity-l").evaluate((element) => element.validationMessage), /to/);
+  // Neither is a word a kick.
+  await page.locator("#kick").fill("far");
+  await page.locator("#let-go").click();
+  assert.match(await page.locator("#kick").evaluate((element) => element.validationMessage), /a number/);
+  assert.equal(await page.locator("#motion-note").textContent(), "");
   // Two values that do not go together are told by the server.
   await page.getByText("All parameters").click();
   await page.locator("#quantity-mu_s").fill("0.5");
