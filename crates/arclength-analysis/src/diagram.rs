@@ -1,6 +1,6 @@
 //! Several results in one bifurcation diagram, or in one plane of two parameters.
 
-use crate::picture::{self, Curve};
+use crate::picture::{self, Curve, OwnColor};
 use crate::result_file::ResultFile;
 use kingpin_figure::Figure;
 
@@ -9,14 +9,19 @@ use kingpin_figure::Figure;
 /// # Errors
 /// A time history, or files over different parameters.
 pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
-    diagram_of(results, &[])
+    diagram_of(results, &[], &[])
 }
 
-/// The same of some states only, of all where none is named.
+/// The same of some states only, of all where none is named, and with colours of their own for results, in their order.
 ///
 /// # Errors
 /// Those of [`diagram`], and where the first file has none of these states.
-pub fn diagram_of(results: &[ResultFile], shown: &[String]) -> Result<Figure, (usize, String)> {
+pub fn diagram_of(
+    results: &[ResultFile],
+    shown: &[String],
+    colors: &[Option<OwnColor>],
+) -> Result<Figure, (usize, String)> {
+    let own = |index: usize| colors.get(index).and_then(Option::as_ref);
     let axes = |result: &ResultFile| -> Option<Vec<String>> {
         match result {
             ResultFile::Equilibria(result) => Some(vec![result.along.key.clone()]),
@@ -59,9 +64,10 @@ pub fn diagram_of(results: &[ResultFile], shown: &[String]) -> Result<Figure, (u
     if let [one, two] = &first[..] {
         let curves: Vec<Curve> = results
             .iter()
-            .filter_map(|result| match result {
-                ResultFile::Locus(result) => Some(result.curve.drawn()),
-                ResultFile::CycleLocus(result) => Some(result.curve.drawn()),
+            .enumerate()
+            .filter_map(|(index, result)| match result {
+                ResultFile::Locus(result) => Some(result.curve.drawn().in_color(own(index))),
+                ResultFile::CycleLocus(result) => Some(result.curve.drawn().in_color(own(index))),
                 _ => None,
             })
             .collect();
@@ -76,10 +82,13 @@ pub fn diagram_of(results: &[ResultFile], shown: &[String]) -> Result<Figure, (u
         }
     }
     let panels = states.iter().map(|state| {
-        let curves = results.iter().flat_map(|result| match result {
-            ResultFile::Equilibria(result) => result.curves(state),
-            ResultFile::Cycles(result) => result.curves(state),
-            _ => Vec::new(),
+        let curves = results.iter().enumerate().flat_map(|(index, result)| {
+            let curves = match result {
+                ResultFile::Equilibria(result) => result.curves(state),
+                ResultFile::Cycles(result) => result.curves(state),
+                _ => Vec::new(),
+            };
+            curves.into_iter().map(move |curve| curve.in_color(own(index)))
         });
         (state.clone(), curves.collect::<Vec<Curve>>())
     });

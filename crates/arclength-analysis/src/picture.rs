@@ -5,16 +5,26 @@ use kingpin_figure::{
     Axis, Branch, Color, Dash, Figure, Legend, LegendEntry, Marker, MarkerShape, Panel, PointLabel,
     Stability, palette,
 };
+use std::borrow::Cow;
 
 /// Part of the extent of the picture within which two labelled points are drawn as one.
 const SAME_POINT: f64 = 1e-6;
 /// Most panels.
 const MOST_PANELS: usize = 4;
 
+/// A colour that somebody has chosen for a result among others, with the name by which the legend tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnColor {
+    /// The colour.
+    pub color: Color,
+    /// Name of the result.
+    pub name: String,
+}
+
 /// A branch as it is drawn: solid where stable, dashed elsewhere, with labelled points.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    name: &'static str,
+    name: Cow<'static, str>,
     color: Color,
     points: Vec<((f64, f64), Stability)>,
     /// At which of them it is upright.
@@ -31,6 +41,7 @@ impl Curve {
         upright: &[&str],
         points: impl IntoIterator<Item = ((f64, f64), Option<bool>, Option<&'a str>)>,
     ) -> Self {
+        let name = Cow::Borrowed(name);
         let mut curve = Self { name, color, points: Vec::new(), upright: Vec::new(), labels: Vec::new() };
         for (at, stable, label) in points {
             // Nothing is claimed to be stable that is not known to be.
@@ -45,6 +56,16 @@ impl Curve {
             }
         }
         curve
+    }
+
+    /// The same curve in a colour of its own, if there is one, which has its own entry in the legend.
+    pub fn in_color(self, own: Option<&OwnColor>) -> Self {
+        match own {
+            Some(OwnColor { color, name }) => {
+                Self { name: own_name(&self.name, name).into(), color: *color, ..self }
+            }
+            None => self,
+        }
     }
 
     /// The same curve without labels.
@@ -81,9 +102,9 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
         let line = Branch::new(curve.points.iter().copied())
             .smooth(curve.upright.iter().copied())
             .color(curve.color);
-        let first = legend.is_some() && !named.contains(&curve.name);
-        named.push(curve.name);
-        panel = panel.curve(if first { line.legend(curve.name) } else { line });
+        let first = legend.is_some() && !named.contains(&&*curve.name);
+        named.push(&curve.name);
+        panel = panel.curve(if first { line.legend(&*curve.name) } else { line });
     }
     // Labels of several curves at one point are one.
     let extent = |pick: fn(&(f64, f64)) -> f64| {
@@ -108,6 +129,11 @@ fn panel([horizontal, vertical]: [&str; 2], curves: &[Curve], legend: Option<&st
         panel = panel.legend_entry(LegendEntry::line(text, palette::BLACK, Dash::Dashed));
     }
     panel
+}
+
+/// What the legend calls curves of a result that has a colour of its own.
+pub fn own_name(curves: &str, result: &str) -> String {
+    format!("{curves}: {result}")
 }
 
 fn marker(label: &str) -> Marker {

@@ -2,7 +2,7 @@
 //!
 //! A [`Figure`] holds [`Panel`]s; a panel has two [`Axis`] and shows curves ([`Line`], [`Branch`]), [`Markers`],
 //! labelled points ([`PointLabel`]), [`Region`]s, [`Note`]s and maps ([`HeatMap`], [`CategoryMap`]). A [`Panel3d`] shows a
-//! chart on the ground with diagrams on upright [`Wall`]s. Text is drawn as outlines of embedded fonts, so files look the same everywhere. The same figure gives the same bytes.
+//! chart on the ground with diagrams on upright [`Wall`]s; a [`Drawing`] has no axes, but shapes and texts where they are put. Text is drawn as outlines of embedded fonts, so files look the same everywhere. The same figure gives the same bytes.
 //!
 //! ```
 //! use kingpin_figure::{Axis, Branch, Figure, Panel, PointLabel, Stability};
@@ -38,6 +38,7 @@ mod color;
 mod contour;
 mod draw;
 mod draw3d;
+mod drawing;
 mod error;
 mod figure;
 mod font;
@@ -67,6 +68,7 @@ mod ticks;
 pub use axis::Axis;
 pub use color::{Color, ColorMap, palette};
 pub use contour::contour_lines;
+pub use drawing::{Drawing, PlacedText, Shape, ShapeStyle};
 pub use error::FigureError;
 pub use figure::{Content, Figure, Place, Span};
 pub use geometry::Point;

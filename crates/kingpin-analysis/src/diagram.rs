@@ -3,15 +3,16 @@
 use crate::cycles::{CyclePointResult, bifurcation_diagram};
 use crate::description;
 use crate::result_file::ResultFile;
-use arclength_analysis::picture::{self, Curve};
+use arclength_analysis::picture::{self, Curve, OwnColor};
 use kingpin_figure::Figure;
 
 /// Branches of cycles along one parameter in one diagram, or curves in one plane; the error says which result does not fit to the first
-/// one. Ends of the axes are those of the first.
+/// one. Ends of the axes are those of the first. Results may have colours of their own, in their order.
 ///
 /// # Errors
 /// No result, results over different parameters, and Hopf points alone, which are drawn by themselves.
-pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
+pub fn diagram(results: &[ResultFile], colors: &[Option<OwnColor>]) -> Result<Figure, (usize, String)> {
+    let own = |index: usize| colors.get(index).and_then(Option::as_ref);
     let keys = |result: &ResultFile| match result {
         ResultFile::Hopf(result) => vec![result.interval.key()],
         ResultFile::Cycles(result) => vec![result.interval.key()],
@@ -30,29 +31,31 @@ pub fn diagram(results: &[ResultFile]) -> Result<Figure, (usize, String)> {
         ResultFile::CycleLocus(one) => (&one.wheel, one.plane),
         ResultFile::Cycles(one) => {
             let mut points: Vec<CyclePointResult> = Vec::new();
-            for result in results {
+            let mut colors: Vec<(u64, Option<&OwnColor>)> = Vec::new();
+            for (index, result) in results.iter().enumerate() {
                 // Branches are numbered through all results.
                 let before = points.last().map_or(0, |point| point.branch);
                 let ResultFile::Cycles(result) = result else { continue };
                 let of_all = |point: &CyclePointResult| CyclePointResult {
-                    branch: before + point.branch,
+                    branch: before.saturating_add(point.branch),
                     ..point.clone()
                 };
                 points.extend(result.points.iter().map(of_all));
+                colors.push((points.last().map_or(0, |point| point.branch), own(index)));
             }
-            return Ok(bifurcation_diagram(&one.wheel, &one.interval, &points));
+            return Ok(bifurcation_diagram(&one.wheel, &one.interval, &points, &colors));
         }
         ResultFile::Hopf(_) => {
             return problem(0, "Hopf points alone are no branch; allowed: results of cycles and locus");
         }
     };
     let scales = plane.scales();
-    let curve = |result: &ResultFile| match result {
-        ResultFile::MotionLocus(result) => Some(result.curve.drawn_with(scales)),
-        ResultFile::CycleLocus(result) => Some(result.curve.drawn_with(scales)),
+    let curve = |(index, result): (usize, &ResultFile)| match result {
+        ResultFile::MotionLocus(result) => Some(result.curve.drawn_with(scales).in_color(own(index))),
+        ResultFile::CycleLocus(result) => Some(result.curve.drawn_with(scales).in_color(own(index))),
         ResultFile::Hopf(_) | ResultFile::Cycles(_) => None,
     };
-    let curves: Vec<Curve> = results.iter().filter_map(curve).collect();
+    let curves: Vec<Curve> = results.iter().enumerate().filter_map(curve).collect();
     let [one, two] = plane.keys();
     let [across, up] = plane.labels();
     let description = format!("Special points in {one} and {two} at {}", description::of(wheel, &[one, two]));

@@ -1,15 +1,30 @@
 // Saves what the page draws by itself: as a picture with its colours in it, and as numbers.
 
-import { give, saveMenu } from "./save.js";
+import { askFile } from "./ask.js";
+import { drawingOf } from "./drawing.js";
 import { svg } from "./element.js";
+import { INNER } from "./plot.js";
+import { give, saveMenu } from "./save.js";
 
 /** @typedef {import("./plot.js").Plot} Plot */
 
 /** What style sheets say of an element of a picture. */
-const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "font-family", "font-size", "font-style", "visibility"];
+const STYLES = ["fill", "fill-opacity", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "font-family", "font-size", "font-style", "visibility", "r"];
 /** Width of a saved picture, in points of an SVG file and in pixels of a PNG file. */
 const WIDTH = 480;
 const PIXELS = 1600;
+/** Width of a PDF file in points: as wide as the SVG file, whose points are smaller. */
+const PDF_WIDTH = 0.75 * WIDTH;
+
+/** The map that lies under a plot, and where it lies in the units of that. @param {SVGSVGElement} element */
+function mapUnder(element) {
+  const canvas = element.parentElement?.querySelector("canvas");
+  if (!canvas) return null;
+  const { x, y, width, height } = element.viewBox.baseVal;
+  const [left, top] = [x + INNER.left * width, y + INNER.top * height];
+  const frame = /** @type {import("./drawing.js").Frame} */ ([left, top, left + INNER.width * width, top + INNER.height * height]);
+  return { canvas, frame };
+}
 
 /** A picture of the page as a file that stands by itself. @param {SVGSVGElement} element */
 function standalone(element) {
@@ -29,6 +44,11 @@ function standalone(element) {
   copy.setAttribute("width", String(WIDTH));
   copy.setAttribute("height", String((WIDTH * height) / width));
   copy.removeAttribute("style");
+  const under = mapUnder(element);
+  if (under) {
+    const [left, top, right, bottom] = under.frame;
+    copy.prepend(svg("image", { x: left, y: top, width: right - left, height: bottom - top, href: under.canvas.toDataURL(), preserveAspectRatio: "none", "image-rendering": "pixelated" }));
+  }
   copy.prepend(svg("rect", { x, y, width, height, fill: getComputedStyle(document.body).backgroundColor }));
   return new XMLSerializer().serializeToString(copy);
 }
@@ -78,16 +98,18 @@ export function columnsOf(plot) {
  * @param {string} name of the file, without an ending
  * @param {() => SVGSVGElement | null} picture
  * @param {() => Record<string, (number | string)[]>} columns
+ * @param {string} [title] what it shows, where several stand together
  */
-export function captureMenu(what, name, picture, columns) {
-  return saveMenu(what, ["svg", "png", "csv", "json"], async (format) => {
+export function captureMenu(what, name, picture, columns, title) {
+  return saveMenu(what, ["svg", "png", "pdf", "csv", "json"], async (format) => {
     if (format === "csv") return give(new Blob([csv(columns())], { type: "text/csv" }), `${name}.csv`);
     if (format === "json") return give(new Blob([JSON.stringify(columns())], { type: "application/json" }), `${name}.json`);
     const element = picture();
     if (!element) return;
+    if (format === "pdf") return give(await askFile("/api/drawing", drawingOf(element, PDF_WIDTH, mapUnder(element))), `${name}.pdf`);
     const text = standalone(element);
     const { width, height } = element.viewBox.baseVal;
     const contents = format === "svg" ? new Blob([text], { type: "image/svg+xml" }) : await pixels(text, height / width);
     if (contents) give(contents, `${name}.${format}`);
-  });
+  }, title);
 }

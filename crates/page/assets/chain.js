@@ -15,7 +15,7 @@ import { Refusal, ask, listen } from "./ask.js";
 
 export class Chain {
   /**
-   * @param {(name: string) => void} changed is told of every change of a result
+   * @param {(isDone: boolean) => void} changed is told of every change of a result, and whether it is its last one
    */
   constructor(changed) {
     /** @type {Map<string, Result>} */
@@ -48,9 +48,10 @@ export class Chain {
         name: step.name, key, running: true, run: "", text: "", data: null, before: known?.data ?? known?.before, points: [], motions: [], warnings: [], problem: null, progress: null,
       };
       this.results.set(step.name, result);
-      this.changed(step.name);
-      const before = Promise.all(from.map((name) => running.get(name)));
-      running.set(step.name, before.then(() => this.follow(result, path, request, from, abort.signal)));
+      this.changed(false);
+      const follow = () => this.follow(result, path, request, from, abort.signal);
+      // What waits for nothing is asked at once, before what shows it.
+      running.set(step.name, from.length ? Promise.all(from.map((name) => running.get(name))).then(follow) : follow());
     }
     await Promise.all(running.values());
   }
@@ -82,7 +83,7 @@ export class Chain {
           result.text = text;
           result.data = JSON.parse(text);
         }
-        if (kind === "point" || kind === "progress") this.changed(result.name);
+        if (kind === "point" || kind === "progress") this.changed(false);
       });
       if (!result.data && !result.problem) result.problem = { message: "the server ended before there was a result" };
     } catch (error) {
@@ -92,7 +93,7 @@ export class Chain {
     }
     if (signal.aborted) return;
     result.running = false;
-    this.changed(result.name);
+    this.changed(true);
   }
 
   /** Stops everything that runs; what there is of it is kept. */

@@ -2,6 +2,7 @@
 // be pressed and points that can be picked on top.
 
 import { ask } from "./ask.js";
+import { colorsOf, ownColor } from "./colors.js";
 import { html, pressable, svg } from "./element.js";
 import { readable } from "./numbers.js";
 import { draw } from "./plot.js";
@@ -124,7 +125,7 @@ class Diagram {
   /** What a picture of it is asked with. */
   get asked() {
     const { states } = this;
-    return { results: this.seen.map((step) => step.name), ...(states.length ? { states } : {}), window: this.zoom.window, dark: isDark() };
+    return { results: this.seen.map((step) => step.name), ...(states.length ? { states } : {}), window: this.zoom.window, dark: isDark(), ...colorsOf(this.seen) };
   }
 
   /** @param {string} format */
@@ -142,7 +143,10 @@ class Diagram {
     this.title.textContent = group.title;
     const running = group.steps.some((step) => results.get(step.name)?.running);
     clearTimeout(this.timer);
-    if (running) this.picture.setAttribute("aria-busy", "true");
+    if (running) {
+      this.element.hidden = false;
+      this.picture.setAttribute("aria-busy", "true");
+    }
     if (!running) {
       this.since = 0;
       this.isShown = this.finish();
@@ -151,16 +155,16 @@ class Diagram {
     this.since ||= performance.now();
     // A curve that was not there yet grows; one that is computed anew, as while a slider moves, stays until the new one is there.
     const isNew = group.steps.some((step) => !step.hidden && !this.finished.has(step.name));
-    const earliest = isNew ? this.last + PATIENCE : Math.max(this.last + PATIENCE, this.since + STILL);
+    const earliest = Math.max(this.last + PATIENCE, this.since + (isNew ? 0 : STILL));
     this.timer = setTimeout(() => this.grow(), Math.max(0, earliest - performance.now()));
   }
 
   /** Draws what there is so far. */
   grow() {
-    this.last = performance.now();
     const { steps } = this.group;
     const [first] = steps;
-    if (!first || first.kind === "simulate") return;
+    if (!first || first.kind === "simulate" || !steps.some((step) => !step.hidden && this.results.get(step.name)?.points.length)) return;
+    this.last = performance.now();
     /** @type {import("./plot.js").Curve[]} */
     const curves = [];
     /** @type {import("./plot.js").Mark[]} */
@@ -169,13 +173,14 @@ class Diagram {
       const result = this.results.get(step.name);
       if (step.hidden || !result) continue;
       const kind = step.kind === "cycles" ? "cycle" : "equilibrium";
-      if (result.data) curves.push(...pieces(step, this.shown, result.data.points, kind));
+      const color = ownColor(step);
+      if (result.data) curves.push(...pieces(step, this.shown, result.data.points, kind).map((curve) => ({ ...curve, color })));
       else {
         const index = this.stateNames.indexOf(this.shown);
         for (const point of result.points) {
           const x = point.values[0] ?? NaN;
           const ys = step.plane ? [point.values[1] ?? NaN] : [point.max[index] ?? NaN, point.min[index] ?? NaN];
-          for (const y of new Set(ys)) marks.push({ at: [x, y], kind: point.stable === false ? `${kind} open` : kind });
+          for (const y of new Set(ys)) marks.push({ at: [x, y], kind: point.stable === false ? `${kind} open` : kind, color });
           if (point.label && !UNSHOWN.has(labelKind(point.label))) {
             marks.push({ at: [x, ys[0] ?? NaN], kind: "special", text: labelKind(point.label) });
           }
@@ -200,10 +205,14 @@ class Diagram {
     const signature = JSON.stringify([this.asked, this.shown, names.map((name) => this.results.get(name)?.key)]);
     if (signature === this.drawn) {
       this.mark();
-      return this.isShown;
+      // It was computed anew, and is the same.
+      await this.isShown;
+      if (this.drawn === signature) this.picture.removeAttribute("aria-busy");
+      return;
     }
     this.drawn = signature;
     this.picture.setAttribute("aria-busy", "true");
+    this.element.hidden = !names.length;
     if (!names.length) {
       this.picture.replaceChildren();
       this.picture.classList.remove("growing");

@@ -74,3 +74,38 @@ export function pressable(element, press) {
     press(event);
   });
 }
+
+/**
+ * The number in a field; where it is none the field says so.
+ * @param {HTMLInputElement} field
+ * @returns {number | null}
+ */
+export function numberIn(field) {
+  const value = field.value.trim() === "" ? NaN : Number(field.value);
+  const isNumber = Number.isFinite(value);
+  field.setCustomValidity(isNumber ? "" : "a number, such as 0.5 or 2e-3");
+  field.setAttribute("aria-invalid", String(!isNumber));
+  if (isNumber) return value;
+  // What is written next is looked at when it is needed.
+  field.addEventListener("input", () => field.setCustomValidity(""), { once: true });
+  field.reportValidity();
+  return null;
+}
+
+/**
+ * Draws once in every frame in which something has changed; what is done is drawn at once.
+ * @param {() => void} draw
+ * @returns {(isDone: boolean) => void}
+ */
+export function inFrames(draw) {
+  let frame = 0;
+  const now = () => {
+    cancelAnimationFrame(frame);
+    frame = 0;
+    draw();
+  };
+  return (isDone) => {
+    if (isDone) now();
+    else frame ||= requestAnimationFrame(now);
+  };
+}

@@ -1,12 +1,12 @@
 // Asks what is to start at a labelled point, along which parameters.
 
-import { html } from "./element.js";
+import { html, numberIn } from "./element.js";
 import { readable, sliderRange } from "./numbers.js";
 
 /**
  * @typedef {import("./state.js").Interval} Interval
  * @typedef {import("./starts.js").Start} Start
- * @typedef {{start: Start, along: Interval, plane: [Interval, Interval], duration: number}} Choice
+ * @typedef {{start: Start, along: Interval, plane: [Interval, Interval], duration: number}} Choice `along`, `plane` and `duration` are those asked for
  */
 
 /** The fields of a parameter and its interval. */
@@ -33,10 +33,10 @@ class IntervalFields {
     this.row = html("div", { class: "interval" }, this.key, " from ", this.start, " to ", this.end);
   }
 
-  /** @returns {Interval} */
+  /** Nothing where its ends are no numbers. @returns {Interval | null} */
   get interval() {
-    const [first, second] = [Number(this.start.value), Number(this.end.value)];
-    return { key: this.key.value, start: Math.min(first, second), end: Math.max(first, second) };
+    const [first, second] = [numberIn(this.start), numberIn(this.end)];
+    return first === null || second === null ? null : { key: this.key.value, start: Math.min(first, second), end: Math.max(first, second) };
   }
 }
 
@@ -64,7 +64,11 @@ export function choose(title, starts, parameters, intervals, duration, rangeOf =
       html("button", {
         type: "button",
         click: () => {
-          choice = { start, along: along.interval, plane: [along.interval, other.interval], duration: Number(time.value) };
+          const chosen = start.needs === "along" || start.needs === "plane" ? along.interval : first;
+          const beside = start.needs === "plane" ? other.interval : second;
+          const lasts = start.needs === "duration" ? numberIn(time) : duration;
+          if (!chosen || !beside || lasts === null) return;
+          choice = { start, along: chosen, plane: [chosen, beside], duration: lasts };
           dialog.close();
         },
       }, start.title);

@@ -5,12 +5,12 @@ import { Chain } from "./chain.js";
 import { commands, pythonLines } from "./commands.js";
 import { Diagrams } from "./diagram.js";
 import { Editor } from "./editor.js";
-import { byId, html } from "./element.js";
+import { byId, html, inFrames, numberIn } from "./element.js";
 import { choose } from "./menu.js";
 import { readable, sliderRange } from "./numbers.js";
 import { PointView, parametersAt } from "./point.js";
 import { showQuantities } from "./quantities.js";
-import { stepRow } from "./rows.js";
+import { showRows, stepRow } from "./rows.js";
 import { give } from "./save.js";
 import { startsAt } from "./starts.js";
 import { freeName, pack, unpack, without } from "./state.js";
@@ -36,19 +36,13 @@ let state = { name: "model.ode", source: "", set: {}, start: {}, steps: [], show
 let model = null;
 /** @type {Picked | null} */
 let picked = null;
-let frame = 0;
 /** Whether what a slider asks for is being computed, and whether it has moved on since. */
 let isFollowing = false;
 let hasMoved = false;
 let onMove = () => {};
 
-const chain = new Chain(() => {
-  frame ||= requestAnimationFrame(() => {
-    frame = 0;
-    showResults();
-  });
-});
-const editor = new Editor((source) => void change({ ...fresh(), name: editor.name, source }));
+const chain = new Chain(inFrames(showResults));
+const editor = new Editor((source) => beginWith(editor.name, source));
 const diagrams = new Diagrams(byId("diagrams"), "/api/diagram", {
   pick(point) {
     picked = point;
@@ -75,6 +69,12 @@ const pointView = new PointView(byId("point"), {
 /** @returns {State} a state with nothing but what the text says */
 function fresh() {
   return { ...state, set: {}, start: {}, steps: [], shown: "", named: undefined };
+}
+
+/** Begins anew with a text, even with that which is there. @param {string} name @param {string} source */
+function beginWith(name, source) {
+  model = null;
+  void change({ ...fresh(), name, source });
 }
 
 /** A state of an address, if it is one. @param {any} known @returns {State | null} */
@@ -130,13 +130,12 @@ async function change(next, isEntry = true) {
     showResults();
     return;
   }
+  void chain.run(state.steps, question);
+  showModel();
+  showResults();
   const text = `#${await pack(state)}`;
   // Who has gone on since has an address of its own.
-  if (state !== next) return;
-  if (text !== location.hash) enter(text, isEntry);
-  showModel();
-  void chain.run(state.steps, question);
-  showResults();
+  if (state === next && text !== location.hash) enter(text, isEntry);
 }
 
 /**
@@ -226,7 +225,7 @@ function showResults() {
   const others = state.steps.filter((other) => other !== step && other.kind !== "locus").flatMap(({ name }) => chain.results.get(name)?.data ?? []);
   if (step && result?.data?.points && picked) pointView.show({ name: state.name, source: state.source }, step, result, picked.index, others);
   else if (!result?.running) pointView.clear();
-  byId("steps").replaceChildren(...state.steps.map((step) => stepRow(step, chain.results.get(step.name), actions)));
+  showRows(byId("steps"), state.steps.map((step) => stepRow(step, chain.results.get(step.name), actions)));
   byId("stop").hidden = !chain.isRunning;
   const running = [...chain.results.values()].find((other) => other.running);
   byId("status").textContent = running ? `${running.name.replace(/\.json$/, "")}: ${running.points.length} points` : "";
@@ -245,6 +244,8 @@ const actions = {
   },
   end: (/** @type {Step} */ step) => void startAt({ name: step.name, index: 0 }),
   keeps: () => true,
+  paint: (/** @type {Step} */ step, /** @type {string | undefined} */ color) =>
+    void change({ ...state, steps: state.steps.map((other) => (other === step ? { ...step, color } : other)) }),
 };
 
 /** Asks what is to start at a point and starts it. @param {Picked} point */
@@ -295,9 +296,9 @@ byId("along-key").addEventListener("change", (event) => {
 });
 byId("along").addEventListener("submit", (event) => {
   event.preventDefault();
-  const value = (/** @type {string} */ id) => Number(/** @type {HTMLInputElement} */ (byId(id)).value);
   const key = /** @type {HTMLSelectElement} */ (byId("along-key")).value;
-  const [first, second] = [value("along-start"), value("along-end")];
+  const [first, second] = [numberIn(byId("along-start")), numberIn(byId("along-end"))];
+  if (first === null || second === null) return;
   const along = { key, start: Math.min(first, second), end: Math.max(first, second) };
   // Another question: what started from the answer to the old one would not fit.
   void change({ ...state, steps: [{ kind: "equilibria", name: "equilibria.json", along }] });
@@ -322,7 +323,7 @@ async function begin() {
   gallery.addEventListener("change", () => {
     const entry = models.find((/** @type {any} */ other) => other.name === gallery.value);
     gallery.value = "";
-    if (entry) void change({ ...fresh(), name: entry.name, source: entry.source });
+    if (entry) beginWith(entry.name, entry.source);
   });
   const first = start.model ?? models[0];
   await change(addressed(known) ?? { ...fresh(), name: first.name, source: first.source }, false);

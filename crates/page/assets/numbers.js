@@ -18,7 +18,9 @@ export function readable(value, digits = 8) {
  */
 export function complex([re, im]) {
   if (!im) return readable(re, 6);
-  return `${readable(re, 6)} ${im < 0 ? "−" : "+"} ${readable(Math.abs(im), 6)}i`;
+  // Beside the other part it is rounding.
+  const real = Math.abs(re ?? 0) < 1e-13 * Math.abs(im) ? 0 : re;
+  return `${readable(real, 6)} ${im < 0 ? "−" : "+"} ${readable(Math.abs(im), 6)}i`;
 }
 
 /**

@@ -5,9 +5,9 @@ import { extent, readable, ticks } from "./numbers.js";
 
 /**
  * @typedef {[number, number]} Point
- * @typedef {{points: Point[], kind?: string, dashed?: boolean, arrows?: number}} Curve `kind` is a class of the style sheet; so many arrow heads tell
- * in which direction it is passed
- * @typedef {{at: Point, kind?: string, text?: string, shape?: "cross" | "dot"}} Mark
+ * @typedef {{points: Point[], kind?: string, dashed?: boolean, arrows?: number, color?: string | undefined}} Curve `kind` is a class of the style sheet; so many
+ * arrow heads tell in which direction it is passed; `color` is one in place of that of the kind
+ * @typedef {{at: Point, kind?: string, text?: string, shape?: "cross" | "dot", color?: string | undefined}} Mark
  * @typedef {{label: string, low?: number, high?: number}} PlotAxis
  * @typedef {{
  *   description: string, x: PlotAxis, y: PlotAxis, curves: Curve[], marks?: Mark[],
@@ -72,6 +72,7 @@ export function draw(plot) {
     const line = polyline(curve.points.map(place), `curve ${curve.kind ?? ""}${curve.dashed ? " dashed" : ""}`);
     // What leaves the axes that were asked for is cut off.
     line.setAttribute("clip-path", `url(#${clip})`);
+    if (curve.color) line.style.stroke = curve.color;
     element.append(line);
     for (const head of arrowHeads(curve.points.map(place), curve.arrows ?? 0)) {
       element.append(svg("path", { class: `arrow ${curve.kind ?? ""}`, d: head, "clip-path": `url(#${clip})` }));
@@ -80,8 +81,13 @@ export function draw(plot) {
   for (const mark of marks) {
     const [x, y] = place(mark.at);
     if (mark.shape === "cross") {
-      element.append(svg("path", { class: `cross ${mark.kind ?? ""}`, d: `M${x - 3.5} ${y - 3.5}l7 7m0 -7l-7 7` }));
-    } else element.append(svg("circle", { class: `dot ${mark.kind ?? ""}`, cx: x, cy: y, r: 3 }));
+      element.append(svg("path", { class: `cross ${mark.kind ?? ""}`, d: `M${x - 3.5} ${y - 3.5}L${x + 3.5} ${y + 3.5}M${x + 3.5} ${y - 3.5}L${x - 3.5} ${y + 3.5}` }));
+    } else {
+      const dot = svg("circle", { class: `dot ${mark.kind ?? ""}`, cx: x, cy: y, r: 3 });
+      if (mark.color) dot.style.stroke = mark.color;
+      if (mark.color && !mark.kind?.includes("open")) dot.style.fill = mark.color;
+      element.append(dot);
+    }
     if (mark.text) element.append(svg("text", { class: "value", x: x + 5, y: y - 5 }, mark.text));
   }
   element.append(svg("rect", { class: "frame", x: MARGIN.left, y: MARGIN.top, width: inner.width, height: inner.height }));

@@ -140,7 +140,7 @@ export class PointView {
     if (!numbers.length) return html("div");
     const name = isCycle ? "Floquet multipliers" : "Eigenvalues";
     const marks = near.map(([re, im]) => {
-      const outside = isCycle ? Math.hypot(re ?? 0, im ?? 0) > 1 + 1e-6 : (re ?? 0) > 0;
+      const outside = isCycle ? Math.hypot(re ?? 0, im ?? 0) > 1 + 1e-6 : (re ?? 0) > 1e-9 * Math.abs(im ?? 0);
       return /** @type {import("./plot.js").Mark} */ ({ at: [re ?? 0, im ?? 0], shape: "cross", kind: outside ? "outside" : "inside" });
     });
     const plot = draw({ description: `${name} in the complex plane`, equal: true, circle: isCycle, curves: [], marks, x: { label: "real part" }, y: { label: "imaginary part" } });

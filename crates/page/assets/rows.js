@@ -1,14 +1,16 @@
 // The list of the curves that a page keeps: each with its labels and files, to be hidden and removed.
 
+import { colorMenu, colorsOf } from "./colors.js";
 import { html } from "./element.js";
 import { saveMenu, saveResults, give } from "./save.js";
+import { isDark } from "./zoom.js";
 
 /**
  * @typedef {import("./chain.js").Result} Result
  * @typedef {import("./state.js").Step} Step
  * @typedef {{
  *   hide: (step: Step) => void, remove: ((step: Step) => void) | null, pick: (step: Step, index: number) => void, end: ((step: Step) => void) | null,
- *   path: string, keeps: (step: Step) => boolean,
+ *   path: string, keeps: (step: Step) => boolean, paint: (step: Step, color: string | undefined) => void,
  * }} Actions `end` starts something at the end of a motion, `path` writes files of results, and what is not kept cannot be removed
  */
 
@@ -22,6 +24,20 @@ function endsOf(data) {
   const ends = data.ends ?? [];
   const ofBranches = (data.branches ?? []).flatMap((/** @type {any} */ branch) => branch.ends.map((/** @type {string} */ cause) => ({ cause: `${cause}` })));
   return [...ends, ...ofBranches].map((/** @type {any} */ end) => end.cause).filter(Boolean);
+}
+
+/**
+ * Shows the list; whoever is at one of its elements stays there.
+ * @param {HTMLElement} list
+ * @param {HTMLElement[]} rows
+ */
+export function showRows(list, rows) {
+  const active = list.contains(document.activeElement) ? document.activeElement : null;
+  const name = active?.getAttribute("aria-label") ?? active?.textContent;
+  list.replaceChildren(...rows);
+  if (!active) return;
+  const again = [...list.querySelectorAll("button, input, select")].find((element) => (element.getAttribute("aria-label") ?? element.textContent) === name);
+  if (again instanceof HTMLElement) again.focus();
 }
 
 /**
@@ -41,10 +57,11 @@ export function stepRow(step, result, actions) {
   const data = result?.data ?? (result?.running ? result.before : null);
   if (result && data) {
     const count = data.points?.length ?? data.t?.length ?? 0;
-    line.append(` ${count} points `, saveMenu(step.name, ["json", "csv", "text", "svg", "png", "pdf"], async (format) => {
+    const color = step.kind === "simulate" ? "" : colorMenu(step, (chosen) => actions.paint(step, chosen));
+    line.append(` ${count} points `, color, " ", saveMenu(step.name, ["json", "csv", "text", "svg", "png", "pdf"], async (format) => {
       if (!result.text) return;
       if (format === "json") give(new Blob([result.text], { type: "application/json" }), step.name);
-      else await saveResults(actions.path, { [step.name]: result.text }, { results: [step.name] }, format, shortName(step.name));
+      else await saveResults(actions.path, { [step.name]: result.text }, { results: [step.name], dark: isDark(), ...colorsOf([step]) }, format, shortName(step.name));
     }));
     (data.points ?? []).forEach((/** @type {any} */ point, /** @type {number} */ index) => {
       if (point.label) line.append(html("button", { type: "button", class: "label", click: () => actions.pick(step, index) }, point.label));

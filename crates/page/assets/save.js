@@ -19,9 +19,10 @@ export function give(contents, name) {
  * @param {string} what
  * @param {string[]} formats
  * @param {(format: string) => Promise<void>} save
+ * @param {string} [title] what it shows, where several stand together
  */
-export function saveMenu(what, formats, save) {
-  const select = html("select", { class: "save", "aria-label": `Save ${what}` }, html("option", { value: "" }, "Save…"));
+export function saveMenu(what, formats, save, title = "Save…") {
+  const select = html("select", { class: "save", "aria-label": `Save ${what}` }, html("option", { value: "" }, title));
   for (const format of formats) select.append(html("option", { value: format }, format.toUpperCase()));
   select.addEventListener("change", async () => {
     const format = select.value;
@@ -35,7 +36,7 @@ export function saveMenu(what, formats, save) {
  * Saves results in a format that the server writes.
  * @param {string} path where it is asked
  * @param {Record<string, string>} files
- * @param {{results: string[], states?: string[], window?: import("./zoom.js").Window}} what
+ * @param {{results: string[], states?: string[], window?: import("./zoom.js").Window, dark?: boolean, colors?: Record<string, string>}} what
  * @param {string} format
  * @param {string} name without an ending
  */

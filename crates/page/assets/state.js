@@ -5,8 +5,8 @@
  * @typedef {{path: string, label: string}} Reference
  * @typedef {{
  *   kind: "equilibria" | "cycles" | "locus" | "simulate", name: string, from?: Reference, along?: Interval,
- *   plane?: [Interval, Interval], stay?: boolean, duration?: number, hidden?: boolean,
- * }} Step something that is computed; `name` is that of its result file
+ *   plane?: [Interval, Interval], stay?: boolean, duration?: number, hidden?: boolean, color?: string | undefined,
+ * }} Step something that is computed; `name` is that of its result file, `color` that of its own, if it has one
  * @typedef {{
  *   name: string, source: string, set: Record<string, number>, start: Record<string, number>, steps: Step[], shown: string, named?: string,
  * }} State `shown` is the state on the vertical axis, `named` the named set of values that is taken before `set` and `start`
@@ -14,11 +14,14 @@
 
 /**
  * @param {BufferSource} bytes
- * @param {TransformStream} stream
+ * @param {GenericTransformStream} stream
  */
 async function through(bytes, stream) {
-  const answer = new Response(new Blob([bytes]).stream().pipeThrough(stream));
-  return new Uint8Array(await answer.arrayBuffer());
+  // What is broken is told by what is read.
+  const writer = stream.writable.getWriter();
+  writer.write(bytes).catch(() => {});
+  writer.close().catch(() => {});
+  return new Uint8Array(await new Response(stream.readable).arrayBuffer());
 }
 
 /**

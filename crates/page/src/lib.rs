@@ -10,6 +10,8 @@
 mod answer;
 mod asset;
 mod browser;
+mod colors;
+mod drawing;
 mod failure;
 mod guard;
 mod look;
@@ -25,6 +27,7 @@ mod work;
 pub use answer::Answer;
 pub use asset::Asset;
 pub use browser::open;
+pub use colors::OwnColors;
 pub use failure::Failure;
 pub use look::Look;
 pub use model::{StartModel, model_site};

@@ -2,6 +2,7 @@
 
 use crate::answer::Answer;
 use crate::asset::Asset;
+use crate::drawing::drawing_routes;
 use crate::failure::{Failure, TextPlace};
 use crate::openapi::described;
 use crate::picture::picture_routes;
@@ -66,8 +67,10 @@ const ASSETS: &[Asset] = &[
     Asset { path: "/ask.js", text: include_str!("../assets/ask.js") },
     Asset { path: "/capture.js", text: include_str!("../assets/capture.js") },
     Asset { path: "/chain.js", text: include_str!("../assets/chain.js") },
+    Asset { path: "/colors.js", text: include_str!("../assets/colors.js") },
     Asset { path: "/commands.js", text: include_str!("../assets/commands.js") },
     Asset { path: "/diagram.js", text: include_str!("../assets/diagram.js") },
+    Asset { path: "/drawing.js", text: include_str!("../assets/drawing.js") },
     Asset { path: "/editor.js", text: include_str!("../assets/editor.js") },
     Asset { path: "/element.js", text: include_str!("../assets/element.js") },
     Asset { path: "/menu.js", text: include_str!("../assets/menu.js") },
@@ -112,6 +115,7 @@ fn routes() -> Routes {
         .post("/api/locus", locus)
         .post("/api/simulate", simulate)
         .merge(picture_routes())
+        .merge(drawing_routes())
 }
 
 #[derive(Serialize)]

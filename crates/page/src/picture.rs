@@ -1,12 +1,13 @@
 //! Pictures and files of results: the same that the command line writes.
 
 use crate::answer::Answer;
+use crate::colors::OwnColors;
 use crate::failure::Failure;
 use crate::look::Look;
 use crate::routes::Routes;
 use crate::sent_files::{Asked, parse};
 use crate::work::Work;
-use arclength_analysis::diagram::{diagram, diagram_of};
+use arclength_analysis::diagram::diagram_of;
 use arclength_analysis::{Error, FilesInMemory, ResultFile};
 use axum::body::Bytes;
 use axum::extract::State;
@@ -47,6 +48,9 @@ struct DiagramRequest {
     #[serde(default)]
     states: Vec<String>,
     format: SavedFormat,
+    /// Colours of their own.
+    #[serde(default)]
+    colors: OwnColors,
     #[serde(flatten)]
     look: Look,
 }
@@ -135,9 +139,10 @@ impl DiagramRequest {
         };
         let results: Vec<ResultFile> = self.results.iter().enumerate().map(read).collect::<Result<_, _>>()?;
         // A single result is saved as the command that computed it does, and a motion has no place in a diagram.
+        let is_table = matches!(self.format, SavedFormat::Csv | SavedFormat::Text);
         let is_diagram = |result: &ResultFile| match result {
             ResultFile::History(_) => false,
-            _ => self.format == SavedFormat::Page,
+            _ => self.format == SavedFormat::Page || !self.colors.is_empty() && !is_table,
         };
         if let [one] = &results[..]
             && self.states.is_empty()
@@ -151,8 +156,7 @@ impl DiagramRequest {
                 ResultFile::History(result) => saved_in(self.format, self.look, result),
             };
         }
-        let figure =
-            if self.states.is_empty() { diagram(&results) } else { diagram_of(&results, &self.states) };
+        let figure = diagram_of(&results, &self.states, &self.colors.of(&self.results));
         picture(self.format, self.look, figure.map_err(|(index, problem)| failure(index, problem))?)
     }
 }

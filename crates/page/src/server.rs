@@ -12,6 +12,7 @@ use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, State};
 use axum::http::StatusCode;
 use axum::middleware::from_fn_with_state;
+use axum::serve::ListenerExt;
 use serde::Deserialize;
 use serde_json::Value;
 use std::future::IntoFuture;
@@ -127,7 +128,10 @@ impl Server {
             .layer(from_fn_with_state(self.address.port(), guard))
             .with_state(work.clone());
         let outcome = runtime.block_on(async {
-            let listener = tokio::net::TcpListener::from_std(self.listener)?;
+            // Events are small, and none waits for the next one.
+            let listener = tokio::net::TcpListener::from_std(self.listener)?.tap_io(|connection| {
+                let _ = connection.set_nodelay(true);
+            });
             let ended = work.clone();
             let (told, is_told) = tokio::sync::oneshot::channel::<()>();
             let stopped = async move {

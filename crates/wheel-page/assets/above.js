@@ -133,7 +133,7 @@ export class Above {
     legend.append(
       svg("path", { class: "force scale", "stroke-width": 1.6 * unit, d: this.arrow(left, top, length, 0) }),
       text(left + length + 4 * unit, "value", `${readable(newtons, 3)} N`),
-      text(left + length + 46 * unit, "king-pin-name", "springs, dampers"), text(left + length + 140 * unit, "ground-name", "ground"));
+      text(left + length + 58 * unit, "king-pin-name", "springs, dampers"), text(left + length + 154 * unit, "ground-name", "ground"));
   }
 
   /** An arrow as a path. @param {number} x @param {number} y @param {number} dx @param {number} dy */

@@ -3,11 +3,11 @@
 
 import { Chain } from "./chain.js";
 import { Diagrams } from "./diagram.js";
-import { byId } from "./element.js";
+import { byId, inFrames } from "./element.js";
 import { choose } from "./menu.js";
 import { readable } from "./numbers.js";
 import { PointView, parametersAt } from "./point.js";
-import { shortName, stepRow } from "./rows.js";
+import { shortName, showRows, stepRow } from "./rows.js";
 import { startsOfWheel } from "./starts.js";
 import { freeName, without } from "./state.js";
 
@@ -17,7 +17,7 @@ import { freeName, without } from "./state.js";
  * @typedef {import("./diagram.js").Picked} Picked
  * @typedef {{
  *   asked: () => any, valueOf: (key: string) => number, wanted: () => number | null, motions: import("./motions.js").Motions,
- *   messageOf: (error: unknown) => string, first: () => Step, others: () => Step[], keep: (steps: Step[], hidden: boolean) => void,
+ *   messageOf: (error: unknown) => string, first: () => Step, others: () => Step[], keep: (steps: Step[], first: Step) => void,
  *   range: (key: string) => [number, number], names: () => string[], take: (values: Record<string, number>) => Promise<void>, changed: () => void,
  * }} Page what the curves need of the page
  */
@@ -31,13 +31,7 @@ export class Branches {
   /** @param {Page} page */
   constructor(page) {
     this.page = page;
-    let frame = 0;
-    this.chain = new Chain(() => {
-      frame ||= requestAnimationFrame(() => {
-        frame = 0;
-        this.draw();
-      });
-    });
+    this.chain = new Chain(inFrames(() => this.draw()));
     /** @type {Picked | null} */
     this.picked = null;
     this.diagrams = new Diagrams(byId("diagrams"), "/api/wheel/diagram", {
@@ -109,19 +103,22 @@ export class Branches {
     const result = picked && chain.results.get(picked.name);
     if (step && result?.data?.points && picked) this.pointView.show(null, step, result, picked.index, []);
     else if (!result?.running) this.pointView.clear();
-    byId("steps").replaceChildren(...steps.map((other) => stepRow(other, chain.results.get(other.name), {
+    showRows(byId("steps"), steps.map((other) => stepRow(other, chain.results.get(other.name), {
       path: "/api/wheel/diagram",
-      hide: (row) => {
-        const isFirst = !row.from;
-        const others = page.others().map((kept) => (kept.name === row.name ? { ...kept, hidden: !kept.hidden } : kept));
-        page.keep(others, isFirst ? !row.hidden : (page.first().hidden ?? false));
-      },
-      remove: (row) => page.keep(without(this.steps, row.name).slice(1), page.first().hidden ?? false),
+      hide: (row) => this.alter({ ...row, hidden: !row.hidden }),
+      paint: (row, color) => this.alter({ ...row, color }),
+      remove: (row) => page.keep(without(this.steps, row.name).slice(1), page.first()),
       pick: (row, index) => this.pick({ name: row.name, index }),
       end: null,
       keeps: (row) => Boolean(row.from),
     })));
     page.changed();
+  }
+
+  /** Keeps a curve otherwise. @param {Step} step */
+  alter(step) {
+    const [first = step, ...others] = this.steps.map((kept) => (kept.name === step.name ? step : kept));
+    this.page.keep(others, first);
   }
 
   /** Picks a point, which is seen from above. @param {Picked} picked */
@@ -139,7 +136,7 @@ export class Branches {
         // Of a labelled cycle there are two, of which the last is the finer one.
         if (distance <= least) [least, nearest] = [distance, motion];
       }
-      if (nearest) this.page.motions.show(nearest);
+      if (nearest) this.page.motions.pick(nearest);
     }
     this.draw();
   }
@@ -176,7 +173,7 @@ export class Branches {
     if (start.needs === "along") next.along = choice.along;
     else next.plane = choice.plane;
     if (start.stay) next.stay = true;
-    page.keep([...others, next], page.first().hidden ?? false);
+    page.keep([...others, next], page.first());
   }
 
   /** Follows a motion from a cycle: the wheel is taken there. @param {any} point @param {Record<string, number>} there @param {number} duration */

@@ -4,7 +4,7 @@
 import { Above } from "./above.js";
 import { Refusal } from "./ask.js";
 import { captureMenu } from "./capture.js";
-import { byId, html } from "./element.js";
+import { byId, html, numberIn } from "./element.js";
 import { extent, readable } from "./numbers.js";
 import { Plane } from "./plane.js";
 import { draw } from "./plot.js";
@@ -26,6 +26,9 @@ const FASTEST = 1.4;
 /** Motions across and up in a basin: at once, and then. */
 const COARSE = [25, 17];
 const FINE = [81, 61];
+
+/** The name of the motion of the point that is picked, among those of branches. */
+const PICKED = "picked";
 
 /** A motion as columns. @param {Motion | null} motion @returns {Record<string, number[]>} */
 function columnsOfMotion(motion) {
@@ -71,17 +74,24 @@ export class Motions {
       this.hasChosen = true;
       page.changed();
     });
-    byId("let-go").addEventListener("click", () => void this.release([["psi", Number(field("kick").value)]], 0));
-    byId("hit").addEventListener("click", () => void this.release([], Number(field("blow").value) * Number(field("blow-side").value)));
+    byId("let-go").addEventListener("click", () => {
+      const kick = numberIn(field("kick"));
+      if (kick !== null) void this.release([["psi", kick]], 0);
+    });
+    byId("hit").addEventListener("click", () => {
+      const blow = numberIn(field("blow"));
+      if (blow !== null) void this.release([], blow * Number(field("blow-side").value));
+    });
+    const tellPlay = () => (byId("play").textContent = this.above.isPlaying ? "Pause" : "Play");
+    tellPlay();
     byId("play").addEventListener("click", () => {
       this.above.isPlaying = !this.above.isPlaying;
-      byId("play").textContent = this.above.isPlaying ? "Pause" : "Play";
-      byId("play").setAttribute("aria-pressed", String(!this.above.isPlaying));
+      tellPlay();
     });
     byId("shown-motion").addEventListener("change", () => this.choose());
     const columns = () => columnsOfMotion(this.above.motion ?? this.uniformMotion);
     byId("above-tools").append(captureMenu("the wheel from above", "above", () => byId("above").querySelector("svg"), columns));
-    byId("plane-tools").append(captureMenu("the plane", "plane", () => byId("plane").querySelector("svg"), columns));
+    byId("plane-tools").append(captureMenu("the plane", "plane", () => byId("plane").querySelector("svg"), columns, "Save the picture…"));
   }
 
   /** A state of the uniform motion. @param {"psi" | "Omega"} state */
@@ -124,6 +134,10 @@ export class Motions {
     byId("history").replaceChildren();
     byId("motion-note").textContent = "";
     this.list("");
+  }
+
+  /** Tells who waits that the uniform motion is that of the wheel. */
+  rested() {
     this.waiting.splice(0).forEach((go) => go());
   }
 
@@ -139,6 +153,13 @@ export class Motions {
     const gone = Object.keys(this.offered).filter((name) => name.endsWith(".json") && !names.has(name));
     gone.forEach((name) => delete this.offered[name]);
     if (gone.length) this.list(/** @type {HTMLSelectElement} */ (byId("shown-motion")).value);
+  }
+
+  /** Plays the motion of a point that is picked. @param {Motion} motion */
+  pick(motion) {
+    this.offered[PICKED] = [motion];
+    this.list(`${PICKED}:0`);
+    this.show(motion);
   }
 
   /** Waits for the uniform motion of another wheel. @returns {Promise<void>} */
@@ -160,13 +181,13 @@ export class Motions {
 
   /** What can be played, as a list. @param {string} chosen */
   list(chosen) {
-    const titles = /** @type {Record<string, string>} */ ({ cycles: "cycle", shimmy: "shimmy", motion: "what was let go" });
+    const titles = /** @type {Record<string, string>} */ ({ cycles: "cycle", shimmy: "shimmy", motion: "what was let go", [PICKED]: "the point of the curve" });
     const options = [html("option", { value: "" }, "uniform motion")];
     for (const [file, motions] of Object.entries(this.offered)) {
       const name = file.replace(/\.json$/, "");
       motions.forEach((motion, index) => {
         const value = `${file}:${index}`;
-        options.push(html("option", { value, selected: value === chosen }, `${titles[name] ?? name}${motion.label ? ` ${motion.label}` : ""}`));
+        options.push(html("option", { value, selected: value === chosen }, `${titles[name] ?? name}${motion.label && file !== PICKED ? ` ${motion.label}` : ""}`));
       });
     }
     byId("shown-motion").replaceChildren(...options);
@@ -190,7 +211,7 @@ export class Motions {
     const curve = motion.t.map((time, index) => /** @type {[number, number]} */ ([time, motion.psi[index] ?? NaN]));
     const [low, high] = extent(motion.psi);
     const plot = draw({ description: "caster angle over the time", curves: [{ points: curve, kind: "cycle" }], x: { label: "t (s)", low: 0, high: motion.t.at(-1) ?? 1 }, y: { label: "ψ (rad)", low, high } });
-    byId("history").replaceChildren(plot.element, captureMenu("the time history", "history", () => plot.element, () => columnsOfMotion(motion)));
+    byId("history").replaceChildren(plot.element, captureMenu("the time history", "history", () => plot.element, () => columnsOfMotion(motion), "Save the picture…"));
   }
 
   /**
@@ -200,6 +221,7 @@ export class Motions {
    */
   async release(perturb, blow) {
     const { page } = this;
+    if (numberIn(field("duration")) === null) return;
     this.abort.abort();
     this.abort = new AbortController();
     // Another wheel ends it too.
@@ -234,7 +256,15 @@ export class Motions {
     return { x: { key: "psi", start: left, end: right }, y: { key: "Omega", start: low, end: high }, counts: FINE };
   }
 
-  /** Computes the basins under the plane, roughly and then finely. @param {AbortSignal} signal */
+  /** Shows the plane without basins. */
+  withoutBasin() {
+    this.plane.map = null;
+    this.plane.draw();
+    this.page.keep("basin", null);
+    byId("basin-note").textContent = "";
+  }
+
+  /** Computes the basins under the plane, roughly and then finely. @param {AbortSignal} signal @returns {Promise<boolean>} whether they are there */
   async showBasin(signal) {
     const { page, plane } = this;
     const note = byId("basin-note");
@@ -244,14 +274,16 @@ export class Motions {
         const { x, y } = this.basinAsked();
         const request = { ...page.asked(), x: { ...x, count: counts[0] }, y: { ...y, count: counts[1] }, contact: field("slides").checked ? "sliding" : "rolling" };
         const answer = await page.compute("basin", "/api/wheel/basin", request, signal);
-        if (signal.aborted) return;
+        if (signal.aborted) return false;
         page.keep("basin", answer);
         plane.map = answer.map;
         plane.draw();
         note.textContent = answer.warnings.join("; ");
       }
+      return true;
     } catch (error) {
       if (!signal.aborted) note.textContent = error instanceof Refusal ? error.problem.message : String(error);
+      return false;
     }
   }
 }

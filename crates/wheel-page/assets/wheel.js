@@ -2,7 +2,7 @@
 
 import { Refusal, ask, askFile, listen } from "./ask.js";
 import { Branches } from "./branches.js";
-import { byId, html } from "./element.js";
+import { byId, html, numberIn } from "./element.js";
 import { commandLines, pythonLines } from "./lines.js";
 import { Motions } from "./motions.js";
 import { readable, sliderRange } from "./numbers.js";
@@ -18,8 +18,8 @@ import { Zoom, isDark } from "./zoom.js";
  * @typedef {{key: string, start: number, end: number}} Interval
  * @typedef {{parameters: Record<string, Value>, tyre: string}} Wheel
  * @typedef {{wheel: Wheel, x: Interval, y: Interval, along: Interval, shimmy?: boolean, basin?: boolean, report?: boolean,
- *   steps?: import("./state.js").Step[], hidden?: boolean}} State
- * what takes long is only computed where it is wanted; `steps` are the curves besides the first one, which may be hidden
+ *   steps?: import("./state.js").Step[], hidden?: boolean, color?: string | undefined}} State
+ * what takes long is only computed where it is wanted; `steps` are the curves besides the first one, which may be hidden and have a colour
  * @typedef {{name: string, symbol: string, unit: string, meaning: string, lowest: number, highest: number, infinite: boolean,
  *   allowed: string, default: Value, of_the_tyre: boolean}} Key
  * @typedef {import("./diagram.js").Picture} Picture
@@ -34,7 +34,7 @@ const FIRST = ["v", "l", "r", "k_u", "k_q", "c_q", "c_psi", "M_f"];
 const COARSE = [48, 30];
 const FINE = [240, 141];
 /** Time that the sliders must rest before something long begins, in milliseconds. */
-const REST = 250;
+const REST = 150;
 
 /** @type {State} */
 let state = { wheel: { parameters: {}, tyre: "rigid" }, x: interval("v", 0.1, 12), y: interval("l", 0.02, 0.3), along: interval("v", 0.2, 9) };
@@ -50,6 +50,8 @@ const answers = { chart: null, shimmy: null, motion: null, basin: null };
 let lastVerdict = null;
 /** @type {Answer | null} */
 let lastReport = null;
+/** To what belongs each part of the page that is computed to its end. @type {Map<string, string>} */
+const done = new Map();
 /** Whether a slider moves and what it asks for is being computed, and whether it has moved on since. */
 const glide = { isComputing: false, hasMoved: false };
 
@@ -64,6 +66,8 @@ const motions = new Motions({
   signal: () => abort.signal,
 });
 
+/** Which part of the picture of shimmy is seen. */
+const shimmyZoom = new Zoom(() => void drawShimmy());
 /** Which part of the chart is seen: its axes, which are computed anew. */
 const chartZoom = new Zoom(() => {
   const { x, y } = chartZoom.window;
@@ -76,9 +80,9 @@ const chartZoom = new Zoom(() => {
 });
 const branches = new Branches({
   asked, valueOf, wanted, motions, messageOf,
-  first: () => ({ kind: "cycles", name: "cycles.json", along: state.along, hidden: state.hidden ?? false }),
+  first: () => ({ kind: "cycles", name: "cycles.json", along: state.along, hidden: state.hidden ?? false, color: state.color }),
   others: () => state.steps ?? [],
-  keep: (steps, hidden) => void change({ ...state, steps, hidden }),
+  keep: (steps, { hidden = false, color }) => void change({ ...state, steps, hidden, color }),
   range(key) {
     const known = keys.find((other) => other.name === key);
     return known ? rangeOf(known) : [0, 1];
@@ -165,9 +169,10 @@ async function compute(name, path, request, signal = abort.signal) {
       else if (kind === "map") answer.map = JSON.parse(text);
       else if (kind === "warning") answer.warnings.push(text);
       else if (kind === "failure") throw new Refusal(JSON.parse(text).error);
-      else if (kind === "result") Object.assign(answer, { text, data: JSON.parse(text) });
+      // A chart is a picture already; its numbers are only saved.
+      else if (kind === "result") Object.assign(answer, { text, data: name === "chart" ? null : JSON.parse(text) });
     });
-    if (!answer.data) throw new Refusal({ message: "it was stopped" });
+    if (!answer.text) throw new Refusal({ message: "it was stopped" });
     return answer;
   } finally {
     if (running.get(name) === entry) {
@@ -202,6 +207,12 @@ async function change(next, isEntry = true) {
   const { signal } = abort;
   running.clear();
   state = next;
+  const { wheel, x, y, along } = state;
+  const ofVerdict = JSON.stringify(wheel);
+  const ofChart = JSON.stringify([wheel, x, y, isDark()]);
+  const isOther = done.get("chart") !== ofChart;
+  const verdict = once("verdict", ofVerdict, () => showVerdict(signal)).then(() => signal.aborted || motions.rested());
+  const atOnce = Promise.all([verdict, isOther && showChart(signal, COARSE)]);
   showStatus();
   showFields();
   showCommands();
@@ -209,17 +220,54 @@ async function change(next, isEntry = true) {
   if (signal.aborted) return;
   if (text !== location.hash) enter(text, isEntry);
   try {
-    await Promise.all([showVerdict(signal), showChart(signal, COARSE)]);
-    await new Promise((resolve) => setTimeout(resolve, REST));
+    await atOnce;
+    // What is opened has no slider that moves on.
+    if (isEntry && isOther) await new Promise((resolve) => setTimeout(resolve, REST));
     if (signal.aborted) return;
-    await showChart(signal, FINE);
-    if (!signal.aborted) await branches.show(signal);
-    if (!signal.aborted && state.shimmy) await showShimmy(signal);
-    if (!signal.aborted && state.basin) await motions.showBasin(signal);
-    if (!signal.aborted && state.report) await showReport(signal);
+    leaveOut();
+    const fine = once("chart", ofChart, () => showChart(signal, FINE));
+    // After a slider the chart is what is looked at.
+    if (isEntry) await fine;
+    if (!signal.aborted) await Promise.all([fine, branches.show(signal)]);
+    if (!signal.aborted && state.shimmy) await once("shimmy", JSON.stringify([wheel, along]), () => showShimmy(signal));
+    if (!signal.aborted && state.basin) await once("basin", JSON.stringify([wheel, field("slides").checked]), () => motions.showBasin(signal));
+    if (!signal.aborted && state.report) await once("report", ofVerdict, () => showReport(signal));
   } catch (error) {
     if (!signal.aborted) showProblem(byId("verdict"), messageOf(error));
   }
+}
+
+/** Shows no more what is not wanted any more. */
+function leaveOut() {
+  if (!state.shimmy && answers.shimmy) {
+    done.delete("shimmy");
+    keepShimmy(null);
+    for (const id of ["shimmy-picture", "shimmy-notes"]) byId(id).replaceChildren();
+  }
+  if (!state.basin && answers.basin) {
+    done.delete("basin");
+    motions.withoutBasin();
+  }
+}
+
+/** @param {Answer | null} answer */
+function keepShimmy(answer) {
+  answers.shimmy = answer;
+  byId("shimmy-tools").hidden = !answer;
+  shimmyZoom.window = {};
+  motions.offer("shimmy", answer?.motions ?? []);
+}
+
+/**
+ * Computes a part of the page, unless that is there.
+ * @param {string} name
+ * @param {string} key what it belongs to
+ * @param {() => Promise<boolean>} show says whether it is there now
+ */
+async function once(name, key, show) {
+  if (done.get(name) === key) return;
+  done.delete(name);
+  if (await show()) done.set(name, key);
 }
 
 /**
@@ -233,6 +281,7 @@ async function follow(next) {
   glide.hasMoved = true;
   if (glide.isComputing) return;
   glide.isComputing = true;
+  done.clear();
   abort.abort();
   abort = new AbortController();
   const { signal } = abort;
@@ -249,19 +298,19 @@ async function follow(next) {
   }
 }
 
-/** @param {AbortSignal} signal */
+/** @param {AbortSignal} signal @returns {Promise<boolean>} */
 async function showVerdict(signal) {
   byId("wheel-problem").hidden = true;
   let verdict;
   try {
     verdict = await ask("/api/wheel/verdict", { request: asked() }, signal);
   } catch (error) {
-    if (signal.aborted) return;
+    if (signal.aborted) return false;
     byId("wheel-problem").hidden = false;
     byId("wheel-problem").textContent = messageOf(error);
     byId("verdict").replaceChildren();
     byId("numbers").textContent = "";
-    return;
+    return false;
   }
   const { stable, critical_speed: critical, critical_speed_with_friction: withFriction, rolls } = verdict;
   const first = stable === null ? "Undecided whether small motions die out." : stable ? "Stable: small motions die out." : "Unstable: small motions grow.";
@@ -278,25 +327,31 @@ async function showVerdict(signal) {
   byId("verdict").replaceChildren(html("strong", {}, first), ` ${lines.join(" ")}`);
   byId("numbers").textContent = verdict.text;
   lastVerdict = verdict;
+  // Their motions begin at another rest.
+  done.delete("shimmy");
+  done.delete("basin");
   motions.rest(verdict, state.wheel.tyre === "rigid");
   showCommands();
+  return true;
 }
 
-/** @param {AbortSignal} signal @param {number[]} count */
+/** @param {AbortSignal} signal @param {number[]} count @returns {Promise<boolean>} */
 async function showChart(signal, count) {
   const sampled = (/** @type {Interval} */ axis, /** @type {number | undefined} */ points) => ({ ...axis, count: points });
   const box = byId("chart-picture");
   try {
     const answer = await compute("chart", "/api/wheel/chart", { ...asked(), x: sampled(state.x, count[0]), y: sampled(state.y, count[1]) });
     answers.chart = answer;
-    if (!answer.picture) return;
+    if (!answer.picture) return false;
     showPicture(box, answer.picture, `Stability chart over ${state.x.key} and ${state.y.key}`, [valueOf(state.x.key), valueOf(state.y.key)], chartZoom, (x, y) => {
       const round = (/** @type {number} */ value) => Number(value.toPrecision(4));
       void change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, [state.x.key]: round(x), [state.y.key]: round(y) } } });
     });
     box.dataset.points = String((count[0] ?? 0) * (count[1] ?? 0));
+    return true;
   } catch (error) {
     if (!signal.aborted) showProblem(box, messageOf(error));
+    return false;
   }
 }
 
@@ -306,22 +361,48 @@ async function take(values) {
   await change({ ...state, wheel: { ...state.wheel, parameters: { ...state.wheel.parameters, ...Object.fromEntries(rounded) } } });
 }
 
-/** @param {AbortSignal} signal */
+/** Draws what is known of shimmy, as much of it as is seen. */
+async function drawShimmy() {
+  const { shimmy } = answers;
+  if (!shimmy) return;
+  const box = byId("shimmy-picture");
+  const { window } = shimmyZoom;
+  const { request, files } = askedOfShimmy(shimmy);
+  try {
+    const picture = await ask("/api/wheel/diagram", { request: { ...request, format: "page" }, files });
+    // Who has zoomed on since, or has another result, sees that.
+    if (shimmyZoom.window === window && answers.shimmy === shimmy) showShimmyPicture(picture);
+  } catch (error) {
+    showProblem(box, messageOf(error));
+  }
+}
+
+/** @param {Picture} picture */
+function showShimmyPicture(picture) {
+  showPicture(byId("shimmy-picture"), picture, `Shimmy with sliding along ${state.along.key}`, null, shimmyZoom, null);
+}
+
+/** What a picture of shimmy is asked with. @param {Answer} shimmy */
+function askedOfShimmy({ text }) {
+  return { request: { results: ["shimmy.json"], window: shimmyZoom.window, dark: isDark() }, files: { "shimmy.json": text } };
+}
+
+/** @param {AbortSignal} signal @returns {Promise<boolean>} */
 async function showShimmy(signal) {
   const box = byId("shimmy-picture");
   const notes = byId("shimmy-notes");
   try {
     const answer = await compute("shimmy", "/api/wheel/shimmy", { ...asked(), along: state.along, at: wanted() === null ? [] : [wanted()] });
-    answers.shimmy = answer;
-    if (answer.picture) showPicture(box, answer.picture, `Shimmy with sliding along ${state.along.key}`, null, null, null);
+    keepShimmy(answer);
+    if (answer.picture) showShimmyPicture(answer.picture);
     notes.replaceChildren(...labels(answer), ...answer.warnings.map((warning) => html("p", { class: "note" }, warning)));
-    motions.offer("shimmy", answer.motions);
+    return true;
   } catch (error) {
-    if (signal.aborted) return;
-    answers.shimmy = null;
-    motions.offer("shimmy", []);
+    if (signal.aborted) return false;
+    keepShimmy(null);
     showProblem(box, messageOf(error));
     notes.replaceChildren();
+    return false;
   }
 }
 
@@ -335,7 +416,7 @@ function labels(answer) {
   });
 }
 
-/** @param {AbortSignal} signal */
+/** @param {AbortSignal} signal @returns {Promise<boolean>} */
 async function showReport(signal) {
   const box = byId("findings");
   box.setAttribute("aria-busy", "true");
@@ -345,8 +426,10 @@ async function showReport(signal) {
     box.replaceChildren(...data.findings.map((/** @type {any} */ finding) =>
       html("li", { class: finding.undecided ? "undecided" : null }, html("strong", {}, `${finding.subject}. `), finding.text, finding.undecided && html("em", {}, " Undecided."),
         finding.check && html("p", { class: "note" }, `Checked: ${finding.check}`))));
+    return true;
   } catch (error) {
     if (!signal.aborted) box.replaceChildren(html("li", { class: "problem" }, messageOf(error)));
+    return false;
   } finally {
     if (!signal.aborted) box.removeAttribute("aria-busy");
   }
@@ -400,9 +483,10 @@ function rangeOf(key) {
   return [Math.max(low, key.lowest), Math.min(high, key.highest)];
 }
 
-/** An interval of the page. @param {string} id */
+/** An interval of the page; nothing where its ends are no numbers. @param {string} id */
 function fields(id) {
-  return interval(field(`${id}-key`).value, Number(field(`${id}-start`).value), Number(field(`${id}-end`).value));
+  const [start, end] = [numberIn(field(`${id}-start`)), numberIn(field(`${id}-end`))];
+  return start === null || end === null ? null : interval(field(`${id}-key`).value, start, end);
 }
 
 /** Axes that suit a wheel. @param {Wheel} wheel @returns {State} */
@@ -424,11 +508,13 @@ for (const id of ["x", "y", "along"]) {
 }
 byId("axes").addEventListener("submit", (event) => {
   event.preventDefault();
-  void change({ ...state, x: fields("x"), y: fields("y") });
+  const [x, y] = [fields("x"), fields("y")];
+  if (x && y) void change({ ...state, x, y });
 });
 byId("along").addEventListener("submit", (event) => {
   event.preventDefault();
-  void change({ ...state, along: fields("along") });
+  const along = fields("along");
+  if (along) void change({ ...state, along });
 });
 byId("stop").addEventListener("click", () => {
   for (const { run } of running.values()) if (run) ask("/api/stop", { run: Number(run) }).catch(() => {});
@@ -474,15 +560,27 @@ field("file").addEventListener("change", async () => {
   }
 });
 byId("chart-tools").append(chartZoom.buttons);
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => void change(state, false));
+byId("shimmy-tools").append(shimmyZoom.buttons);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  void change(state, false);
+  void drawShimmy();
+});
 for (const name of ["chart", "shimmy", "motion", "basin"]) {
   byId(`${name}-tools`).append(saveMenu(name, ["svg", "png", "pdf", "csv", "text", "json"], async (format) => {
     const answer = answers[name];
     if (!answer) return;
-    const contents = format === "json" ? new Blob([answer.text]) : await askFile("/api/wheel/save", { analysis: name, request: answer.request, format });
-    give(contents, `${name}.${format === "text" ? "txt" : format}`);
-  }));
+    give(await contentsOf(name, answer, format), `${name}.${format === "text" ? "txt" : format}`);
+  }, name === "motion" ? "Save the motion…" : name === "basin" ? "Save the basins…" : undefined));
 }
+/** A result in a format. @param {string} name @param {Answer} answer @param {string} format */
+function contentsOf(name, answer, format) {
+  if (format === "json") return new Blob([answer.text]);
+  if (name !== "shimmy" || format === "csv" || format === "text") return askFile("/api/wheel/save", { analysis: name, request: answer.request, format });
+  // What is known is drawn as it is seen, and not computed again.
+  const { request, files } = askedOfShimmy(answer);
+  return askFile("/api/wheel/diagram", { request: { ...request, format }, files });
+}
+
 addEventListener("popstate", async () => {
   const known = await unpack(location.hash.slice(1));
   if (known?.wheel) void change(known, false);

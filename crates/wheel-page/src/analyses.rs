@@ -1,9 +1,9 @@
 //! Analyses of a wheel, each with its picture.
 
 use crate::limits::Limited;
-use arclength_analysis::{Control, FilesInMemory, FoundPoint};
+use arclength_analysis::{Control, Files, FilesInMemory, FoundPoint};
 use arclength_page::{
-    Answer, Asked, Events, Failure, Look, PictureAnswer, Routes, Work, drawn, parse, saved,
+    Answer, Asked, Events, Failure, Look, OwnColors, PictureAnswer, Routes, Work, drawn, parse, saved,
 };
 use axum::body::Bytes;
 use axum::extract::State;
@@ -15,7 +15,7 @@ use kingpin_analysis::cycles::CyclesRequest;
 use kingpin_analysis::diagram::diagram;
 use kingpin_analysis::locus::LocusRequest;
 use kingpin_analysis::report::ReportRequest;
-use kingpin_analysis::shimmy::ShimmyRequest;
+use kingpin_analysis::shimmy::{DrawnShimmy, ShimmyRequest};
 use kingpin_analysis::simulate::SimulateRequest;
 use kingpin_analysis::stability::{StabilityPart, StabilityRequest, StabilityResult};
 use kingpin_analysis::steady::{SteadyRequest, SteadyResult};
@@ -241,6 +241,9 @@ struct DiagramRequest {
     /// The results, by name.
     results: Vec<PathBuf>,
     format: String,
+    /// Colours of their own.
+    #[serde(default)]
+    colors: OwnColors,
     #[serde(flatten)]
     look: Look,
 }
@@ -248,7 +251,15 @@ struct DiagramRequest {
 async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure> {
     let Asked { request, files } = parse::<Asked<DiagramRequest>>(&body)?;
     work.answer(move |_| {
-        let DiagramRequest { results: names, format, look } = request;
+        let DiagramRequest { results: names, format, colors, look } = request;
+        // Shimmy stands by itself: nothing starts from it.
+        let is_table = ["csv", "text"].contains(&&*format);
+        if let [one] = &names[..]
+            && !is_table
+            && let Some(shimmy) = files.read(one).ok().and_then(|text| DrawnShimmy::of(&text))
+        {
+            return drawn(&format, look, shimmy.figure().map_err(failure)?);
+        }
         let wrong = |index: usize, problem: String| {
             let name = names.get(index).map_or_else(String::new, |name| format!("{}: ", name.display()));
             Failure::new(StatusCode::UNPROCESSABLE_ENTITY, format!("{name}{problem}"))
@@ -258,7 +269,9 @@ async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure
         };
         let results: Vec<ResultFile> = names.iter().enumerate().map(read).collect::<Result<_, _>>()?;
         // A single result is saved as the command that computed it does.
-        if let [one] = &results[..] {
+        if let [one] = &results[..]
+            && (colors.is_empty() || is_table)
+        {
             return match one {
                 ResultFile::Hopf(result) => saved(&format, look, result),
                 ResultFile::Cycles(result) => saved(&format, look, result),
@@ -266,7 +279,8 @@ async fn draw(State(work): State<Work>, body: Bytes) -> Result<Response, Failure
                 ResultFile::CycleLocus(result) => saved(&format, look, result),
             };
         }
-        let figure = diagram(&results).map_err(|(index, problem)| wrong(index, problem))?;
+        let figure =
+            diagram(&results, &colors.of(&names)).map_err(|(index, problem)| wrong(index, problem))?;
         drawn(&format, look, figure)
     })
     .await

@@ -332,7 +332,7 @@ impl Report for CyclesResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        Ok(Some(picture::bifurcation_diagram(&self.wheel, &self.interval, &self.points)))
+        Ok(Some(picture::bifurcation_diagram(&self.wheel, &self.interval, &self.points, &[])))
     }
 
     fn story(&self) -> Option<Story> {

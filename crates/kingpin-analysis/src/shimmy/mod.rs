@@ -1,11 +1,13 @@
 //! Large shimmy along a parameter: periodic motions of a wheel that may slide, each with its phases of rolling and sliding.
 
+mod drawn;
 mod picture;
 mod point;
 mod request;
 mod result;
 mod search;
 
+pub use drawn::DrawnShimmy;
 pub use point::{ShimmyPhase, ShimmyPointResult};
 pub use request::{ShimmyAnalysis, ShimmyRequest};
 pub use result::{ShimmyBranchResult, ShimmyResult};

@@ -1,18 +1,27 @@
 //! The diagram of shimmy: largest and smallest caster angle over the parameter, beside the uniform motion.
 
+<<<<<<< HEAD
 use super::point::{GRAZING, ShimmyPointResult, what};
+=======
+use super::drawn::DrawnPoint;
+use super::point::GRAZING;
+>>>>>>> page
 use crate::along::drawn_as;
 use crate::uniform_curve::uniform_motion;
 use crate::{axis_label, description};
 use arclength_analysis::labels::kind;
 use kingpin::branches::Along;
+<<<<<<< HEAD
 use kingpin::{Tyre, Wheel};
 use kingpin_figure::{
     Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
 };
+=======
+use kingpin_figure::{Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, palette};
+>>>>>>> page
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
-pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]) -> Figure {
+pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[DrawnPoint]) -> Figure {
     let (key, abscissa) = drawn_as(along);
     let (start, end) = along.ends();
     let (start, end) = (abscissa(start), abscissa(end));
@@ -23,11 +32,11 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
     panel = panel.curve(uniform.color(palette::BLUE).legend("uniform motion"));
     let branches = points.last().map_or(0, |point| point.branch);
     for number in 1..=branches {
-        let points: Vec<&ShimmyPointResult> = points.iter().filter(|point| point.branch == number).collect();
+        let points: Vec<&DrawnPoint> = points.iter().filter(|point| point.branch == number).collect();
         for largest in [true, false] {
-            let angle = |point: &ShimmyPointResult| if largest { point.psi_max } else { point.psi_min };
+            let angle = |point: &DrawnPoint| if largest { point.psi_max } else { point.psi_min };
             let curve = Branch::new(
-                points.iter().map(|point| ((abscissa(point.value), angle(point)), stability(point))),
+                points.iter().map(|point| ((abscissa(point.value), angle(point)), point.stability())),
             )
             .color(palette::VERMILION);
             let first = largest && number == 1;
@@ -49,10 +58,6 @@ pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[ShimmyPointResult]
         description::of(wheel, &[along.key()])
     );
     Figure::single_column().description(description).panel(panel)
-}
-
-fn stability(point: &ShimmyPointResult) -> Stability {
-    if point.is_bifurcation() { Stability::Changes } else { Stability::from(point.stable == Some(true)) }
 }
 
 fn marker(label: &str) -> Marker {

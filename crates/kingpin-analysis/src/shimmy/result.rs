@@ -1,5 +1,6 @@
 //! Branches of shimmy as a result.
 
+use super::drawn::DrawnPoint;
 use super::picture;
 use super::point::{GRAZING, Role, ShimmyPointResult, ascending, at_motion, at_smooth_cycle, what};
 use super::search::Attempt;
@@ -384,7 +385,8 @@ impl Report for ShimmyResult {
     }
 
     fn figure(&self) -> Result<Option<Figure>, FigureError> {
-        Ok(Some(picture::diagram(&self.wheel, &self.interval, &self.points)))
+        let points: Vec<DrawnPoint> = self.points.iter().map(DrawnPoint::from).collect();
+        Ok(Some(picture::diagram(&self.wheel, &self.interval, &points)))
     }
 
     fn story(&self) -> Option<Story> {

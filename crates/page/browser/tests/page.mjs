@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { mkdirSync, readFileSync } from "node:fs";
+import { inflateSync } from "node:zlib";
 import { once } from "node:events";
 import { chromium } from "playwright-core";
 
@@ -30,6 +31,29 @@ export async function serve(program, ...options) {
       return code;
     },
   };
+}
+
+/** What a menu saves. */
+export async function saved(page, menu, format) {
+  const download = page.waitForEvent("download");
+  await menu.selectOption(format);
+  const file = await download;
+  return { name: file.suggestedFilename(), contents: readFileSync(await file.path()) };
+}
+
+/** What is drawn on the page of a PDF file, as its operators. */
+export function operators(pdf) {
+  assert.match(String(pdf.subarray(0, 8)), /^%PDF-/);
+  const text = pdf.toString("latin1");
+  const pages = [...text.matchAll(/stream\r?\n/g)].filter(({ index }) => text.slice(index - 3, index) !== "end").map(({ 0: head, index }) => {
+    try {
+      return inflateSync(pdf.subarray(index + head.length)).toString("latin1");
+    } catch {
+      return "";
+    }
+  });
+  // Maps are streams too.
+  return pages.at(-1) ?? "";
 }
 
 export async function launch() {

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { launch, open, serve } from "./page.mjs";
+import { launch, open, operators, saved, serve } from "./page.mjs";
 
 let server;
 let browser;
@@ -75,12 +75,21 @@ test("branches grow point by point, labels offer what starts there, and every po
   await page.evaluate(() => {
     window.grown = 0;
     new MutationObserver(() => {
-      if (document.querySelector("#diagrams .growing .dot.cycle")) window.grown++;
+      if (document.querySelector("#diagrams .growing .dot")) window.grown++;
     }).observe(document.querySelector("#diagrams"), { childList: true, subtree: true });
   });
   await done(page);
   await page.locator("#steps button.label", { hasText: "HB1" }).click();
   await page.locator("#branch-point dl", { hasText: "first lyapunov" }).waitFor();
+  // The same cycles once more: while they are followed nothing else is computed.
+  await page.locator('#diagrams .target[data-label="cycles.json:AT1"]').first().press("Enter");
+  await page.locator("dialog").getByRole("button", { name: "The cycles through it" }).click();
+  await page.locator('#steps li[data-step="cycles-2.json"][data-state="done"]').waitFor();
+  await done(page);
+  await opened.picture("wheel-twice");
+  await page.getByRole("button", { name: "remove cycles-2.json" }).click();
+  await done(page);
+  assert.ok(await page.evaluate(() => window.grown) > 0);
   // The pointer alone: a label, what starts there.
   await page.locator('#diagrams .target[data-label="cycles.json:HB1"]').first().click();
   await page.locator("dialog").getByRole("button", { name: "Curve of Hopf points in two parameters" }).click();
@@ -93,6 +102,7 @@ test("branches grow point by point, labels offer what starts there, and every po
   await page.locator("#steps button.label", { hasText: "AT1" }).click();
   await page.getByRole("button", { name: "one point on" }).click();
   await page.locator("#branch-point h2", { hasText: /^Point \d+ of cycles/ }).waitFor();
+  assert.equal(await page.locator("#shown-motion option:checked").textContent(), "the point of the curve");
   assert.equal(await page.locator("#branch-point .cross").count(), 5);
   await page.locator("#history .plot").waitFor();
   await page.locator("#plane .curve.cycle").waitFor({ state: "attached" });
@@ -111,7 +121,30 @@ test("branches grow point by point, labels offer what starts there, and every po
   await page.getByRole("button", { name: "remove locus.json" }).click();
   await done(page);
   assert.equal(await page.locator("#steps li").count(), 1);
-  assert.ok(await page.evaluate(() => window.grown) > 0);
+  await opened.close();
+});
+
+test("a curve in another colour leaves everything else as it is, and undo brings the colour back", async () => {
+  const opened = await open(browser, server.url);
+  const { page } = opened;
+  await done(page);
+  await page.locator("#let-go").click();
+  await page.locator("#motion-note", { hasText: "In the last tenth" }).waitFor();
+  const asked = [];
+  page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+  const green = "#009e73";
+  await page.getByLabel("colour of cycles.json").selectOption("green");
+  await page.waitForFunction((color) => document.querySelector("#diagrams .drawn")?.outerHTML.includes(color), green);
+  await done(page);
+  assert.match(await page.locator("#motion-note").textContent(), /In the last tenth/);
+  assert.deepEqual(asked.filter((path) => path.startsWith("/api")), ["/api/wheel/diagram"]);
+  const copy = await open(browser, page.url());
+  await copy.page.waitForFunction((color) => document.querySelector("#diagrams .drawn")?.outerHTML.includes(color), green);
+  await done(copy.page);
+  await copy.close();
+  await page.locator("#undo").click();
+  await page.waitForFunction((color) => !document.querySelector("#diagrams .drawn").outerHTML.includes(color), green);
+  await done(page);
   await opened.close();
 });
 
@@ -214,8 +247,18 @@ test("basins lie under the plane, and a press there starts a motion", async () =
   assert.match(await page.locator("#lines").textContent(), /--perturb psi=\S+ --perturb Omega=\S+ /);
   assert.match(await page.locator("#lines").textContent(), /^kingpin basin --x psi=-1:1:81 --y Omega=\S+:61 --contact rolling/m);
   assert.deepEqual(await opened.obstacles(), []);
+  // What is saved of the plane has its map, as lines on pixels, and the wheel from above has none.
+  const pdf = await saved(page, page.getByLabel("Save the plane"), "pdf");
+  assert.match(operators(pdf.contents), / Do$/m);
+  assert.match(String((await saved(page, page.getByLabel("Save the plane"), "svg")).contents), /<image [^>]*href="data:image\/png/);
+  const above = operators((await saved(page, page.getByLabel("Save the wheel from above"), "pdf")).contents);
+  assert.ok(above.match(/ c$/gm).length > 20 && !/ Do$/m.test(above));
   await opened.picture("wheel-basin");
   await opened.documented("page-wheel");
+  // Without them nothing else changes.
+  await page.locator("#basin").uncheck();
+  await page.locator("#plane .basin").waitFor({ state: "detached" });
+  assert.match(await page.locator("#motion-note").textContent(), /it was let go/);
   await opened.close();
 });
 
@@ -250,6 +293,31 @@ test("shimmy with sliding is a curve, and plays", async () => {
     await page.locator("#shown-motion").selectOption({ label });
     await page.locator("#plane .curve.cycle").waitFor({ state: "attached" });
     await opened.picture("wheel-shimmy");
+    // It is zoomed without being computed again, and saved as it is seen.
+    const asked = [];
+    page.on("request", (request) => asked.push(new URL(request.url()).pathname));
+    const told = () => page.locator("#shimmy-picture .drawn desc").textContent();
+    const whole = await told();
+    await page.locator("#shimmy-picture").scrollIntoViewIfNeeded();
+    const box = await page.locator("#shimmy-picture .overlay").boundingBox();
+    await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.4 * box.height);
+    await page.mouse.wheel(0, -100);
+    await page.waitForFunction((before) => document.querySelector("#shimmy-picture .drawn desc")?.textContent !== before, whole);
+    await opened.picture("wheel-shimmy-zoomed");
+    const zoomed = await told();
+    await page.mouse.down();
+    await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.45 * box.height, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction((before) => document.querySelector("#shimmy-picture .drawn desc")?.textContent !== before, zoomed);
+    const pdf = await saved(page, page.getByLabel("Save shimmy"), "pdf");
+    assert.equal(pdf.name, "shimmy.pdf");
+    operators(pdf.contents);
+    await page.locator("#shimmy").getByRole("button", { name: "All of it (0)" }).click();
+    await page.waitForFunction((before) => document.querySelector("#shimmy-picture .drawn desc")?.textContent === before, whole);
+    assert.deepEqual([...new Set(asked)].filter((path) => path.startsWith("/api")), ["/api/wheel/diagram"]);
+    await page.locator("#undo").click();
+    await page.locator("#shimmy-picture svg.drawn").waitFor({ state: "detached" });
+    await page.locator("#follow-shimmy").waitFor();
     await opened.close();
   } finally {
     await other.end();
@@ -287,6 +355,11 @@ test("a value that is not allowed says what is", async () => {
   await page.locator("#quantity-l").fill("-1");
   await page.locator("#quantity-l").press("Tab");
   assert.match(await page.locator("#quantity-l").evaluate((element) => element.validationMessage), /to/);
+  // Neither is a word a kick.
+  await page.locator("#kick").fill("far");
+  await page.locator("#let-go").click();
+  assert.match(await page.locator("#kick").evaluate((element) => element.validationMessage), /a number/);
+  assert.equal(await page.locator("#motion-note").textContent(), "");
   // Two values that do not go together are told by the server.
   await page.getByText("All parameters").click();
   await page.locator("#quantity-mu_s").fill("0.5");

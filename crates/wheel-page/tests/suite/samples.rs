@@ -127,6 +127,18 @@ pub(crate) fn samples() -> Vec<Sample> {
     ]
 }
 
+/// A drawing of every kind of shape.
+fn drawing() -> Value {
+    let stroke = json!({"color": [0, 0, 0, 1], "width": 1, "dashed": true});
+    json!({"width": 90, "height": 60, "title": "all", "paper": [255, 255, 255, 1], "items": [
+        {"kind": "raster", "frame": [10, 10, 80, 50], "columns": 2, "pixels": [0, 0, 0, 255, 9, 9, 9, 120]},
+        {"kind": "lines", "lines": [[[0, 0], [90, 60]]], "stroke": stroke, "clip": [10, 10, 80, 50]},
+        {"kind": "polygon", "corners": [[10, 10], [20, 10], [10, 20]], "fill": [200, 0, 0, 0.5]},
+        {"kind": "circle", "center": [45, 30], "radius": 5, "stroke": stroke},
+        {"kind": "text", "text": "\u{3c8} (rad)", "at": [45, 55], "size": 8, "anchor": 0.5, "degrees": 0, "color": [0, 0, 0, 1]},
+    ]})
+}
+
 /// The bodies of all routes that take one; of those whose request is asked under `request`, the samples.
 pub(crate) fn bodies() -> Vec<(&'static str, Value)> {
     let mut bodies: Vec<(&str, Value)> =
@@ -137,12 +149,13 @@ pub(crate) fn bodies() -> Vec<(&'static str, Value)> {
         ("/api/model", json!({"name": "radial.ode", "source": crate::client::RADIAL})),
         (
             "/api/diagram",
-            json!({"request": {"results": ["a.json"], "states": ["x"], "format": "page"}, "files": {"a.json": "{}"}}),
+            json!({"request": {"results": ["a.json"], "states": ["x"], "format": "page", "colors": {"a.json": "green"}}, "files": {"a.json": "{}"}}),
         ),
         (
             "/api/wheel/diagram",
-            json!({"request": {"results": ["a.json"], "format": "page", "window": {"x": [1.0, 2.0]}, "dark": true}, "files": {"a.json": "{}"}}),
+            json!({"request": {"results": ["a.json"], "format": "page", "window": {"x": [1.0, 2.0]}, "dark": true, "colors": {"a.json": "sky"}}, "files": {"a.json": "{}"}}),
         ),
+        ("/api/drawing", drawing()),
         ("/api/wheel", json!({"text": "v = 3\n"})),
         ("/api/wheel/save", json!({"analysis": "chart", "request": chart, "format": "csv"})),
     ]);
