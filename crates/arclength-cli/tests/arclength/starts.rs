@@ -221,3 +221,19 @@ fn cycles_start_at_a_hopf_point_at_the_end_of_the_interval_but_for_rounding() {
     }
     folder.fails("cycles --from equilibria.json:HB1 --along l=0.1:1", 2, &["HB1 is outside the interval"]);
 }
+
+#[test]
+fn newtons_method_does_not_end_where_a_root_has_no_derivatives() {
+    // Prey in herds: from these starts Newton's method goes to (0, 0), where the root of x has none. By hand x = (d/a)^(1/e) and
+    // y = x (1 - x)/x^e, of the exponents 1/2 and 3/4.
+    for (law, exponent) in [("sqrt(x)", 0.5_f64), ("x^.75", 0.75), ("exp(.5*ln(x))", 0.5)] {
+        let folder =
+            folder(&format!("par d=.3\nu={law}\nx'=x*(1-x)-u*y\ny'=u*y-d*y\ninit x=.3,y=.3\ndone\n"));
+        let equilibria = folder.json("equilibria model.ode --along d=0.1:0.9 --at 0.5");
+        let point = points(&equilibria).iter().find(|point| number(&point["value"]) == 0.5).unwrap();
+        let x = 0.5_f64.powf(1.0 / exponent);
+        let y = x * (1.0 - x) / x.powf(exponent);
+        let found = [number(&point["state"]["x"]), number(&point["state"]["y"])];
+        assert!((found[0] - x).abs() < 1e-10 && (found[1] - y).abs() < 1e-10, "{law}: {found:?}");
+    }
+}
