@@ -237,3 +237,17 @@ fn newtons_method_does_not_end_where_a_root_has_no_derivatives() {
         assert!((found[0] - x).abs() < 1e-10 && (found[1] - y).abs() < 1e-10, "{law}: {found:?}");
     }
 }
+
+#[test]
+fn a_field_that_is_linear_at_its_hopf_point_has_the_first_lyapunov_coefficient_zero() {
+    // At mu = 0 all second and third derivatives vanish, by hand.
+    for field in ["mu*(1-x^2)*y-x", "mu*y-x+mu*x^2", "mu*y-x+mu*x*y-mu^3*y^3"] {
+        let folder = folder(&format!("par mu=-.1\nx'=y\ny'={field}\ninit x=0,y=0\ndone\n"));
+        let equilibria = folder.json("equilibria model.ode --along mu=-1:1");
+        let hopf = points(&equilibria).iter().find(|point| point["label"] == "HB1").unwrap();
+        let form = &hopf["special"];
+        let [value, error] = ["first_lyapunov", "first_lyapunov_error"].map(|name| number(&form[name]));
+        assert!(value.abs() <= error && error < 1e-12, "{field}: {form}");
+        assert_eq!(form["criticality"], "degenerate", "{field}");
+    }
+}
