@@ -251,3 +251,22 @@ fn a_field_that_is_linear_at_its_hopf_point_has_the_first_lyapunov_coefficient_z
         assert_eq!(form["criticality"], "degenerate", "{field}");
     }
 }
+
+#[test]
+fn where_several_pairs_cross_at_once_an_equilibrium_is_not_called_stable() {
+    // Two uncoupled neurons: by hand v^2 = 1 - 0.064 at their Hopf points, and two pairs are on the axis there.
+    let folder = folder(
+        "par i=.2\nv'=v-v^3/3-w+i\nw'=.08*(v+.7-.8*w)\nx'=x-x^3/3-y+i\ny'=.08*(x+.7-.8*y)\n\
+         init v=-1,w=-.4,x=-1,y=-.4\ndone\n",
+    );
+    let equilibria = folder.json("equilibria model.ode --along i=0:2");
+    let hopf: Vec<_> = points(&equilibria)
+        .iter()
+        .filter(|point| point["label"].as_str().is_some_and(|label| label.starts_with("HB")))
+        .collect();
+    assert_eq!(hopf.len(), 2);
+    for point in hopf {
+        assert!((number(&point["state"]["v"]).abs() - 0.936_f64.sqrt()).abs() < 1e-10);
+        assert!(point["stable"].is_null(), "{}", point["stable"]);
+    }
+}
