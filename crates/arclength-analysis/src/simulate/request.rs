@@ -34,6 +34,9 @@ const MOST_STEPS: usize = 20_000_000;
 const SAMPLES_IN_A_STEP: f64 = 5.0;
 /// How often a motion is followed again with the tolerances that the sizes of its states ask for.
 const REPETITIONS: usize = 3;
+/// The absolute tolerance with which a motion that could not be followed is tried once more, and most steps of that.
+const FINEST_ABSOLUTE: f64 = 1e-24;
+const MOST_FINEST_STEPS: usize = 200_000;
 /// How often samples are added where a curve that is drawn bends.
 const SMOOTHINGS: usize = 6;
 
@@ -567,7 +570,15 @@ impl SimulateAnalysis {
             control: *control,
         };
         let mut accuracy = self.accuracy.clone();
-        let mut motion = course.follow(&accuracy, times)?;
+        let mut motion = match course.follow(&accuracy, times) {
+            Err(error @ (IntegrationError::NotFinite { .. } | IntegrationError::StepTooSmall { .. })) => {
+                // States that are much smaller than the tolerance may have passed zero, and concentrations grow beyond it.
+                accuracy.absolute.fill(FINEST_ABSOLUTE.min(self.absolute));
+                accuracy.most_steps = accuracy.most_steps.min(MOST_FINEST_STEPS);
+                course.follow(&accuracy, times).map_err(|_| error)?
+            }
+            followed => followed?,
+        };
         for _ in 0..REPETITIONS {
             let needed: Vec<f64> = motion.sizes.iter().map(|size| self.absolute_tolerance(*size)).collect();
             let is_enough = needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has);

@@ -139,3 +139,19 @@ fn a_settled_motion_starts_cycles_wherever_it_was_stopped() {
         );
     }
 }
+
+/// The heater of a thermostat is set to 0 and to 1. Heated all the time the room comes to rest at the threshold 21 where
+/// `kp = 0.1*16 + 0.1*(21 - 11.5/0.7) = 72/35`, by hand: the period grows there as a logarithm.
+#[test]
+fn what_events_set_to_zero_is_not_taken_for_a_state_that_double_precision_loses() {
+    let folder = settled(
+        "par kp=3\nx'=-.1*(x-5)-.1*(x-w)+kp*q\nw'=.05*(x-w)-.02*(w-5)\nq'=0\nglobal 1 {x-21} {q=0}\n\
+         global -1 {x-19} {q=1}\ninit x=18,w=15,q=1\ndone\n",
+        400.0,
+    );
+    let cycles = folder.json("cycles --from h.json:END --along kp=2:4");
+    let end = cycles["ends"][0]["cause"].as_str().unwrap();
+    assert!(!end.contains("near to zero"), "{end}");
+    let first = number(&points(&cycles)[0]["value"]);
+    assert!((first - 72.0 / 35.0).abs() < 1e-5, "{first}");
+}

@@ -249,3 +249,26 @@ fn stiff_models_are_followed() {
         close(end(van_der_pol, "2", "x"), 1.706_167_732_170_435_6, 1e-8);
     }
 }
+
+/// Problem E5 of Enright, Hull and Lindberg (1975): its states are decades smaller than the tolerance of a state of size 1, and below
+/// zero they run away. By hand `y2 = y3 + y4`, and once y1 is spent `y2' = -m c y2^2`: its reciprocal grows by `m c` in a unit of time.
+/// The largest y2 is about 1e-10, and what the tolerance leaves of that, 1e-20 at most, is a tenth of the last values.
+#[test]
+fn a_stiff_problem_of_chemistry_is_followed_to_its_end() {
+    let history = simulate(
+        "par a=7.89e-10,b=1.1e7,c=1.13e3,m=1e6\ny1'=-a*y1-b*y1*y3\ny2'=a*y1-m*c*y2*y3\n\
+         y3'=a*y1-b*y1*y3-m*c*y2*y3+c*y4\ny4'=b*y1*y3-c*y4\ninit y1=1.76e-3\ndone\n",
+        "--duration 1e11",
+    );
+    let times = history["t"].as_array().unwrap();
+    let last = times.len() - 1;
+    let middle = times.iter().position(|time| time.as_f64().unwrap() >= 6e10).unwrap();
+    let at = |name: &str, index: usize| list(&history, "states", name)[index];
+    let passed = times[last].as_f64().unwrap() - times[middle].as_f64().unwrap();
+    let grown = 1.0 / at("y2", last) - 1.0 / at("y2", middle);
+    assert!((grown / (1.13e9 * passed) - 1.0).abs() < 0.1, "{grown}");
+    for index in [middle, last] {
+        let excess = at("y2", index) - at("y3", index) - at("y4", index);
+        assert!(excess.abs() < 1e-20, "{excess}");
+    }
+}

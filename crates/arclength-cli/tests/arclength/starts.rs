@@ -221,3 +221,52 @@ fn cycles_start_at_a_hopf_point_at_the_end_of_the_interval_but_for_rounding() {
     }
     folder.fails("cycles --from equilibria.json:HB1 --along l=0.1:1", 2, &["HB1 is outside the interval"]);
 }
+
+#[test]
+fn newtons_method_does_not_end_where_a_root_has_no_derivatives() {
+    // Prey in herds: from these starts Newton's method goes to (0, 0), where the root of x has none. By hand x = (d/a)^(1/e) and
+    // y = x (1 - x)/x^e, of the exponents 1/2 and 3/4.
+    for (law, exponent) in [("sqrt(x)", 0.5_f64), ("x^.75", 0.75), ("exp(.5*ln(x))", 0.5)] {
+        let folder =
+            folder(&format!("par d=.3\nu={law}\nx'=x*(1-x)-u*y\ny'=u*y-d*y\ninit x=.3,y=.3\ndone\n"));
+        let equilibria = folder.json("equilibria model.ode --along d=0.1:0.9 --at 0.5");
+        let point = points(&equilibria).iter().find(|point| number(&point["value"]) == 0.5).unwrap();
+        let x = 0.5_f64.powf(1.0 / exponent);
+        let y = x * (1.0 - x) / x.powf(exponent);
+        let found = [number(&point["state"]["x"]), number(&point["state"]["y"])];
+        assert!((found[0] - x).abs() < 1e-10 && (found[1] - y).abs() < 1e-10, "{law}: {found:?}");
+    }
+}
+
+#[test]
+fn a_field_that_is_linear_at_its_hopf_point_has_the_first_lyapunov_coefficient_zero() {
+    // At mu = 0 all second and third derivatives vanish, by hand.
+    for field in ["mu*(1-x^2)*y-x", "mu*y-x+mu*x^2", "mu*y-x+mu*x*y-mu^3*y^3"] {
+        let folder = folder(&format!("par mu=-.1\nx'=y\ny'={field}\ninit x=0,y=0\ndone\n"));
+        let equilibria = folder.json("equilibria model.ode --along mu=-1:1");
+        let hopf = points(&equilibria).iter().find(|point| point["label"] == "HB1").unwrap();
+        let form = &hopf["special"];
+        let [value, error] = ["first_lyapunov", "first_lyapunov_error"].map(|name| number(&form[name]));
+        assert!(value.abs() <= error && error < 1e-12, "{field}: {form}");
+        assert_eq!(form["criticality"], "degenerate", "{field}");
+    }
+}
+
+#[test]
+fn where_several_pairs_cross_at_once_an_equilibrium_is_not_called_stable() {
+    // Two uncoupled neurons: by hand v^2 = 1 - 0.064 at their Hopf points, and two pairs are on the axis there.
+    let folder = folder(
+        "par i=.2\nv'=v-v^3/3-w+i\nw'=.08*(v+.7-.8*w)\nx'=x-x^3/3-y+i\ny'=.08*(x+.7-.8*y)\n\
+         init v=-1,w=-.4,x=-1,y=-.4\ndone\n",
+    );
+    let equilibria = folder.json("equilibria model.ode --along i=0:2");
+    let hopf: Vec<_> = points(&equilibria)
+        .iter()
+        .filter(|point| point["label"].as_str().is_some_and(|label| label.starts_with("HB")))
+        .collect();
+    assert_eq!(hopf.len(), 2);
+    for point in hopf {
+        assert!((number(&point["state"]["v"]).abs() - 0.936_f64.sqrt()).abs() < 1e-10);
+        assert!(point["stable"].is_null(), "{}", point["stable"]);
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::curve::{Birth, CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
-use super::extrema::{Extremes, extremes};
+use super::extrema::{Extremes, extremes, ways_between_jumps};
 use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::special;
@@ -293,25 +293,28 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn hindrance(&mut self, solution: &Solution<CycleInspection>) -> Option<CycleEnd> {
-        let of_state = |extremes: &Extremes| {
-            let (one, other) = (extremes.smallest.abs(), extremes.largest.abs());
-            let passes = extremes.smallest <= 0.0 && extremes.largest >= 0.0;
-            // One that passes zero is resolved as well as its size.
-            (!passes || one.min(other) < UNRESOLVED_PART * one.max(other))
-                .then_some([one.min(other), one.max(other)])
-        };
-        let names = self.collocation.problem.field.state_names();
-        let near = names.into_iter().zip(solution.point.extremes.iter().map(of_state));
-        let near = near.filter_map(|(name, sizes)| Some((name, sizes?)));
-        let (state, [smallest, largest]) =
-            near.min_by(|(_, one), (_, other)| (one[0] / one[1]).total_cmp(&(other[0] / other[1])))?;
+        let states = self.collocation.problem.field.state_names();
         let parameter = *solution.unknown.last()?;
-        (smallest < UNRESOLVED_PART * largest).then_some(CycleEnd::NearZero {
-            state,
-            smallest,
-            largest,
-            parameter,
-        })
+        let unresolved = states.into_iter().enumerate().filter_map(|(index, state)| {
+            let Extremes { smallest, largest } = solution.point.extremes[index];
+            let size = smallest.abs().max(largest.abs());
+            let unresolved = |[low, high]: &[f64; 2]| {
+                // What an event sets to zero is not followed there, and what is rounding all the way means nothing.
+                let is_followed = *high > UNRESOLVED_PART * size;
+                is_followed && *low < UNRESOLVED_PART * *high
+            };
+            let mut ways = ways_between_jumps(&self.collocation, &solution.unknown, index);
+            if ways.is_empty() {
+                // One that passes zero is resolved as well as its size.
+                ways.push([smallest.abs().min(largest.abs()), size]);
+            }
+            let way = ways.into_iter().filter(unresolved);
+            way.min_by(|one, other| (one[0] / one[1]).total_cmp(&(other[0] / other[1])))
+                .map(|way| (state, way))
+        });
+        let (state, [smallest, largest]) =
+            unresolved.min_by(|(_, one), (_, other)| (one[0] / one[1]).total_cmp(&(other[0] / other[1])))?;
+        Some(CycleEnd::NearZero { state, smallest, largest, parameter })
     }
 
     fn signature(&self, unknown: &[f64]) -> Vec<(f64, f64)> {

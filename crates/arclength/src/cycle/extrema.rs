@@ -34,18 +34,11 @@ struct Jump {
     behind: Vec<f64>,
 }
 
-/// Extremes of every component among the first `count`.
-pub(crate) fn extremes<P: BoundaryValueEquations>(
-    collocation: &Collocation<P>,
-    unknown: &[f64],
-    count: usize,
-) -> Vec<Extremes> {
+/// The jumps along a cycle.
+fn jumps_of<P: BoundaryValueEquations>(collocation: &Collocation<P>, unknown: &[f64]) -> Vec<Jump> {
     let n = collocation.problem.dimension();
-    let cycle = collocation.polynomials(unknown);
-    let times = cycle.node_times();
-    let mut values = vec![0.0; times.len()];
     let scalars = &unknown[unknown.len() - collocation.problem.scalars()..];
-    let jumps: Vec<Jump> = collocation
+    collocation
         .jump_points()
         .into_iter()
         .enumerate()
@@ -58,7 +51,48 @@ pub(crate) fn extremes<P: BoundaryValueEquations>(
                 collocation.problem.at_jump(index, &before, scalars).unwrap_or([before, behind]);
             Jump { node, before, behind }
         })
+        .collect()
+}
+
+/// The absolute values nearest to zero and farthest from it of one component on each of the ways that it goes without a jump of its
+/// own. The value to which a jump sets it, zero as a rule, is exact and nothing to come near to. None where it does not jump.
+pub(crate) fn ways_between_jumps<P: BoundaryValueEquations>(
+    collocation: &Collocation<P>,
+    unknown: &[f64],
+    component: usize,
+) -> Vec<[f64; 2]> {
+    let n = collocation.problem.dimension();
+    let values: Vec<f64> = unknown[..unknown.len() - collocation.problem.scalars()]
+        .chunks_exact(n)
+        .map(|state| state[component])
         .collect();
+    let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+    let mut jumps = jumps_of(collocation, unknown);
+    jumps.retain(|jump| (jump.behind[component] - jump.before[component]).abs() > JUMP * size);
+    let way = |from: &Jump, to: &Jump| {
+        // The last way goes on at the start of the unit time. The node behind a jump misses it as its mesh point does.
+        let before = if to.node > from.node { to.node } else { to.node + values.len() };
+        let between = (from.node + 1..before).map(|node| values[node % values.len()]);
+        let (low, high) = between
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+        let ends = from.behind[component].abs().max(to.before[component].abs());
+        [low.abs().min(high.abs()), low.abs().max(high.abs()).max(ends)]
+    };
+    let following = jumps.iter().cycle().skip(1);
+    jumps.iter().zip(following).map(|(from, to)| way(from, to)).collect()
+}
+
+/// Extremes of every component among the first `count`.
+pub(crate) fn extremes<P: BoundaryValueEquations>(
+    collocation: &Collocation<P>,
+    unknown: &[f64],
+    count: usize,
+) -> Vec<Extremes> {
+    let n = collocation.problem.dimension();
+    let cycle = collocation.polynomials(unknown);
+    let times = cycle.node_times();
+    let mut values = vec![0.0; times.len()];
+    let jumps = jumps_of(collocation, unknown);
     (0..count)
         .map(|component| {
             for (value, state) in values.iter_mut().zip(unknown.chunks_exact(n)) {

@@ -62,17 +62,27 @@ impl HopfPoint {
         let active = problem.active[0];
         let local = CriticalPair::at(problem.field, &state, &parameters, frequency, scales)?;
         let first = local.first_lyapunov();
+        let equilibrium =
+            UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
+        let near = |state: &[f64], parameters: &[f64]| {
+            CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()
+        };
         let first_lyapunov_error = first.and_then(|(value, _)| {
-            let equilibrium =
-                UncertainEquilibrium::on_branch(problem, (&state, &parameters), scales, location_error);
             let [error] = coefficient_error::errors([value], equilibrium, |state, parameters| {
-                let near = CriticalPair::at(problem.field, state, parameters, frequency, scales).ok()?;
-                near.first_lyapunov().map(|(value, _)| [value])
+                near(state, parameters)?.first_lyapunov().map(|(value, _)| [value])
             })?;
             Some(error)
         });
-        // Next to a zero eigenvalue or a pair at twice the frequency the coefficient has a pole, at which not even its size is known.
-        let first = first.filter(|(_, size)| first_lyapunov_error.is_none_or(|error| error < *size));
+        // Next to a zero eigenvalue or a pair at twice the frequency the coefficient has a pole, at which not even its size is known. Where
+        // the field itself is linear but for rounding its size is no better known, and it is zero within its error.
+        let first = first.filter(|(_, size)| {
+            first_lyapunov_error.is_none_or(|error| error < *size)
+                || local.responses().is_some_and(|known| {
+                    let there = |state: &[f64], parameters: &[f64]| near(state, parameters)?.responses();
+                    let errors = coefficient_error::errors(known, equilibrium, there);
+                    errors.is_some_and(|errors| errors.iter().zip(&known).all(|(error, size)| error < size))
+                })
+        });
         let first_lyapunov_error = first.and(first_lyapunov_error);
         let criticality = match (first, first_lyapunov_error) {
             (Some((value, size)), Some(error)) if value.abs() > error.max(DEGENERATE * size) => {
@@ -210,6 +220,20 @@ impl<'a> CriticalPair<'a> {
             return None;
         }
         Some((0..n).map(|index| Complex64::new(vector[index], vector[half + index])).collect())
+    }
+
+    /// Sizes of what the resolvents of the first Lyapunov coefficient make of a vector in no special direction: large next to its poles.
+    fn responses(&self) -> Option<[f64; 2]> {
+        let generic = self.scales.iter().enumerate();
+        let generic: Vec<Complex64> = generic
+            .map(|(index, scale)| Complex64::from(self.frequency * scale * (1.0 + (index as f64).sin())))
+            .collect();
+        let size = |shift: f64| {
+            let response = self.resolvent(Complex64::new(0.0, shift), &generic)?;
+            let squares = response.iter().zip(&self.scales).map(|(entry, scale)| (entry / scale).norm_sqr());
+            Some(squares.sum::<f64>().sqrt())
+        };
+        Some([size(0.0)?, size(2.0 * self.frequency)?])
     }
 
     /// First Lyapunov coefficient (Kuznetsov, *Elements of Applied Bifurcation Theory*, equation 5.34) and the sum of

@@ -61,11 +61,11 @@ pub(crate) fn find_erased(
     check_length("start", start, field.dimension(), "the dimension of the field")?;
     check_length("parameters", parameters, field.parameter_names().len(), "the number of parameters")?;
     let mut search = Search::new(EquilibriumProblem::new(field, parameters, &[]), start);
-    match search.damped_newton(start) {
+    match search.regular_newton(start) {
         Ok(state) => Ok(state),
         Err(cause) => search
             .pseudo_transient(start)
-            .and_then(|near| search.damped_newton(&near))
+            .and_then(|near| search.regular_newton(&near))
             .map_err(|_| Error::NotFound { sought: "equilibrium", cause }),
     }
 }
@@ -113,8 +113,8 @@ impl<'a> Search<'a> {
         let mut trial = vec![0.0; n];
         let mut damping = 1.0_f64;
         let mut best: Option<(f64, Vec<f64>)> = None;
+        self.linearize(&state)?;
         for _ in 0..MOST_UPDATES {
-            self.linearize(&state)?;
             update.copy_from_slice(&self.residual);
             if update.iter().all(|&entry| entry == 0.0) {
                 return Ok(state);
@@ -138,6 +138,7 @@ impl<'a> Search<'a> {
                 if size < ROUNDING || stagnates {
                     break;
                 }
+                self.linearize(&state)?;
                 continue;
             }
             loop {
@@ -147,15 +148,20 @@ impl<'a> Search<'a> {
                 self.problem.evaluate(&trial, &mut simplified);
                 self.lu.solve(&mut simplified);
                 let simplified_size = crate::algebraic::length(&simplified, &scales);
-                if simplified_size <= (1.0 - 0.25 * damping) * size {
+                let is_smaller = simplified_size <= (1.0 - 0.25 * damping) * size;
+                // A step that leaves the domain of the derivatives is as bad as one that leaves that of the field.
+                let cause =
+                    if is_smaller { self.linearize(&trial) } else { Err(CorrectionFailure::Diverged) };
+                if cause.is_ok() {
                     std::mem::swap(&mut state, &mut trial);
                     damping = (2.0 * damping).min(1.0);
                     break;
                 }
                 damping *= 0.5;
                 if damping < SMALLEST_DAMPING {
+                    let cause = cause.err().unwrap_or(CorrectionFailure::Diverged);
                     return Err(if simplified_size.is_finite() {
-                        CorrectionFailure::Diverged
+                        cause
                     } else {
                         CorrectionFailure::NotFinite
                     });
@@ -163,6 +169,22 @@ impl<'a> Search<'a> {
             }
         }
         best.map(|(_, state)| state).ok_or(CorrectionFailure::Diverged)
+    }
+
+    /// As [`damped_newton`](Self::damped_newton), and the field has derivatives at the equilibrium itself: where a state is zero but
+    /// for rounding, as at the end of the domain of a root, it has them beside it whether or not there are any.
+    fn regular_newton(&mut self, start: &[f64]) -> Result<Vec<f64>, CorrectionFailure> {
+        let state = self.damped_newton(start)?;
+        let is_rounding = |(value, floor): (&f64, &f64)| value.abs() < ROUNDING * floor;
+        if state.iter().zip(&self.floors).any(is_rounding) {
+            let exact: Vec<f64> = state
+                .iter()
+                .zip(&self.floors)
+                .map(|pair| if is_rounding(pair) { 0.0 } else { *pair.0 })
+                .collect();
+            self.linearize(&exact)?;
+        }
+        Ok(state)
     }
 
     /// Goes with the flow until the field is small.
