@@ -1,24 +1,14 @@
 //! The diagram of shimmy: largest and smallest caster angle over the parameter, beside the uniform motion.
 
-<<<<<<< HEAD
-use super::point::{GRAZING, ShimmyPointResult, what};
-=======
 use super::drawn::DrawnPoint;
-use super::point::GRAZING;
->>>>>>> page
+use super::point::{GRAZING, what};
 use crate::along::drawn_as;
 use crate::uniform_curve::uniform_motion;
 use crate::{axis_label, description};
 use arclength_analysis::labels::kind;
 use kingpin::branches::Along;
-<<<<<<< HEAD
 use kingpin::{Tyre, Wheel};
-use kingpin_figure::{
-    Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, Stability, palette,
-};
-=======
 use kingpin_figure::{Axis, Branch, Figure, Legend, Marker, MarkerShape, Panel, PointLabel, palette};
->>>>>>> page
 
 /// Draws the branches, stable parts solid and the others dashed, with labelled points.
 pub(super) fn diagram(wheel: &Wheel, along: &Along, points: &[DrawnPoint]) -> Figure {

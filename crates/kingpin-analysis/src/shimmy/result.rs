@@ -63,7 +63,7 @@ impl ShimmyBranch {
             let [(one, _), (two, _)] = pair else { return None };
             let part =
                 if one.value == two.value { 0.0 } else { (value - one.value) / (two.value - one.value) };
-            (0.0..=1.0).contains(&part).then(|| one.period + part * (two.period - one.period))
+            (0.0..=1.0).contains(&part).then_some(one.period + part * (two.period - one.period))
         })
     }
 
