@@ -102,6 +102,19 @@ init v=-65,m=.052,h=.596,n=.317
 done
 ";
 
+/// Three equal cells that inhibit each other.
+const THREE_CELLS: &str = "par i=0.5,g=0.05,ep=0.2
+s(v)=1/(1+exp(-5*v))
+v1'=v1-v1^3/3-w1+i-g*(s(v2)+s(v3))
+w1'=ep*(v1+0.7-0.8*w1)
+v2'=v2-v2^3/3-w2+i-g*(s(v1)+s(v3))
+w2'=ep*(v2+0.7-0.8*w2)
+v3'=v3-v3^3/3-w3+i-g*(s(v1)+s(v2))
+w3'=ep*(v3+0.7-0.8*w3)
+init v1=-1,w1=-0.5,v2=-1,w2=-0.5,v3=-1,w3=-0.5
+done
+";
+
 pub(crate) fn folder(text: &str) -> Folder {
     let folder = Folder::with("lure.ode");
     std::fs::write(folder.0.path().join("model.ode"), text).unwrap();
@@ -288,5 +301,25 @@ fn two_torus_bifurcations_that_undo_each_other() {
         for (label, value) in [("NS1", first), ("NS2", second)] {
             assert!((number(&labelled(&cycles, label)["value"]) - value).abs() < 1e-8, "{first} {gap}");
         }
+    }
+}
+
+/// Multipliers that symmetry makes double pass -1 and then 1 within one step: between .3833403 and .383381 the cycles are stable (by the
+/// variational equation, SciPy). Neither place satisfies a defining system of one multiplier; both are told.
+#[test]
+fn double_multipliers_that_pass_the_circle_twice_in_a_step_are_told() {
+    let folder = folder(THREE_CELLS);
+    folder.succeed("equilibria model.ode --along i=0:2 -q -o equilibria.json");
+    folder.succeed("cycles --from equilibria.json:HB2 --along i=0:2 -q -o cycles.json");
+    let result: Value =
+        serde_json::from_slice(&std::fs::read(folder.0.path().join("cycles.json")).unwrap()).unwrap();
+    let told: Vec<f64> = result["unlocated"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|change| change["between"][0].as_f64().unwrap())
+        .collect();
+    for place in [0.3833403, 0.383381] {
+        assert!(told.iter().any(|value| (value - place).abs() < 1e-6), "{place}: {told:?}");
     }
 }

@@ -157,9 +157,14 @@ impl<'s, C: Curve> Scan<'s, C> {
         // What changes its sign may be something else, such as a pair of real exponents with the sum zero, and hide what crosses.
         let (_, new) = self.found.split_at(known.0);
         if !self.explain(new, before, after) {
+            let is_silent = new.is_empty();
             let unlocated = self.unlocated.split_off(known.1);
             // Points that are found again are told by their places.
             if !self.divide([before, after], share, (0.5, self.settings.smallest_part))? {
+                if is_silent && unlocated.is_empty() {
+                    // What changes the test function is something else, and the count changes all the same.
+                    return self.locate_by_count(before, after);
+                }
                 self.unlocated.extend(unlocated);
             }
         }

@@ -10,9 +10,13 @@ use super::node::Node;
 use super::path::{Path, Suspicion, partners};
 use crate::continuation::{Curve, Settings};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Exponents of multipliers below this at both ends are those of directions that die out in one period.
 const DEAD: f64 = -20.0;
+/// Exponents of multipliers below this are far inside the circle, and the angle in rad by which others turn in a step at most.
+const INSIDE: f64 = -1.0;
+const FARTHEST_TURN: f64 = 2.0;
 /// A quantity that changes by less than this part of itself in a step does not pass zero unseen.
 const PLAUSIBLE: f64 = 1.0;
 
@@ -25,7 +29,7 @@ pub(super) fn suspicious<C: Curve>(
     memory: &Memory,
     (most_crossings, settings): ([usize; 2], &Settings),
 ) -> Option<Suspicion> {
-    turns_twice(curve, before, after, length).or_else(|| {
+    turns_twice(curve, before, after, length).or_else(|| turns_around(before, after)).or_else(|| {
         let rates_cost_nothing = curve.exponent_rates(&before.solution).is_some();
         let (known, unknown): (Vec<usize>, Vec<usize>) =
             own_tests(curve).into_iter().partition(|&index| before.known_rate(curve, index).is_some());
@@ -41,6 +45,22 @@ pub(super) fn suspicious<C: Curve>(
         exponents_hide(curve, before, after, length, (most_crossings, settings))
             .or_else(|| tests_hide(curve, before, after, length, (&own, settings)))
     })
+}
+
+/// Whether a multiplier turns so far around the circle that it is not known which became which: real ones of both signs have been a pair in
+/// between, which may have been inside the circle.
+fn turns_around<C: Curve>(before: &Node<C>, after: &Node<C>) -> Option<Suspicion> {
+    let (one, other) = (&before.spectrum, &after.spectrum);
+    if !one.is_periodic {
+        return None;
+    }
+    let indices = partners(one, other, None);
+    let turned = one.exponents.iter().zip(indices).any(|(here, partner)| {
+        let there = other.exponents[partner];
+        let turn = (there.im - here.im).rem_euclid(TAU);
+        here.re.min(there.re) > INSIDE && turn.min(TAU - turn) > FARTHEST_TURN
+    });
+    turned.then(|| Suspicion::at(0.5))
 }
 
 /// Test functions that are not made of exponents.
