@@ -1,6 +1,7 @@
 //! Large shimmy along a parameter: periodic motions of a wheel that may slide, each with its phases of rolling and sliding.
 
 mod drawn;
+mod drawn_point;
 mod picture;
 mod point;
 mod request;

@@ -1,6 +1,6 @@
 //! The diagram of shimmy: largest and smallest caster angle over the parameter, beside the uniform motion.
 
-use super::drawn::DrawnPoint;
+use super::drawn_point::DrawnPoint;
 use super::point::{GRAZING, what};
 use crate::along::drawn_as;
 use crate::uniform_curve::uniform_motion;

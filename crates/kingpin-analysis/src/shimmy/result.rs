@@ -1,6 +1,6 @@
 //! Branches of shimmy as a result.
 
-use super::drawn::DrawnPoint;
+use super::drawn_point::DrawnPoint;
 use super::picture;
 use super::point::{GRAZING, Role, ShimmyPointResult, ascending, at_motion, at_smooth_cycle, what};
 use super::search::Attempt;
