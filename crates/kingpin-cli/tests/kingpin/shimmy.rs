@@ -139,9 +139,13 @@ fn shimmy_with_a_tyre_is_what_a_simulation_settles_on() {
     let folder = Folder::new();
     let wheel = format!("--wheel {WHEELS}/nosegear.toml -s tyre=brush -s sigma=0.3 -s a=0.1 -s C_alpha=1e5");
     let result = folder.json(&format!("shimmy {wheel} --along v=28:32 --at 30"));
-    let point = points(&result).iter().find(|point| point["label"] == "AT1").unwrap();
+    let stable = |point: &&Value| point["value"] == 30.0 && point["stable"] == true;
+    let found: Vec<&Value> = points(&result).iter().filter(stable).collect();
+    let amplitudes: Vec<f64> = found.iter().map(|point| point["psi_max"].as_f64().unwrap()).collect();
+    assert!(amplitudes.len() == 2 && amplitudes[0] > 1.0, "{amplitudes:?}");
+    let point = found[1];
     let number = |field: &str| point[field].as_f64().unwrap();
-    assert_eq!((&point["stable"], &point["phases"][0]["contact"]), (&true.into(), &"rolling".into()));
+    assert_eq!(point["phases"][0]["contact"], "rolling");
     assert_eq!(point["state"].as_object().unwrap().len(), 7);
 
     let history =
