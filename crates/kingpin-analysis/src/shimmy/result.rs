@@ -45,12 +45,7 @@ impl ShimmyBranch {
                 .map(|(point, _)| [(along.key.clone(), point.value), ("period".to_owned(), point.period)]);
             NamedNumbers(values.into_iter().flatten().collect())
         };
-        let lasts = [last(points.first()), last(points.last())];
-        let mut index = 0;
-        let mut ends = lasts.map(|last| {
-            index += 1;
-            end(index - 1, last)
-        });
+        let mut ends = [end(0, last(points.first())), end(1, last(points.last()))];
         if ascending(&mut points) {
             ends.reverse();
         }

@@ -46,7 +46,7 @@ impl Default for SlidingMotionSearch {
 }
 
 impl SlidingMotionSearch {
-    fn check(&self) -> Result<(), SimulationError> {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
         for (name, value) in [("settling_time", self.settling_time), ("longest_period", self.longest_period)]
         {
             if !(value > 0.0 && value.is_finite()) {
@@ -90,7 +90,6 @@ impl Wheel {
         control: &Control<'_>,
     ) -> Result<PeriodicSliding, ShimmyError> {
         search.check()?;
-        self.sliding()?;
         let (settling, control) = (control.part(0.0..PART_OF_SETTLING), &control.quiet());
         let sliding = self.sliding()?.tolerance(SETTLING_TOLERANCE);
         let initial = sliding.rolling_state(initial);

@@ -42,6 +42,7 @@ impl Wheel {
         search: &SlidingMotionSearch,
         control: &Control<'_>,
     ) -> Result<Orbit, ShimmyError> {
+        search.check()?;
         let damped = self.damped_to_settle()?;
         let swinging = damped.swinging(SETTLING_TOLERANCE)?;
         let start = swinging.free_state(&damped.perturbed_states(&[(kick.state, kick.change)])?);
@@ -57,7 +58,7 @@ impl Wheel {
         let (mut largest, mut farthest) = (0.0, Vec::new());
         let reached = swinging.follow(&settled.state, window, &times, control, |stretch| {
             for (_, free) in stretch.solution.samples() {
-                let [angle, ..] = swinging.angle(stretch.friction_moment, free);
+                let angle = swinging.reduced(free)[2];
                 (low, high) = (low.min(angle), high.max(angle));
                 let deflection = free.last().map_or(0.0, |deflection| deflection.abs());
                 if deflection > largest {
