@@ -6,7 +6,7 @@ use crate::stored_model::StoredModel;
 use arclength::equilibrium::WithTotals;
 use arclength_ode::Model;
 use kingpin_report::NamedNumbers;
-use kingpin_report::numbers::readable;
+use kingpin_report::numbers::{readable, significant};
 use std::path::Path;
 
 /// A model with a value for every parameter and an initial value for every state.
@@ -60,6 +60,19 @@ impl ChosenModel {
         self.model.freeze(time);
         self.stored.frozen_time = Some(time);
         Ok(())
+    }
+
+    /// Takes the model as its branches are followed, with what switches on the one parameter that varies; what to say of that.
+    pub fn prepare_for_continuation(&mut self, varying: Option<usize>) -> Option<String> {
+        let (model, change) = self.model.for_continuation(&self.parameters, varying);
+        self.model = model;
+        change.map(|change| {
+            format!(
+                "the guards against 0/0 in the model are left out where branches are followed: the quotients are smooth, and differ from \
+                 what the guards give by a part of {} at most",
+                significant(change, 2)
+            )
+        })
     }
 
     /// The field that is continued: that of the model with the totals that it conserves at their values in the state, while the

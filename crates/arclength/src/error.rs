@@ -76,6 +76,23 @@ pub enum Error {
         /// The equilibrium.
         equilibrium: Vec<f64>,
     },
+    /// A start of a branch of cycles has one more multiplier at one than that of time, and Newton's method does not converge.
+    #[error(
+        "no single cycle is found from the start given, which has {count} more {} within {distance} of one than that of time: it \
+         may belong to a family of cycles for one and the same value of the parameter. Where a symmetry turns or shifts the \
+         states, take coordinates that it does not move, such as moduli and differences of phases; where a quantity is conserved, \
+         put it into a parameter",
+        if *count == 1 { "multiplier" } else { "multipliers" }
+    )]
+    FamilyOfCycles {
+        /// Why the corrector gave up.
+        #[source]
+        cause: CorrectionFailure,
+        /// How many multipliers other than the trivial one are near one.
+        count: usize,
+        /// How near they are.
+        distance: f64,
+    },
     /// A motion could not be computed.
     #[error("the motion that the cycle is to be taken from cannot be computed")]
     Motion(#[from] IntegrationError),

@@ -9,7 +9,7 @@ use crate::found_point::FoundPoint;
 use crate::interval::{Along, Interval};
 use crate::labels::kind;
 use crate::model::ChosenModel;
-use crate::model_request::{ModelRequest, ModelSource};
+use crate::model_request::{ModelRequest, ModelSource, OpenedModel};
 use crate::monitor::{CycleMonitor, Monitored};
 use crate::orbit_file::read_orbit_among;
 use crate::point_reference::PointReference;
@@ -168,34 +168,37 @@ impl CyclesRequest {
 
     /// Samples of an orbit of a model.
     fn open_samples(&self, samples: &Path, model: &ModelSource, files: &dyn Files) -> Result<Opened, Error> {
-        let opened = ModelRequest::new(model.clone()).open_among(files)?;
+        let OpenedModel { chosen, mut warnings, .. } = ModelRequest::new(model.clone()).open_among(files)?;
         let name = samples.file_name().unwrap_or_default().to_string_lossy();
-        let mut chosen = self.change(opened.chosen, &name)?;
+        let mut chosen = self.change(chosen, &name)?;
+        warnings.extend(chosen.prepare_for_continuation(None));
         let orbit = read_orbit_among(files, samples, chosen.model.states())?;
         chosen.start = orbit.state_at(0.0);
         Ok(Opened {
             chosen,
             start: CycleStart::Orbit(orbit),
             origin: Origin { label: None, how: format!("the orbit in {name}") },
-            warnings: opened.warnings,
+            warnings,
         })
     }
 
     /// A labelled point with its model.
     fn open_point(&self, reference: &PointReference, files: &dyn Files) -> Result<Opened, Error> {
-        let point = LabelledPoint::read(reference, files)?;
-        let chosen = self.change(point.chosen.clone(), &point.label)?;
+        let mut point = LabelledPoint::read(reference, files)?;
+        let mut chosen = self.change(point.chosen.clone(), &point.label)?;
+        let mut warnings = Vec::from_iter(chosen.prepare_for_continuation(None));
+        point.chosen.model = chosen.model.clone();
         let (start, how) = self.start(reference, &point, &chosen.parameters)?;
         let itself =
             matches!(start, CycleStart::Orbit(_)) && matches!(point.solution, LabelledSolution::Cycle { .. });
-        let warnings = (itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC")).then(|| {
-            format!(
+        if itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC") {
+            warnings.push(format!(
                 "the branch of the cycle {} itself is followed, not the one that bifurcates there",
                 point.label
-            )
-        });
+            ));
+        }
         let origin = Origin::labelled(&point.label, how);
-        Ok(Opened { chosen, start, origin, warnings: warnings.into_iter().collect() })
+        Ok(Opened { chosen, start, origin, warnings })
     }
 
     /// What the branch starts from at a labelled point, in words too.

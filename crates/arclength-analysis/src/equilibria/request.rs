@@ -77,10 +77,11 @@ impl EquilibriaRequest {
     /// Those of [`validate`](Self::validate).
     pub fn validate_among(&self, files: &dyn Files) -> Result<EquilibriaAnalysis, Error> {
         self.steps.check()?;
-        let OpenedModel { chosen, point, mut warnings } = self.model.open_among(files)?;
+        let OpenedModel { mut chosen, point, mut warnings } = self.model.open_among(files)?;
         warnings.extend(slowness(chosen.model.states().len()));
         let along = chosen.interval(&self.along)?;
         let active = chosen.along(&["along"], &along)?;
+        warnings.extend(chosen.prepare_for_continuation(Some(active)));
         along.check_values(&self.at)?;
         if let Some(point) = &point {
             chosen.starts_within(&["along"], &along, &point.label)?;

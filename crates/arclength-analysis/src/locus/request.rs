@@ -115,7 +115,9 @@ impl LocusRequest {
     pub fn validate_among(&self, files: &dyn Files) -> Result<LocusAnalysis, Error> {
         self.steps.check()?;
         self.mesh.check()?;
-        let point = LabelledPoint::read(&self.from, files)?;
+        let mut point = LabelledPoint::read(&self.from, files)?;
+        // The branch on which the point was found has told of it.
+        let _told = point.chosen.prepare_for_continuation(None);
         let chosen = &point.chosen;
         let [first, second] = &self.plane;
         let active = [chosen.along(&["in"], first)?, chosen.along(&["in"], second)?];

@@ -155,3 +155,31 @@ fn what_events_set_to_zero_is_not_taken_for_a_state_that_double_precision_loses(
     let first = number(&points(&cycles)[0]["value"]);
     assert!((first - 72.0 / 35.0).abs() < 1e-5, "{first}");
 }
+
+/// A leaky neuron fires with the period ln(i/(i - 1)) until its equilibrium v = i comes to lie on the threshold. A thermostat does the same
+/// where its heater just reaches the upper temperature: .1 W + .1 (21 - 11.5/.7) with the wall at rest.
+#[test]
+fn periods_that_grow_without_bound_at_an_event() {
+    let neuron = "par i=2\nv'=i-v\nglobal 1 v-1 {v=0}\ndone\n";
+    let thermostat = "par kp=3\nx'=-.1*(x-5)-.1*(x-w)+kp*q\nw'=.05*(x-w)-.02*(w-5)\nq'=0\nglobal 1 {x-21} {q=0}\n\
+                      global -1 {x-19} {q=1}\ninit x=18,w=15,q=1\ndone\n";
+    let heater = 1.6 + 0.1 * (21.0 - 11.5 / 0.7);
+    for (text, along, place) in [(neuron, "i=.5:3", 1.0), (thermostat, "kp=2:6", heater)] {
+        let folder = folder(text);
+        folder.succeed("simulate model.ode --duration 400 -q -o motion.json");
+        let cycles = folder.json(&format!("cycles --from motion.json:END --along {along}"));
+        let end = &cycles["ends"][0];
+        let cause = end["cause"].as_str().unwrap();
+        assert!(cause.contains("comes to lie on the condition of event 1"), "{cause}");
+        let name = along.split_once('=').unwrap().0;
+        assert!((number(&end["last"][name]) - place).abs() < 1e-6, "{end}");
+        assert!(cycles.get("unlocated").is_none_or(|changes| changes.as_array().unwrap().is_empty()));
+        if text == neuron {
+            for point in points(&cycles) {
+                let drive = number(&point["value"]);
+                let error = number(&point["period"]) - (drive / (drive - 1.0)).ln();
+                assert!(error.abs() < 1e-6 * number(&point["period"]), "{drive}: {error}");
+            }
+        }
+    }
+}

@@ -1,5 +1,6 @@
 //! Oscillators that are linear piece by piece and jump at events or are switched by a clock; see `piecewise_linear`.
 
+use crate::found_by_users::{number, points};
 use crate::piecewise_linear::{check, grazes, located, settled};
 
 /// A forced mass that hits a stop. Beyond the second end lies the motion without impacts, which touches the stop where its amplitude
@@ -90,4 +91,22 @@ fn a_buck_converter() {
          30 0.4 12.1618064796045:12.0078053676231 0.621962270332911:0.477115733460819 0.4:0 -0.399273564997575 -1.70107648156236;",
     );
     located(&cycles, "PD1", 24.5165728285634);
+}
+
+/// A linear system of order three with a relay, whose cycle shrinks to its equilibrium at a = 1 while the period tends to zero. The periods
+/// are twice the times after which the piece of one sign takes a point of the border to its opposite (SciPy, matrix exponentials).
+#[test]
+fn a_relay_whose_cycle_shrinks_to_a_point() {
+    let text = "par k=1,a=.3\nx'=y\ny'=z\nz'=-z-2*y-x/2-k*sign(x+a*y)\ninit x=1\ndone\n";
+    let folder = settled(text, 100.0);
+    let cycles = folder.json("cycles --from h.json:END --along a=.1:2 --at .2,.5,.8");
+    for (value, period) in [(0.2, 4.0858403462674975), (0.5, 3.367965105963388), (0.8, 2.231624823289572)] {
+        let point = points(&cycles).iter().find(|point| point["value"] == value).unwrap();
+        assert!((number(&point["period"]) - period).abs() < 1e-8, "{value}: {}", point["period"]);
+        assert_eq!(point["stable"], true);
+    }
+    let end = &cycles["ends"][1];
+    assert!(end["cause"].as_str().unwrap().starts_with("the period tends to zero"), "{end}");
+    assert!((number(&end["last"]["a"]) - 1.0).abs() < 1e-6, "{end}");
+    assert!(cycles.get("unlocated").is_none_or(|changes| changes.as_array().unwrap().is_empty()));
 }

@@ -38,6 +38,20 @@ impl Operation {
         };
         list.into_iter().flatten()
     }
+
+    /// Whether it has a kink or jumps where something passes a value.
+    pub(crate) fn switches(self) -> bool {
+        use BinaryOperation as B;
+        use UnaryOperation as U;
+        match self {
+            Self::Unary(operation, _) => {
+                matches!(operation, U::AbsoluteValue | U::Sign | U::Heaviside | U::Floor | U::Ceiling)
+            }
+            Self::Binary(B::Modulo | B::Maximum | B::Minimum, ..) => true,
+            Self::Binary(operation, ..) => operation.is_comparison(),
+            _ => false,
+        }
+    }
 }
 
 /// A set of operations without duplicates.
@@ -63,6 +77,12 @@ impl Graph {
             }
         }
         needed
+    }
+
+    /// Whether something that some nodes are computed from switches.
+    pub(crate) fn any_switches(&self, nodes: &[NodeId]) -> bool {
+        let needed = self.needed_for(nodes.iter().copied());
+        self.operations.iter().zip(needed).any(|(operation, needed)| needed && operation.switches())
     }
 
     pub(crate) fn insert(&mut self, operation: Operation) -> NodeId {

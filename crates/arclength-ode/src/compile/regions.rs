@@ -18,20 +18,29 @@ pub(crate) struct Regions {
 }
 
 impl Regions {
-    /// Of a field, given by its nodes, with this many parameters; `None` where nothing switches on a state.
-    pub(crate) fn of(graph: &Graph, field: &[NodeId], parameters: usize) -> Option<Self> {
+    /// Of a field, given by its nodes, with this many parameters; `None` where nothing switches on a state, nor on the parameter that
+    /// varies, given by its number.
+    pub(crate) fn of(
+        graph: &Graph,
+        field: &[NodeId],
+        parameters: usize,
+        varying: Option<usize>,
+    ) -> Option<Self> {
         let all = graph.operations();
         let used = graph.needed_for(field.iter().copied());
         let mut rewriting = Rewriting {
             graph: Graph::default(),
             parameters,
             switches: Vec::new(),
-            of_state: vec![false; all.len()],
+            varies: vec![false; all.len()],
             image: vec![0; all.len()],
         };
         for (index, operation) in all.iter().enumerate() {
-            rewriting.of_state[index] = matches!(operation, Operation::State(_))
-                || operation.operands().any(|operand| rewriting.of_state[operand as usize]);
+            rewriting.varies[index] = match operation {
+                Operation::State(_) => true,
+                Operation::Parameter(parameter) => varying == Some(*parameter as usize),
+                _ => operation.operands().any(|operand| rewriting.varies[operand as usize]),
+            };
             if used[index] {
                 rewriting.image[index] = rewriting.rewritten(*operation);
             }
@@ -48,7 +57,8 @@ struct Rewriting {
     graph: Graph,
     parameters: usize,
     switches: Vec<(NodeId, Threshold)>,
-    of_state: Vec<bool>,
+    /// Whether a node depends on a state, or on the parameter that varies.
+    varies: Vec<bool>,
     /// What every node has become.
     image: Vec<NodeId>,
 }
@@ -58,7 +68,7 @@ impl Rewriting {
         use BinaryOperation as B;
         use UnaryOperation as U;
         let image = |node: NodeId| self.image[node as usize];
-        let depends = operation.operands().any(|operand| self.of_state[operand as usize]);
+        let depends = operation.operands().any(|operand| self.varies[operand as usize]);
         match operation {
             Operation::Unary(U::AbsoluteValue, a) if depends => {
                 let a = image(a);

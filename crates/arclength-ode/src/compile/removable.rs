@@ -125,7 +125,7 @@ impl Graph {
     }
 
     /// The number that one node is times another, both sums of multiples of the same nodes.
-    fn multiple(&self, one: NodeId, other: NodeId) -> Option<f64> {
+    pub(super) fn multiple(&self, one: NodeId, other: NodeId) -> Option<f64> {
         let (one, other) = (self.sum(one), self.sum(other));
         if one.len() != other.len() {
             return None;
@@ -138,7 +138,7 @@ impl Graph {
     }
 
     /// A node as a sum of multiples of nodes; the number alone belongs to none.
-    fn sum(&self, node: NodeId) -> BTreeMap<Option<NodeId>, f64> {
+    pub(super) fn sum(&self, node: NodeId) -> BTreeMap<Option<NodeId>, f64> {
         let mut sum = BTreeMap::new();
         let mut waiting = vec![(node, 1.0)];
         while let Some((node, factor)) = waiting.pop() {

@@ -1,7 +1,7 @@
 //! Makes a model of its text.
 
 use super::{Model, NamedSet};
-use crate::compile::{Graph, Lowering, NodeId, Regions, Scope, Symbol};
+use crate::compile::{Graph, Lowering, NodeId, Regions, Scope, Symbol, Unguarded};
 use crate::declarations::{Declarations, EventDefinition, InitialValue, SetDefinition};
 use crate::error::{OdeError, Place, Span, Warning};
 use crate::event::{Action, Event};
@@ -35,6 +35,33 @@ impl Model {
     }
 }
 
+/// What replaces the field of a model where a branch is followed.
+pub(super) struct Continued {
+    pub field: Tape,
+    pub regions: Option<Tape>,
+    pub thresholds: Vec<Threshold>,
+    /// The largest relative change of a quotient whose guard was left out.
+    pub change: Option<f64>,
+}
+
+impl Continued {
+    /// Of the model of a text at these parameters, with what switches on the parameter that varies.
+    pub(super) fn read(source: &str, parameters: &[f64], varying: Option<usize>) -> Result<Self, OdeError> {
+        let declarations = Declarations::read(source)?;
+        let mut lowering = Lowering::new(&declarations.symbols);
+        let lowered = Lowered::of(&declarations, &mut lowering)?;
+        let unguarded = Unguarded::of(&lowering.graph, &lowered.field, parameters);
+        let (graph, nodes) = match &unguarded {
+            Some(Unguarded { graph, field, .. }) => (graph, field),
+            None => (&lowering.graph, &lowered.field),
+        };
+        let compiler = Compiler::of(&declarations, graph);
+        let (regions, thresholds) = compiler.regions(nodes, varying)?;
+        let change = unguarded.as_ref().map(|unguarded| unguarded.change);
+        Ok(Self { field: compiler.of_motion(nodes)?, regions, thresholds, change })
+    }
+}
+
 fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
     let mut declarations = Declarations::read(source)?;
     if declarations.equations.is_empty() {
@@ -42,13 +69,9 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
     }
     let mut lowering = Lowering::new(&declarations.symbols);
     let lowered = Lowered::of(&declarations, &mut lowering)?;
-    let compiler = Compiler {
-        graph: &lowering.graph,
-        states: declarations.equations.len(),
-        parameters: declarations.parameters.len(),
-        first: declarations.symbols.states[0].span,
-    };
-    let (regions, thresholds) = compiler.regions(&lowered.field)?;
+    let compiler = Compiler::of(&declarations, &lowering.graph);
+    let (regions, thresholds) = compiler.regions(&lowered.field, None)?;
+    let has_switches = lowering.graph.any_switches(&lowered.field);
     let switches = TimeSwitches::of(&lowering.graph, &lowered.field, &lowered.conditions);
     let events = compiler.events(&declarations.events, &lowered, source_lines)?;
     let field = compiler.of_motion(&lowered.field)?;
@@ -98,6 +121,7 @@ fn read(source: &str, source_lines: &[&str]) -> Result<Model, OdeError> {
         field,
         regions,
         thresholds,
+        has_switches,
         events,
         auxiliary,
         derivation,
@@ -229,7 +253,16 @@ struct Compiler<'a> {
     first: Span,
 }
 
-impl Compiler<'_> {
+impl<'a> Compiler<'a> {
+    fn of(declarations: &Declarations, graph: &'a Graph) -> Self {
+        Self {
+            graph,
+            states: declarations.equations.len(),
+            parameters: declarations.parameters.len(),
+            first: declarations.symbols.states[0].span,
+        }
+    }
+
     /// Of what depends on time, state and parameters.
     fn of_motion(&self, results: &[NodeId]) -> Result<Tape, OdeError> {
         self.tape(self.graph, results, self.states, self.parameters)
@@ -254,10 +287,14 @@ impl Compiler<'_> {
         })
     }
 
-    /// The field in a region, where something switches on a state, with what it switches on.
-    fn regions(&self, field: &[NodeId]) -> Result<(Option<Tape>, Vec<Threshold>), OdeError> {
-        let Some(Regions { graph, results, thresholds }) = Regions::of(self.graph, field, self.parameters)
-        else {
+    /// The field in a region, where something switches on a state, or on the parameter that varies, with what it switches on.
+    fn regions(
+        &self,
+        field: &[NodeId],
+        varying: Option<usize>,
+    ) -> Result<(Option<Tape>, Vec<Threshold>), OdeError> {
+        let regions = Regions::of(self.graph, field, self.parameters, varying);
+        let Some(Regions { graph, results, thresholds }) = regions else {
             return Ok((None, Vec::new()));
         };
         let tape = self.tape(&graph, &results, self.states, self.parameters + thresholds.len())?;

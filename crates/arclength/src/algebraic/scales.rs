@@ -15,6 +15,9 @@ const COUPLED_SHARE: f64 = 1e-2;
 const NONLINEAR_SHARE: f64 = 1e-3;
 /// and their sizes are this part of it.
 const AT_ZERO: f64 = 0.1;
+/// Ratio of the change of the Jacobian over that distance to what its derivatives say, beyond which these say nothing about it: beside a
+/// steep flank everything is flat.
+const EXTRAPOLATES: f64 = 10.0;
 /// States smaller than this part of what drives them are zero but for rounding.
 const ROUNDED: f64 = 1e-10;
 /// Rates slower than this part of the fastest may be rounding of zero.
@@ -40,7 +43,21 @@ pub(crate) fn natural_scales(
     let n = state.len();
     let (jacobian, lengths) = derivatives(field, state, parameters, speed);
     let (group, units) = groups_and_units(&jacobian, n);
-    let nonlinear = nonlinear_lengths(&jacobian, &lengths, (&group, &units), state, speed);
+    let mut nonlinear = nonlinear_lengths(&jacobian, &lengths, (&group, &units), state, speed);
+    for index in 0..n {
+        let is_far = state[index].abs() < NONLINEAR_SHARE * nonlinear[index] && nonlinear[index].is_finite();
+        if is_far
+            && !lengths.hold_at(
+                field,
+                (state, parameters),
+                &jacobian,
+                (index, AT_ZERO * nonlinear[index]),
+                &units,
+            )
+        {
+            nonlinear[index] = f64::INFINITY;
+        }
+    }
     let mut scales: Vec<f64> = (0..n)
         .map(|index| {
             let members = || (0..n).filter(|&other| group[other] == group[index]);
@@ -129,6 +146,54 @@ fn drive(scales: &mut [f64], jacobian: &[f64], group: &[usize]) {
 struct Derivatives {
     first: Vec<f64>,
     second: Vec<f64>,
+}
+
+impl Derivatives {
+    /// Whether the balanced Jacobian changes over a distance in one state about as its derivatives say.
+    fn hold_at(
+        &self,
+        field: &ErasedField<'_>,
+        (state, parameters): (&[f64], &[f64]),
+        jacobian: &[f64],
+        (index, distance): (usize, f64),
+        units: &[f64],
+    ) -> bool {
+        let n = state.len();
+        let largest = |entry: &dyn Fn(usize) -> f64| {
+            let balanced = (0..n * n).map(|place| entry(place).abs() * units[place / n] / units[place % n]);
+            balanced.fold(0.0, f64::max)
+        };
+        let block = n * n * index;
+        let expected = largest(&|entry| {
+            self.first[block + entry] * distance + 0.5 * self.second[block + entry] * distance * distance
+        });
+        [-distance, distance].into_iter().any(|way| {
+            let mut there = state.to_vec();
+            there[index] += way;
+            let there = jacobian_at(field, &there, parameters);
+            let change = largest(&|entry| there[entry] - jacobian[entry]);
+            let exists = there.iter().all(|entry| entry.is_finite());
+            exists && change < EXTRAPOLATES * expected && expected < EXTRAPOLATES * change
+        })
+    }
+}
+
+fn jacobian_at(field: &ErasedField<'_>, state: &[f64], parameters: &[f64]) -> Vec<f64> {
+    type Single = Dual<f64, 1>;
+    let n = state.len();
+    let parameters: Vec<Single> = parameters.iter().map(|&value| Single::from(value)).collect();
+    let mut unknown: Vec<Single> = state.iter().map(|&value| Single::from(value)).collect();
+    let mut image = vec![Single::from(0.0); n];
+    let mut jacobian = vec![0.0; n * n];
+    for column in 0..n {
+        unknown[column].derivatives[0] = 1.0;
+        field.evaluate(&unknown, &parameters, &mut image);
+        for (row, value) in image.iter().enumerate() {
+            jacobian[row + n * column] = value.derivatives[0];
+        }
+        unknown[column].derivatives[0] = 0.0;
+    }
+    jacobian
 }
 
 fn derivatives(

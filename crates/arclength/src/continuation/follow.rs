@@ -227,8 +227,10 @@ impl<C: Curve> Run<'_, '_, C> {
             Err(end) => return end,
         };
         if let Some((bound, value)) = leaves {
-            let stop = self.leave(current, &mut between, &advanced, bound, value);
-            return Step::End(self.ended(between, stop));
+            return match self.leave(current, &mut between, &advanced, bound, value) {
+                Ok(stop) => Step::End(self.ended(between, stop)),
+                Err(again) => again,
+            };
         }
         if let Some(end) = self.closed(current, &advanced) {
             let reached = along(self.curve, current, &end.unknown);
@@ -334,7 +336,7 @@ impl<C: Curve> Run<'_, '_, C> {
         }
     }
 
-    /// The end of a range: what lies outside is dropped, the solution at the end is solved for.
+    /// The end of a range: what lies outside is dropped, the solution at the end is solved for, by a shorter step if need be.
     fn leave(
         &mut self,
         current: &Solution<C::Point>,
@@ -342,7 +344,7 @@ impl<C: Curve> Run<'_, '_, C> {
         advanced: &Solution<C::Point>,
         bound: usize,
         value: f64,
-    ) -> Stop<C::Reason> {
+    ) -> Result<Stop<C::Reason>, StepOf<C>> {
         let bounds = &self.request.bounds;
         // Past a fold outside the range the curve comes back: the end lies before it.
         let outside = |solution: &Solution<C::Point>| first_exit(&solution.unknown, bounds).is_some();
@@ -350,8 +352,9 @@ impl<C: Curve> Run<'_, '_, C> {
         let beyond = first_outside.map_or(advanced, |index| &between[index].0).clone();
         between.truncate(first_outside.unwrap_or(between.len()));
         if let Some(stop) = self.stopping_target(between) {
-            return stop;
+            return Ok(stop);
         }
+        let length = along(self.curve, current, &advanced.unknown);
         let near = between.last().map_or(current, |(solution, _)| solution).clone();
         let from_end = bounds[bound].from_end;
         match fix(self.curve, &near, &beyond, from_end, value, &self.request.settings) {
@@ -363,10 +366,13 @@ impl<C: Curve> Run<'_, '_, C> {
                 if !is_known {
                     between.push((end, Origin::End));
                 }
-                Stop::RangeEnd { bound, value }
+                Ok(Stop::RangeEnd { bound, value })
             }
-            Err(Error::NotFound { cause, .. }) => Stop::StepTooSmall { cause },
-            Err(error) => Stop::Failed(error),
+            Err(Error::NotFound { .. }) if length.abs() > self.request.settings.shortest_jump => {
+                Err(Step::Again(STEP_REDUCTION * length.abs()))
+            }
+            Err(Error::NotFound { cause, .. }) => Ok(Stop::StepTooSmall { cause }),
+            Err(error) => Ok(Stop::Failed(error)),
         }
     }
 
@@ -429,7 +435,10 @@ impl<C: Curve> Run<'_, '_, C> {
             Err(end) => return end,
         };
         if let Some((bound, value)) = leaves {
-            let stop = self.leave(current, &mut between, &last, bound, value);
+            let stop = match self.leave(current, &mut between, &last, bound, value) {
+                Ok(stop) | Err(Step::End(stop)) => stop,
+                Err(_) => stop,
+            };
             return Step::End(self.ended(between, stop));
         }
         if let Some(stop) = self.stopping_target(&mut between) {

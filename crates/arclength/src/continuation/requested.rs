@@ -254,6 +254,9 @@ fn insert_passages<C: Curve>(
     Ok(all_found)
 }
 
+/// Distance, in the errors that steps aim at, of a solution at a value from where it is expected.
+const FARTHEST: f64 = 10.0;
+
 /// The solution between two neighbours at which the unknown `from_end` has the given value.
 ///
 /// # Errors
@@ -274,12 +277,13 @@ pub(crate) fn fix<C: Curve>(
     unknown[index] = value;
     let mut border = vec![0.0; unknown.len()];
     border[index] = 1.0;
-    correct(curve, &mut unknown, &border, settings)
-        .map_err(|cause| Error::NotFound { sought: "solution at the value asked for", cause })?;
+    let failed = |cause| Error::NotFound { sought: "solution at the value asked for", cause };
+    let correction = correct(curve, &mut unknown, &border, settings).map_err(failed)?;
     unknown[index] = value;
-    if !curve.holds(&unknown) {
-        let cause = CorrectionFailure::Diverged;
-        return Err(Error::NotFound { sought: "solution at the value asked for", cause });
+    // A solution farther away than the next one belongs to another branch.
+    let leads_elsewhere = correction.distance > length.abs().max(FARTHEST * settings.predictor_error);
+    if leads_elsewhere || !curve.holds(&unknown) {
+        return Err(failed(CorrectionFailure::Diverged));
     }
     finish_measured(curve, unknown, &before.tangent)
 }

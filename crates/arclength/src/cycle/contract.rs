@@ -5,6 +5,7 @@ use super::end::CycleEnd;
 use super::extrema::{Extremes, extremes, ways_between_jumps};
 use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
+use super::sizes::LEAST_SENSITIVITY;
 use super::special;
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;
@@ -350,14 +351,22 @@ impl Curve for CycleCurve<'_> {
         }
         let rate = after.tangent[end] / self.period_scale;
         let sensitivity = (rate / self.turn(&after.tangent)).abs();
-        if self.sizes.period_is_unbounded(period, sensitivity, self.resolution.tolerance)
-            && let Some(beside) = self.slow_passage(&after.unknown)
-        {
-            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodUnbounded {
-                period,
-                parameter,
-                beside,
-            })));
+        let tolerance = self.resolution.tolerance;
+        let beside = if self.sizes.period_is_unbounded(period, sensitivity, tolerance) {
+            self.slow_passage(&after.unknown).or_else(|| self.standstill(&after.unknown))
+        } else if sensitivity > LEAST_SENSITIVITY {
+            self.standstill(&after.unknown)
+        } else {
+            None
+        };
+        if let Some(beside) = beside {
+            let end = CycleEnd::PeriodUnbounded { period, parameter, beside };
+            return Some(Ending::After(Stop::Problem(end)));
+        }
+        if self.sizes.period_vanishes(period, sensitivity, tolerance) && self.lives_by_jumps(&after.unknown) {
+            let state = after.point.extremes.iter();
+            let state = state.map(|extremes| 0.5 * (extremes.smallest + extremes.largest)).collect();
+            return Some(Ending::After(Stop::Problem(CycleEnd::PeriodVanishes { period, parameter, state })));
         }
         if self.birth == Birth::Doubled
             && let Some(parameter) = self.single_again(&before.unknown, &after.unknown)

@@ -218,18 +218,27 @@ impl<'a> CycleCurve<'a> {
 
     /// The equilibrium beside which a cycle is slowest, if it makes periods grow without bound.
     pub(super) fn slow_passage(&self, unknown: &[f64]) -> Option<SlowPassage> {
+        self.passing(unknown, |passing| passing.slow_passage())
+    }
+
+    /// Whether a cycle is too fast for a field without jumps.
+    pub(super) fn lives_by_jumps(&self, unknown: &[f64]) -> bool {
+        let period = unknown[unknown.len() - 2];
+        self.passing(unknown, |passing| passing.is_too_fast(period))
+    }
+
+    fn passing<T>(&self, unknown: &[f64], look: impl FnOnce(&Passing<'_>) -> T) -> T {
         let problem = &self.collocation.problem;
         let (states, scalars) = unknown.split_at(unknown.len() - 2);
         let mut parameters = problem.parameters.clone();
         parameters[problem.active] = scalars[1];
-        let passing = Passing {
+        look(&Passing {
             field: problem.field,
             parameters: &parameters,
             active: (problem.active, self.parameter_scale),
             states,
             scales: &problem.scales,
-        };
-        passing.slow_passage()
+        })
     }
 
     /// Multipliers of the cycle that was linearised last and, where they had to be computed by other means than its mesh, their errors.

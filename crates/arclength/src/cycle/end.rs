@@ -59,6 +59,15 @@ pub enum CycleEnd {
         /// Parameter value of the last cycle.
         parameter: f64,
     },
+    /// The period tends to zero, and the cycles to a point at which the field jumps or an event happens.
+    PeriodVanishes {
+        /// Period of the last cycle.
+        period: f64,
+        /// Parameter value of the last cycle.
+        parameter: f64,
+        /// Mean state of the last cycle.
+        state: Vec<f64>,
+    },
     /// The amplitude grows without bound while the parameter tends to a value.
     AmplitudeUnbounded {
         /// Period of the last cycle.
@@ -88,6 +97,7 @@ impl WithParameters for CycleEnd {
             | Self::PeriodDoubling { parameter, .. }
             | Self::Grazing { parameter, .. }
             | Self::NearZero { parameter, .. }
+            | Self::PeriodVanishes { parameter, .. }
             | Self::AmplitudeUnbounded { parameter, .. } => *parameter = convert(0, *parameter),
             Self::PeriodUnbounded { parameter, beside, .. } => {
                 *parameter = convert(0, *parameter);
@@ -102,6 +112,7 @@ impl WithParameters for CycleEnd {
 
 impl Reason for CycleEnd {
     fn explain(&self, wording: &Wording<'_>) -> Explanation {
+        let list = |state: &[f64]| state.iter().map(|value| readable(*value)).collect::<Vec<_>>().join(", ");
         match self {
             Self::HopfPoint { parameter, frequency, located: false } => Explanation::of(format!(
                 "the cycles shrink to a Hopf point near {} with an angular frequency of about {}; it was not located",
@@ -166,15 +177,25 @@ impl Reason for CycleEnd {
                 wording.time(*period)
             ))
             .try_this("nothing, if it does in truth; else other coordinates, such as logarithms"),
+            Self::PeriodVanishes { period, parameter, state } => Explanation::of(format!(
+                "the period tends to zero ({} at {}): the cycles shrink to a point next to ({}) at which the field jumps or an event happens",
+                wording.time(*period),
+                wording.at(0, *parameter),
+                list(state)
+            )),
             Self::PeriodUnbounded { period, parameter, beside } => {
-                let list = |state: &[f64]| {
-                    state.iter().map(|value| readable(*value)).collect::<Vec<_>>().join(", ")
-                };
                 let near = match beside {
                     SlowPassage::Saddle { state } => format!(
                         "a homoclinic or heteroclinic orbit is near, to the saddle ({})",
                         list(state)
                     ),
+                    SlowPassage::AtGate { state, event } => {
+                        let gate = event.map_or_else(
+                            || "a border at which the field switches".to_owned(),
+                            |event| format!("the condition of event {event}"),
+                        );
+                        format!("an equilibrium, ({}), comes to lie on {gate}", list(state))
+                    }
                     SlowPassage::SaddleNode { state, parameter } => format!(
                         "a saddle-node ({}) is born on the cycle at {}",
                         list(state),

@@ -47,6 +47,7 @@ impl Asked<'_> {
                 }
                 CycleEnd::PeriodUnbounded { .. }
                 | CycleEnd::AmplitudeUnbounded { .. }
+                | CycleEnd::PeriodVanishes { .. }
                 | CycleEnd::NearZero { .. }
                 | CycleEnd::Grazing { .. } => {}
             }

@@ -30,6 +30,7 @@ pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod slow_passage;
 mod special;
+mod standstill;
 mod start;
 mod switching;
 mod variational;

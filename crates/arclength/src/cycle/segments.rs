@@ -104,6 +104,12 @@ impl Segments {
             .map(|(index, _)| index)
     }
 
+    /// The times of all gates, what is zero there, and the courses that lead to them.
+    pub(crate) fn gates(&self) -> impl Iterator<Item = (f64, GateFunction, &Course)> {
+        let gates = self.times.iter().zip(&self.gates).zip(&self.courses);
+        gates.map(|((time, gate), course)| (*time, gate.function, course))
+    }
+
     /// The event at a gate at which the state jumps.
     pub(crate) fn event_of(&self, index: usize) -> Option<usize> {
         match self.gates[index].function {

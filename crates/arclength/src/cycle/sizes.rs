@@ -17,13 +17,13 @@ const EQUILIBRIUM_PART: f64 = 1e-6;
 /// Noise floor of the error estimate: part of the mean that is rounding.
 const ROUNDING_PART: f64 = 1e-6;
 /// The period has to grow to this many times its start, and its logarithm this much faster than the parameters over their
-/// ranges, to count as unbounded.
+/// ranges, to count as unbounded; to tend to zero it has to shrink as much.
 const HOMOCLINIC_GROWTH: f64 = 5.0;
 const HOMOCLINIC_SENSITIVITY: f64 = 1e7;
 /// Coarse cycles do not come that far: the parameter is wrong by about the tolerance, and this many times that suffices, though
 /// never less than `LEAST_SENSITIVITY`, which the explosion of a canard hardly has together with that growth.
 const RESOLVED_SENSITIVITY: f64 = 10.0;
-const LEAST_SENSITIVITY: f64 = 1e5;
+pub(super) const LEAST_SENSITIVITY: f64 = 1e5;
 
 /// A state below this part of the largest one all along the first cycle is zero but for rounding.
 const ROUNDING_SIZE: f64 = 1e-15;
@@ -177,10 +177,22 @@ impl StateSizes {
     /// Whether the period grows without bound; `sensitivity` is the rate of its logarithm over that of the parameters in parts of
     /// their ranges, `tolerance` that of the cycles.
     pub(crate) fn period_is_unbounded(&mut self, period: f64, sensitivity: f64, tolerance: f64) -> bool {
-        let first = *self.first_period.get_or_insert(period);
-        let limit = (RESOLVED_SENSITIVITY / tolerance).clamp(LEAST_SENSITIVITY, HOMOCLINIC_SENSITIVITY);
-        period > HOMOCLINIC_GROWTH * first && sensitivity > limit
+        period > HOMOCLINIC_GROWTH * self.first_period(period) && is_steep(sensitivity, tolerance)
     }
+
+    /// Whether the period tends to zero, in the same terms.
+    pub(crate) fn period_vanishes(&mut self, period: f64, sensitivity: f64, tolerance: f64) -> bool {
+        HOMOCLINIC_GROWTH * period < self.first_period(period) && is_steep(sensitivity, tolerance)
+    }
+
+    fn first_period(&mut self, period: f64) -> f64 {
+        *self.first_period.get_or_insert(period)
+    }
+}
+
+/// Whether the logarithm of the period changes so much faster than the parameter that it tends to a limit.
+fn is_steep(sensitivity: f64, tolerance: f64) -> bool {
+    sensitivity > (RESOLVED_SENSITIVITY / tolerance).clamp(LEAST_SENSITIVITY, HOMOCLINIC_SENSITIVITY)
 }
 
 /// Smallest and largest value of one of `n` components on the nodes of a cycle.

@@ -4,6 +4,8 @@
 //! digits, and no equilibrium of the right kind is near. Where the cycle is slowest, either a saddle is found by Newton's method,
 //! to which homoclinic and heteroclinic orbits lead, or a fold of equilibria that is about to be born on the cycle (Kuznetsov,
 //! *Elements of Applied Bifurcation Theory*, 3rd edition, 2004, sections 6.2 and 7.1).
+//!
+//! And the opposite: a cycle too fast for a field without jumps.
 
 use crate::algebraic::{Differentiator, solve_square};
 use crate::equilibrium::defining::FoldSystem;
@@ -14,6 +16,7 @@ use crate::linear::eigenvalues::eigenvalues;
 use crate::linear::eigenvectors::right_eigenvector;
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// The equilibrium is this near to the slowest point of the cycle, in sizes of the states.
 const NEAR: f64 = 0.1;
@@ -39,6 +42,14 @@ pub enum SlowPassage {
         /// Value of the parameter at which it is born.
         parameter: f64,
     },
+    /// An equilibrium that lies on the condition of an event, or on a border between two pieces of the field, to which the cycle
+    /// comes ever more slowly.
+    AtGate {
+        /// The equilibrium.
+        state: Vec<f64>,
+        /// The number of the event, counted from one; none at a border.
+        event: Option<usize>,
+    },
 }
 
 /// A cycle as it is looked at here.
@@ -58,6 +69,21 @@ impl Passing<'_> {
     pub(crate) fn slow_passage(&self) -> Option<SlowPassage> {
         let slowest = self.slowest()?;
         self.saddle(slowest).or_else(|| self.saddle_node(slowest))
+    }
+
+    /// Whether the period is shorter than that of any cycle of a field that changes no faster than this one does between its jumps: `2 pi`
+    /// over its Lipschitz constant (J. A. Yorke, Periods of periodic solutions and the Lipschitz constant, 1969).
+    pub(crate) fn is_too_fast(&self, period: f64) -> bool {
+        let n = self.scales.len();
+        let rate = |state: &[f64]| {
+            let matrix = self.jacobian(state);
+            let entry = |(place, value): (usize, &f64)| {
+                (value * self.scales[place / n] / self.scales[place % n]).powi(2)
+            };
+            matrix.iter().enumerate().map(entry).sum::<f64>().sqrt()
+        };
+        let fastest = self.states.chunks_exact(n).map(rate).fold(0.0, f64::max);
+        period * fastest < TAU
     }
 
     /// The state in which the cycle is slowest.

@@ -55,6 +55,9 @@ const TURNS_MAY_AGREE: f64 = 0.3;
 /// Error of a cycle, relative to its amplitude, beyond which it is so small that its multipliers say nothing.
 const RESOLVED: f64 = 1e-3;
 
+/// Distance from one of multipliers of an orbit near a cycle that may be one of a family.
+const OF_A_FAMILY: f64 = 1e-2;
+
 /// Part of the range of the parameter by which the first cycle may lie from a given one that is a fold.
 const AT_FOLD: f64 = 1e-3;
 
@@ -279,7 +282,11 @@ impl<'a> Asked<'a> {
             }
             CycleStart::Orbit(orbit) => {
                 let once = self.traversed_once(orbit, request);
-                self.pass_through(once.as_ref().unwrap_or(orbit), request, observer)
+                let orbit = once.as_ref().unwrap_or(orbit);
+                self.pass_through(orbit, request, observer).map_err(|error| match error {
+                    Error::NotFound { sought, cause } => self.in_a_family(orbit, sought, cause),
+                    error => error,
+                })
             }
             CycleStart::Branching(branching) if branching.doubled => {
                 Ok(BothWays::one_way(self.leave(branching, 1.0, request, observer)?, None))
@@ -429,6 +436,18 @@ impl<'a> Asked<'a> {
         Ok(followed)
     }
 
+    /// Why no cycle is found from an orbit: cycles of a family, of which more than one multiplier is one, are not alone.
+    fn in_a_family(&self, orbit: &Orbit, sought: &'static str, cause: CorrectionFailure) -> Error {
+        let near_one = self.unsolved(&self.through(orbit)).map_or(0, |solution| {
+            let multipliers = solution.point.floquet.nontrivial.iter();
+            multipliers.filter(|multiplier| (multiplier.to_complex() - 1.0).norm() < OF_A_FAMILY).count()
+        });
+        match near_one {
+            0 => Error::NotFound { sought, cause },
+            count => Error::FamilyOfCycles { cause, count, distance: OF_A_FAMILY },
+        }
+    }
+
     /// Follows the branch from a Hopf point, from a smaller first cycle where there is none near that of the normal form.
     fn be_born(
         &self,
@@ -555,16 +574,27 @@ impl<'a> Asked<'a> {
     /// The branch point as a cycle of the branch that leaves there.
     fn branch_point(&self, branching: &Branching) -> Result<Solution<CycleInspection>, Error> {
         let start = self.departure(branching);
-        let mut curve = self.curve(&start);
+        let mut solution = self.unsolved(&start)?;
+        solution.point.branching = branching.known_branch();
+        Ok(solution)
+    }
+
+    /// A start as it is given, with its multipliers.
+    fn unsolved(&self, start: &Departure) -> Result<Solution<CycleInspection>, Error> {
+        let mut curve = self.curve(start);
         let mut border = vec![0.0; start.tangent.len()];
         curve.apply_metric(&start.tangent, &mut border);
         let mut residual = vec![0.0; start.tangent.len()];
         curve.estimate_error(&start.unknown);
-        // Singular there, but the multipliers do not need the border.
+        // It may be singular there, but the multipliers do not need the border.
         curve.factorize(&start.unknown, &border, &mut residual);
-        let mut point = curve.inspect(&start.unknown, &start.tangent, 0.0)?;
-        point.branching = branching.known_branch();
-        Ok(Solution { unknown: start.unknown, tangent: start.tangent, orientation: 0.0, point })
+        let point = curve.inspect(&start.unknown, &start.tangent, 0.0)?;
+        Ok(Solution {
+            unknown: start.unknown.clone(),
+            tangent: start.tangent.clone(),
+            orientation: 0.0,
+            point,
+        })
     }
 
     /// Follows the branch that leaves another one at a bifurcation, in one of its two directions.

@@ -96,8 +96,6 @@ impl EquilibriumPoint {
                     let critical = Complex64::new(0.0, hopf.frequency);
                     spectrum.stability_beside(&[critical, critical.conj()])
                 }
-                // One that is bracketed only: which of its eigenvalues are on the axis nobody says, but some are.
-                Some(SpecialPoint::Degenerate { at_border: false, .. }) => spectrum.stability_beside(&[]),
                 _ => spectrum.stability,
             },
             eigenvalues: spectrum.eigenvalues.clone(),

@@ -5,6 +5,7 @@ use super::end::EquilibriumEnd;
 use super::locating;
 use super::problem::EquilibriumProblem;
 use super::special::SpecialPoint;
+use super::spectrum::Spectrum;
 use crate::algebraic::DenseSystem;
 use crate::branch::SpecialKind;
 use crate::continuation::events::{Event, Location, Reading, TestFunction, partners};
@@ -77,21 +78,26 @@ impl Curve for EquilibriumCurve<'_> {
     ) -> Result<EquilibriumInspection, Error> {
         let n = self.dimension();
         let determinant = self.system.determinant_size();
-        let spectrum = self.spectrum()?;
+        let is_line = self.turn(tangent).abs() < UNDECIDED_FOLD;
+        let spectrum = |curve: &mut Self| -> Result<Spectrum, Error> {
+            let spectrum = curve.spectrum()?;
+            Ok(if is_line { spectrum.along_a_line() } else { spectrum })
+        };
+        let here = spectrum(self)?;
         let nearby: Vec<f64> =
             unknown.iter().zip(tangent).map(|(value, slope)| value + DISPLACEMENT * slope).collect();
         let mut residual = vec![0.0; n + 1];
         self.system.linearize(&nearby, &mut residual);
-        let rates = match self.spectrum() {
+        let rates = match spectrum(self) {
             Ok(there) => {
-                let partners = partners(&spectrum.growth(), &there.growth());
-                let pairs = spectrum.eigenvalues.iter().zip(partners);
+                let partners = partners(&here.growth(), &there.growth());
+                let pairs = here.eigenvalues.iter().zip(partners);
                 pairs.map(|(here, index)| (there.eigenvalues[index] - here) / DISPLACEMENT).collect()
             }
             Err(_) => vec![Complex64::ZERO; n],
         };
         let cells = self.system.problem.cells().to_vec();
-        Ok(EquilibriumInspection { spectrum, rates, orientation, determinant, cells, special: None })
+        Ok(EquilibriumInspection { spectrum: here, rates, orientation, determinant, cells, special: None })
     }
 
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {

@@ -6,7 +6,7 @@ use super::defining::{BranchPointSystem, FoldSystem, HopfSystem};
 use super::fold::FoldPoint;
 use super::hopf::HopfPoint;
 use super::special::{NeutralSaddle, SpecialPoint};
-use super::spectrum::critical_pairs;
+use super::spectrum::{UNDECIDED, critical_pairs};
 use crate::algebraic::scales::natural_scales;
 use crate::algebraic::{Differentiator, Solved, length, position, solve_square};
 use crate::branch::SpecialKind;
@@ -121,10 +121,13 @@ fn degenerate(
 fn bracketed(curve: &EquilibriumCurve<'_>, mut node: Node, of: SpecialKind, distance: f64) -> Node {
     let n = curve.dimension();
     let spectrum = &node.point.spectrum;
-    let away = |(value, rate): (&Complex64, &Complex64)| {
-        if value.re == 0.0 { 0.0 } else { value.re.abs() / rate.re.abs() }
+    // An eigenvalue is known up to its rounding.
+    let away = |(value, size): (&Complex64, &f64), rate: &Complex64| {
+        let largest = value.re.abs() + UNDECIDED * size;
+        if value.re == 0.0 { 0.0 } else { largest / rate.re.abs() }
     };
-    let critical = spectrum.eigenvalues.iter().zip(&node.point.rates).map(|pair| (*pair.0, away(pair)));
+    let values = spectrum.eigenvalues.iter().zip(&spectrum.sizes);
+    let critical = values.zip(&node.point.rates).map(|(pair, rate)| (*pair.0, away(pair, rate)));
     let critical: Vec<(Complex64, f64)> = critical.filter(|(_, away)| *away < CRITICAL).collect();
     let farthest = critical.iter().map(|(_, away)| *away).fold(distance, f64::max);
     let values: Vec<Complex64> = critical.into_iter().map(|(value, _)| value).collect();
@@ -169,7 +172,11 @@ pub(super) fn fold(curve: &mut EquilibriumCurve<'_>, before: &Node, after: &Node
             if !moves_the_parameter(&point, &scales, NO_UNFOLDING.max(UNCERTAIN * update)) {
                 break;
             }
-            return complete(curve, before, unknown, SpecialPoint::Fold(point));
+            match complete(curve, before, unknown, SpecialPoint::Fold(point)) {
+                // Two folds at once: more than one direction is along a branch.
+                Err(Error::NotFound { .. }) => break,
+                completed => return completed,
+            }
         }
     }
     degenerate(curve, before, after, distance, SpecialKind::Fold, test)

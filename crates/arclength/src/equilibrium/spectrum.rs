@@ -7,12 +7,14 @@ use crate::linear::eigenvalues::EigenvalueWorkspace;
 use num_complex::Complex64;
 
 /// A real part smaller than this part of the largest modulus is rounding error.
-const UNDECIDED: f64 = 1e-13;
+pub(super) const UNDECIDED: f64 = 1e-13;
 /// A sum of two eigenvalues smaller than this part of their moduli may be rounding error.
 const UNDECIDED_SUM: f64 = 1e-12;
 /// Agreement, relative to the largest modulus, of eigenvalues computed in two ways. Defective ones are accurate to the
 /// square root of rounding only.
 const PAIR_TOLERANCE: f64 = 1e-6;
+/// The same relative to the modulus of the pair that is sought, so that it is told from eigenvalues that are zero.
+const OWN_TOLERANCE: f64 = 0.1;
 /// Ratio of the sum of two eigenvalues to their moduli above which the test function saturates.
 const SATURATION: f64 = 0.1;
 
@@ -43,12 +45,28 @@ impl Spectrum {
             .map_err(|_| Error::Eigenvalues { quantity: "eigenvalues" })?
             .to_vec();
         let sizes = workspace.sizes().to_vec();
+        let hopf = HopfTest::of(&eigenvalues, &sizes);
+        Ok(Self::from_eigenvalues(eigenvalues, sizes, hopf))
+    }
+
+    fn from_eigenvalues(eigenvalues: Vec<Complex64>, sizes: Vec<f64>, hopf: HopfTest) -> Self {
         let unstable = eigenvalues.iter().filter(|value| value.re > 0.0).count();
         let stability = stability_of(&eigenvalues, &sizes);
-        let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } =
-            HopfTest::of(&eigenvalues, &sizes);
+        let HopfTest { product: hopf_test, closest, undecided: hopf_undecided } = hopf;
         let hopf_closest = closest.copysign(hopf_test);
-        Ok(Self { eigenvalues, sizes, stability, unstable, hopf_test, hopf_closest, hopf_undecided })
+        Self { eigenvalues, sizes, stability, unstable, hopf_test, hopf_closest, hopf_undecided }
+    }
+
+    /// The spectrum where the branch is a line of equilibria for one value of the parameter: the eigenvalue along it, the one closest to
+    /// zero, is zero, and what was computed is the error of the solution. Its sums with others say nothing of oscillations.
+    pub(crate) fn along_a_line(mut self) -> Self {
+        let moduli = self.eigenvalues.iter().map(|value| value.norm()).enumerate();
+        let Some((nearest, _)) = moduli.min_by(|one, other| one.1.total_cmp(&other.1)) else { return self };
+        self.eigenvalues[nearest] = Complex64::ZERO;
+        let (mut across, mut sizes) = (self.eigenvalues.clone(), self.sizes.clone());
+        across.remove(nearest);
+        sizes.remove(nearest);
+        Self::from_eigenvalues(self.eigenvalues, self.sizes, HopfTest::of(&across, &sizes))
     }
 
     /// What the search for special points compares from solution to solution.
@@ -79,13 +97,13 @@ impl Spectrum {
     }
 
     /// Whether `+-modulus` (real) or `+-i modulus` (imaginary) are eigenvalues. The defining system of Hopf points also has
-    /// solutions that consist of one eigenvector only.
+    /// solutions that consist of one eigenvector only, and two eigenvalues that are zero together are no pair.
     pub(crate) fn has_pair(&self, modulus: f64, imaginary: bool) -> bool {
         let largest = self.eigenvalues.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let tolerance = (PAIR_TOLERANCE * largest).min(OWN_TOLERANCE * modulus);
         let target = if imaginary { Complex64::new(0.0, modulus) } else { Complex64::new(modulus, 0.0) };
-        let near = |target: Complex64| {
-            self.eigenvalues.iter().any(|value| (value - target).norm() <= PAIR_TOLERANCE * largest)
-        };
+        let near =
+            |target: Complex64| self.eigenvalues.iter().any(|value| (value - target).norm() <= tolerance);
         near(target) && near(-target)
     }
 }

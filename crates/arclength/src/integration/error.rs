@@ -35,7 +35,7 @@ pub enum IntegrationError {
     },
     /// The right-hand side switches again and again without time passing.
     #[error(
-        "at t = {time} the right-hand side switches again and again while no time passes: the motion is held at several switches at once, or comes to an end there"
+        "at t = {time} the right-hand side switches again and again while no time passes: the motion is held at several switches at once, passes them within the resolution of time, or comes to an end there"
     )]
     SwitchesWithoutEnd {
         /// Time that was reached.

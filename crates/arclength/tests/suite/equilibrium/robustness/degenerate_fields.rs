@@ -2,7 +2,7 @@
 
 use super::kinds;
 use approx::assert_relative_eq;
-use arclength::branch::Stability;
+use arclength::branch::{SpecialKind, Stability};
 use arclength::continuation::Stop;
 use arclength::equilibrium::Equilibria;
 use arclength::{Scalar, VectorField};
@@ -21,6 +21,19 @@ field!(Pendulum, ["angle", "rate"], ["p"], |x, p, d| {
 
 field!(Circle, ["x"], ["p"], |x, p, d| {
     d[0] = p[0] * p[0] + x[0] * x[0] - 1.0;
+});
+
+// Two patches that nothing connects.
+field!(Patches, ["x", "y"], ["harvest"], |x, p, d| {
+    d[0] = x[0] * (-x[0] + 1.0) - p[0];
+    d[1] = x[1] * (-x[1] + 1.0) - p[0];
+});
+
+// Rabinovich and Fabrikant (1979): at p = 0 every (1, y, 0) is an equilibrium, with the eigenvalues 2y, 0 and -2(1.1 + y).
+field!(Line, ["x", "y", "z"], ["p"], |x, p, d| {
+    d[0] = x[1] * (x[2] - 1.0 + x[0] * x[0]) + p[0] * x[0];
+    d[1] = x[0] * (x[2] * 3.0 + 1.0 - x[0] * x[0]) + p[0] * x[1];
+    d[2] = x[2] * (x[0] * x[1] + 1.1) * (-2.0);
 });
 
 field!(Pitchfork, ["x", "y"], ["p"], |x, p, d| {
@@ -73,6 +86,42 @@ fn a_closed_branch_ends_after_one_lap() {
             .map(|pair| (pair[1].value - pair[0].value).hypot(pair[1].state[0] - pair[0].state[0]))
             .sum();
         assert!((length - std::f64::consts::TAU).abs() < 0.02, "{angle}: {length}");
+    }
+}
+
+#[test]
+fn two_folds_at_once_are_one_degenerate_point_on_the_way() {
+    let branch = Equilibria::of(&Patches).start(&[0.8, 0.8]).parameters(&[0.1]).along("harvest", 0.0..=0.4);
+    let branch = branch.run().unwrap();
+    assert!(branch.unlocated.is_empty());
+    assert_eq!(kinds(&branch), ["BP1"]);
+    let special = branch.special_points().next().unwrap();
+    assert!((special.value() - 0.25).abs() <= special.location_error().max(1e-12), "{special:?}");
+    // Both ways along the diagonal: from (1, 1) to the origin.
+    let last = branch.points.last().unwrap();
+    assert!(last.value == 0.0 && last.state.iter().all(|entry| entry.abs() < 1e-10), "{last:?}");
+    for point in branch.points.iter().filter(|point| (point.state[0] - 0.5).abs() > 1e-3) {
+        let expected = if point.state[0] > 0.5 { Some(true) } else { Some(false) };
+        assert_eq!(point.stability.is_stable(), expected, "{point:?}");
+    }
+}
+
+#[test]
+fn a_line_of_equilibria_has_no_branch_points_of_rounding() {
+    let branch = Equilibria::of(&Line).start(&[1.0, -1.0, -0.1]).parameters(&[0.2]).along("p", -0.2..=1.0);
+    let branch = branch.run().unwrap();
+    let crossing = branch.branch_points().find(|point| point.value.abs() < 1e-9).unwrap();
+    assert!((crossing.state[1] + 1.1).abs() < 1e-9);
+    let line = crossing.other(&Line).along("p", -0.2..=1.0).run().unwrap();
+    assert!(line.special_points().all(|special| special.kind() == SpecialKind::BranchPoint));
+    assert!(line.special_points().count() == 1, "{:?}", kinds(&line));
+    for point in &line.points {
+        assert!(point.value.abs() < 1e-12);
+        // Zero is an eigenvalue everywhere, and one of the others is positive but between -1.1 and 0.
+        assert_ne!(point.stability.is_stable(), Some(true), "{point:?}");
+        if point.state[1] > 1e-3 || point.state[1] < -1.101 {
+            assert_eq!(point.stability.is_stable(), Some(false), "{point:?}");
+        }
     }
 }
 

@@ -4,9 +4,11 @@ mod close_points;
 mod crossings;
 mod degenerate_fields;
 mod double_zero;
+mod equal_eigenvalues;
 mod random_fields;
 mod requests;
 mod rings;
+mod steep_flanks;
 mod symmetry;
 mod units;
 
