@@ -24,6 +24,10 @@ impl Origin {
     /// An equilibrium that was sought from the initial state.
     pub fn sought(by: FoundBy) -> Self {
         let how = match by {
+            FoundBy::FarNewton => {
+                "the equilibrium, far from the initial state, to which Newton's method went from there"
+                    .to_owned()
+            }
             FoundBy::Flow => {
                 "the equilibrium near a state to which the flow leads from the initial state".to_owned()
             }

@@ -13,6 +13,7 @@ mod result;
 mod samples;
 mod section;
 mod settled;
+mod small_states;
 mod smooth;
 
 pub use plot::{PlotError, PlotRequest};

@@ -6,6 +6,7 @@ use super::picture::DrawnPlot;
 use super::plot::{Expressions, Plot, PlotRequest, Variable, Windows};
 use super::result::{HistoryResult, SectionResult};
 use super::section::{Section, SectionRequest};
+use super::small_states::absolute_tolerances;
 use super::smooth::finer_times;
 use crate::error::Error;
 use crate::files::{Disk, Files};
@@ -114,8 +115,8 @@ pub struct SimulateAnalysis {
     start: f64,
     times: Vec<f64>,
     bound: f64,
-    /// The largest absolute tolerance that is allowed.
-    absolute: f64,
+    /// The largest absolute tolerance that is allowed of every state.
+    absolute: Vec<f64>,
     accuracy: Accuracy,
     plots: Vec<Plot>,
     expressions: Expressions,
@@ -270,10 +271,11 @@ impl SimulateRequest {
         let largest_step = self.max_step.unwrap_or(by_model);
         let bound =
             self.bound.or_else(|| file.number("bound").filter(|bound| *bound > 0.0)).unwrap_or(f64::INFINITY);
-        let states = chosen.model.states().len();
+        let motion = (first, &chosen.start[..]);
+        let absolute = absolute_tolerances(&chosen.model, &chosen.parameters, motion, absolute);
         let accuracy = Accuracy {
             relative,
-            absolute: vec![absolute; states],
+            absolute: absolute.clone(),
             largest_step,
             most_steps: MOST_STEPS,
             method: self.method.into(),
@@ -573,14 +575,18 @@ impl SimulateAnalysis {
         let mut motion = match course.follow(&accuracy, times) {
             Err(error @ (IntegrationError::NotFinite { .. } | IntegrationError::StepTooSmall { .. })) => {
                 // States that are much smaller than the tolerance may have passed zero, and concentrations grow beyond it.
-                accuracy.absolute.fill(FINEST_ABSOLUTE.min(self.absolute));
+                for absolute in &mut accuracy.absolute {
+                    *absolute = absolute.min(FINEST_ABSOLUTE);
+                }
                 accuracy.most_steps = accuracy.most_steps.min(MOST_FINEST_STEPS);
                 course.follow(&accuracy, times).map_err(|_| error)?
             }
             followed => followed?,
         };
         for _ in 0..REPETITIONS {
-            let needed: Vec<f64> = motion.sizes.iter().map(|size| self.absolute_tolerance(*size)).collect();
+            let needed = motion.sizes.iter().zip(&self.absolute);
+            let needed: Vec<f64> =
+                needed.map(|(size, largest)| self.absolute_tolerance(*size).min(*largest)).collect();
             let is_enough = needed.iter().zip(&accuracy.absolute).all(|(needed, has)| *needed >= 0.5 * has);
             if is_enough || control.is_stopped() {
                 break;
@@ -594,7 +600,7 @@ impl SimulateAnalysis {
                 Err(error) => {
                     warnings.push(format!(
                         "states smaller than {SMALL} are followed to absolute errors of about {} only: {error}",
-                        readable(self.absolute)
+                        readable(ABSOLUTE * self.accuracy.relative)
                     ));
                     break;
                 }
@@ -605,10 +611,7 @@ impl SimulateAnalysis {
 
     /// The absolute tolerance of a state of this size.
     fn absolute_tolerance(&self, size: f64) -> f64 {
-        if size > 0.0 && size < SMALL {
-            self.absolute.min(ABSOLUTE * self.accuracy.relative * size)
-        } else {
-            self.absolute
-        }
+        let size = if size > 0.0 && size < SMALL { size } else { 1.0 };
+        ABSOLUTE * self.accuracy.relative * size
     }
 }

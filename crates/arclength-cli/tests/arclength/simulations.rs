@@ -272,3 +272,35 @@ fn a_stiff_problem_of_chemistry_is_followed_to_its_end() {
         assert!(excess.abs() < 1e-20, "{excess}");
     }
 }
+
+/// Growth from next to nothing depends on the size of the state alone, and one that cannot pass zero never does.
+#[test]
+fn small_states_that_grow_keep_their_digits() {
+    for start in [1e-9, 1e-15, 1e-30] {
+        let history =
+            simulate("x'=x*(1-x)\ndone\n", &format!("--start x={start:e} --duration 100 --points 51"));
+        let times = history["t"].as_array().unwrap().iter().map(|time| time.as_f64().unwrap());
+        for (time, value) in times.zip(list(&history, "states", "x")) {
+            let right = 1.0 / (1.0 + (1.0 / start - 1.0) * (-time).exp());
+            close(value / right, 1.0, 1e-8);
+        }
+    }
+    // Predators and prey that come as near to zero as 4e-38.
+    let model = "x'=x*(1-x/8)-x*y/(.3+x)\ny'=y*(x/(.3+x)-.3)\ninit x=.5,y=.5\ndone\n";
+    let history = simulate(model, "--duration 400");
+    assert!(list(&history, "states", "x").iter().all(|value| *value > 0.0));
+}
+
+/// Exposed and infected that are few grow together, `e' = .5 i - .3 e`, `i' = .3 e - .2 i`, while nearly all are susceptible.
+#[test]
+fn small_states_that_grow_together_keep_their_digits() {
+    let model = "s'=-.5*s*i\ne'=.5*s*i-.3*e\ni'=.3*e-.2*i\ninit s=1,e=0,i=1e-14\ndone\n";
+    let history = simulate(model, "--duration 40 --points 2");
+    let [sum, product] = [-0.5, 0.3 * 0.2 - 0.3 * 0.5];
+    let root = (0.25 * sum * sum - product as f64).sqrt();
+    let [fast, slow] = [0.5 * sum + root, 0.5 * sum - root];
+    // From the start (0, 1) the infected have the rate -.2.
+    let weight = (-0.2 - slow) / (fast - slow);
+    let right = 1e-14 * (weight * (fast * 40.0).exp() + (1.0 - weight) * (slow * 40.0).exp());
+    close(list(&history, "states", "i")[1] / right, 1.0, 1e-8);
+}

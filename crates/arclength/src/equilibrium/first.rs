@@ -19,6 +19,8 @@ use crate::random::Random;
 pub enum FoundBy {
     /// By Newton's method, perhaps behind implicit steps with the flow, from the start: it is near.
     Newton,
+    /// By Newton's method from the start, far away from it; the flow leads to none that is nearer.
+    FarNewton,
     /// By Newton's method from a state to which the flow leads from the start.
     Flow,
     /// By Newton's method from the random start of this number, counted from 1.
@@ -34,6 +36,8 @@ pub struct FoundEquilibrium {
     pub by: FoundBy,
 }
 
+/// Distance of an equilibrium from the start, in natural sizes of the states, that still is near.
+const NEAR: f64 = 5.0;
 /// Tolerance of the flow that is followed, and accepted steps in all; Newton's method is tried at powers of two of them.
 const FLOW_TOLERANCE: f64 = 1e-6;
 const FLOW_STEPS: u32 = 4096;
@@ -81,17 +85,32 @@ pub(crate) fn seek_erased(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<FoundEquilibrium, Error> {
-    let failure = match find_erased(field, start, parameters) {
-        Ok(state) => return Ok(FoundEquilibrium { state, by: FoundBy::Newton }),
-        Err(error @ Error::NotFound { .. }) => error,
-        Err(error) => return Err(error),
+    let sizes = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
+    let between = |one: &[f64], other: &[f64]| {
+        let parts = one.iter().zip(other).zip(&sizes).map(|((one, other), size)| (one - other).abs() / size);
+        parts.fold(0.0, f64::max)
+    };
+    let distance = |state: &[f64]| between(state, start);
+    let found = match find_erased(field, start, parameters) {
+        Ok(state) if distance(&state) <= NEAR => return Ok(FoundEquilibrium { state, by: FoundBy::Newton }),
+        Err(error) if !matches!(error, Error::NotFound { .. }) => return Err(error),
+        found => found,
     };
     let found_from = |state: &[f64]| find_erased(field, state, parameters).ok();
     let mut visited: Vec<[f64; 2]> = start.iter().map(|value| [*value; 2]).collect();
-    if let Some(state) = along_flow(field, start, parameters, &mut visited, found_from) {
-        return Ok(FoundEquilibrium { state, by: FoundBy::Flow });
-    }
-    let sizes = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
+    // From a state on the way Newton's method may leave for far away, too.
+    let from_flow =
+        |state: &[f64]| found_from(state).filter(|there| found.is_err() || between(there, state) <= NEAR);
+    let along = along_flow(field, start, parameters, &mut visited, from_flow);
+    let failure = match (found, along) {
+        // Newton's method may have left for far away, although the flow leads to one that is nearer.
+        (Ok(state), Some(along)) if distance(&along) >= distance(&state) => {
+            return Ok(FoundEquilibrium { state, by: FoundBy::FarNewton });
+        }
+        (Ok(state), None) => return Ok(FoundEquilibrium { state, by: FoundBy::FarNewton }),
+        (_, Some(state)) => return Ok(FoundEquilibrium { state, by: FoundBy::Flow }),
+        (Err(failure), None) => failure,
+    };
     let mut random = Random::new(1);
     for number in 1..=RANDOM_STARTS {
         let drawn: Vec<f64> = visited
