@@ -61,11 +61,14 @@ pub enum Error {
     /// A motion did not come back to its start.
     #[error(
         "the motion does not come back to its start within the time {duration}: it has not settled on a cycle, or the cycle is \
-         longer; follow it longer first"
+         longer; follow it longer first{}",
+        drift(drifting)
     )]
     NoReturn {
         /// Time for which it was followed.
         duration: f64,
+        /// States that move on and on in one direction, as angles that turn do.
+        drifting: Vec<String>,
     },
     /// A motion comes to rest.
     #[error(
@@ -135,4 +138,42 @@ pub enum Error {
         /// What is allowed.
         allowed: String,
     },
+}
+
+/// Parts of a motion, behind its first quarter, over which a state that drifts moves alike: the smallest change is this part of the largest
+/// at least, and their sum this part of all that it moves.
+const DRIFT_PARTS: usize = 6;
+const ALIKE: f64 = 0.5;
+
+impl Error {
+    /// A motion, of which the states at equal times are given, did not come back to its start in this time.
+    pub fn no_return<S: AsRef<[f64]>>(duration: f64, names: &[String], states: &[S]) -> Self {
+        let behind = &states[states.len() / 4..];
+        let drifts = |index: usize| {
+            let values: Vec<f64> = behind.iter().map(|state| state.as_ref()[index]).collect();
+            let at = |part: usize| values[part * (values.len() - 1) / DRIFT_PARTS];
+            let changes: Vec<f64> = (0..DRIFT_PARTS).map(|part| at(part + 1) - at(part)).collect();
+            let smallest = changes.iter().map(|change| change.abs()).fold(f64::INFINITY, f64::min);
+            let largest = changes.iter().map(|change| change.abs()).fold(0.0, f64::max);
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let is_one_way = changes.iter().all(|change| change * changes[0] > 0.0);
+            let moved = changes.iter().sum::<f64>().abs();
+            is_one_way && smallest > ALIKE * largest && moved > ALIKE * (high - low)
+        };
+        let moving =
+            names.iter().enumerate().filter(|(index, _)| behind.len() > DRIFT_PARTS && drifts(*index));
+        Self::NoReturn { duration, drifting: moving.map(|(_, name)| name.clone()).collect() }
+    }
+}
+
+fn drift(drifting: &[String]) -> String {
+    if drifting.is_empty() {
+        return String::new();
+    }
+    let moves = if drifting.len() == 1 { "moves" } else { "move" };
+    format!(
+        ", but {} {moves} on and on in one direction, which no cycle does: of an angle take the sine and the cosine as states",
+        drifting.join(", ")
+    )
 }

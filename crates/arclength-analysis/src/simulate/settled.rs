@@ -60,7 +60,8 @@ pub(crate) fn settled_orbit(
     let times = even(0.0, duration, SAMPLES);
     let motion = settled.follow(&times)?;
     settled.accuracy.absolute = motion.sizes.iter().map(|size| TOLERANCE * size.max(TOLERANCE)).collect();
-    let not_back = || Error::from(arclength::Error::NoReturn { duration });
+    let not_back =
+        || Error::from(arclength::Error::no_return(duration, model.states(), &motion.samples.states));
     let between = settled.back(&motion).ok_or_else(not_back)?;
     // A little more on both sides: the passage may be at a sample.
     let margin = (between[1] - between[0]) / FINER as f64;

@@ -3,6 +3,7 @@
 mod closed_branches;
 mod files;
 mod found_by_users;
+mod guards;
 mod held;
 mod hybrid;
 mod kinks;

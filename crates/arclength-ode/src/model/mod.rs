@@ -159,7 +159,7 @@ impl Model {
     /// assert_eq!(model.for_continuation(&[1.0], Some(0)).0.thresholds().len(), 1);
     /// let model = arclength_ode::Model::parse("x'=1-if(abs(x)<1e-4)then(1)else(x/(1-exp(-x)))\ndone\n")?;
     /// let (smooth, change) = model.for_continuation(&[], None);
-    /// assert_eq!((model.thresholds().len(), smooth.thresholds().len()), (1, 0));
+    /// assert_eq!((model.thresholds().len(), smooth.thresholds().len()), (2, 0));
     /// assert!((change.unwrap() / 5e-5 - 1.0).abs() < 1e-4);
     /// # Ok::<(), arclength_ode::OdeError>(())
     /// ```

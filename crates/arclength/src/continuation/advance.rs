@@ -19,9 +19,8 @@ const TANGENT_COSINE: f64 = 0.9;
 const ANGLE_PART: f64 = 0.8;
 /// Steps shorter than this many times the smallest one are taken however much the curve turns.
 const TURNING_LIMIT: f64 = 1e3;
-/// A correction longer than this many times what is aimed at, or than this part of the step if that is more, has led elsewhere.
-const FAR_CORRECTION: f64 = 10.0;
-const FAR_CORRECTION_PART: f64 = 0.1;
+/// Part of a step that counts as an error that is aimed at, where corrections are too long.
+const AIMED_PART: f64 = 0.01;
 /// Largest angle, in radians, by which a curve in two parameters turns in their plane in one step, unless it moves by less than
 /// this part of their ranges: drawn as a polygon it is smooth.
 const PLANE_ANGLE: f64 = 0.2;
@@ -152,7 +151,7 @@ fn correct_prediction<C: Curve>(
     let ratio = settings.predictor_error / correction.distance.max(1e-300);
     // The predictor's error grows with the square of the step at least.
     let growth = ratio.sqrt().clamp(STEP_REDUCTION, STEP_GROWTH);
-    if correction.distance > FAR_CORRECTION * settings.predictor_error.max(FAR_CORRECTION_PART * length) {
+    if correction.distance > settings.largest_correction * settings.predictor_error.max(AIMED_PART * length) {
         return Err(Rejected { cause: CorrectionFailure::Diverged, reduction: growth });
     }
     Ok(Corrected { unknown, growth })

@@ -6,7 +6,9 @@ use super::corrector::between;
 use super::curve::{Curve, Ending, EventOf};
 use super::events::{EventSearch, Events, Unlocated};
 use super::metric::along;
-use super::requested::{Between, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values};
+use super::requested::{
+    Between, ON_END, Origin, Purpose, Target, first_exit, fix, insert_targets, insert_values,
+};
 use super::settings::Settings;
 use super::solution::{Bound, Solution};
 use super::stop::Stop;
@@ -366,6 +368,15 @@ impl<C: Curve> Run<'_, '_, C> {
                 if !is_known {
                     between.push((end, Origin::End));
                 }
+                Ok(Stop::RangeEnd { bound, value })
+            }
+            // A special point at which the equations are singular may lie on the end itself.
+            Err(Error::NotFound { .. })
+                if matches!(between.last(), Some((_, Origin::Special(_))))
+                    && (bounds[bound].value(&near.unknown) - value).abs()
+                        <= ON_END * bounds[bound].width() =>
+            {
+                between.push((near, Origin::End));
                 Ok(Stop::RangeEnd { bound, value })
             }
             Err(Error::NotFound { .. }) if length.abs() > self.request.settings.shortest_jump => {

@@ -304,7 +304,7 @@ fn fix_closely<C: Curve>(
 }
 
 /// Part of a range by which values beyond its ends may be rounding.
-const ON_END: f64 = 1e-10;
+pub(super) const ON_END: f64 = 1e-10;
 
 /// First bound that `unknown` violates by more than rounding and the end that was passed: a curve may lie on an end.
 pub(super) fn first_exit(unknown: &[f64], bounds: &[Bound]) -> Option<(usize, f64)> {

@@ -22,6 +22,9 @@ pub struct Settings {
     pub smallest_step: f64,
     /// Distance between predicted and corrected point that the step control aims at.
     pub predictor_error: f64,
+    /// A correction longer than this many times what is aimed at, or than this many hundredths of the step if that is more, has led
+    /// elsewhere, and the step is made anew and shorter.
+    pub largest_correction: f64,
     /// The corrector has converged when its last update is shorter than this.
     pub corrector_tolerance: f64,
     /// Updates that the corrector may use.
@@ -63,6 +66,7 @@ with_methods! {
     largest_parameter_change: f64,
     smallest_step: f64,
     predictor_error: f64,
+    largest_correction: f64,
     corrector_tolerance: f64,
     corrector_iterations: usize,
     most_steps: usize,
@@ -87,6 +91,7 @@ impl Default for Settings {
             largest_parameter_change: 0.04,
             smallest_step: 1e-9,
             predictor_error: 0.01,
+            largest_correction: 10.0,
             corrector_tolerance: 1e-10,
             corrector_iterations: 12,
             most_steps: 10_000,

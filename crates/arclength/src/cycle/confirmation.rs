@@ -115,6 +115,8 @@ impl<'a> Asked<'a> {
                 break;
             }
             let level = self.solve_on_halves((&mesh, &unknown), degree, point.neutral, sizes);
+            // One that differs by its whole size is another cycle.
+            let level = level.filter(|level| level.change_from(&before) < NOTHING_KNOWN);
             let Some(mut level) = level else {
                 if last_change.is_none() {
                     (point.error_estimate, point.stable) = (NOTHING_KNOWN, None);

@@ -6,7 +6,7 @@ use crate::collocation::mesh::{SAME_TIME, dividing_equally};
 use crate::collocation::polynomials::Polynomials;
 use crate::error::Error;
 use crate::field::VectorField;
-use crate::integration::{Event, Integrator, Method, Stepper, autonomous};
+use crate::integration::{Crossing, Event, Integrator, Method, Stepper, autonomous};
 use serde::{Deserialize, Serialize};
 
 /// A periodic orbit, piecewise polynomial in the unit time `t / period`.
@@ -216,17 +216,14 @@ impl Orbit {
         let distance =
             |state: &[f64]| state.iter().zip(initial).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
         let sampling: Vec<f64> = (0..=100).map(|index| longest_period * f64::from(index) / 100.0).collect();
-        let size = integrator
-            .sample(autonomous(field, parameters), initial, &sampling)?
-            .samples()
-            .map(|(_, state)| distance(state))
-            .fold(0.0, f64::max);
-        let period = history
-            .crossings
-            .iter()
-            .find(|crossing| crossing.time > 0.0 && distance(&crossing.state) < HISTORY_CLOSURE * size)
-            .map(|crossing| crossing.time)
-            .ok_or(Error::NoReturn { duration: longest_period })?;
+        let sampled = integrator.sample(autonomous(field, parameters), initial, &sampling)?;
+        let size = sampled.samples().map(|(_, state)| distance(state)).fold(0.0, f64::max);
+        let back =
+            |crossing: &&Crossing| crossing.time > 0.0 && distance(&crossing.state) < HISTORY_CLOSURE * size;
+        let Some(period) = history.crossings.iter().find(back).map(|crossing| crossing.time) else {
+            let states: Vec<&[f64]> = sampled.samples().map(|(_, state)| state).collect();
+            return Err(Error::no_return(longest_period, &field.state_names(), &states));
+        };
         let (mut steps, mut along) = (vec![0.0], initial.to_vec());
         let mut stepper = Stepper::new(autonomous(field, parameters), &integrator, 0.0, initial, period)?;
         while !stepper.is_finished() {

@@ -314,16 +314,29 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
     }
 }
 
-/// The rate of a function that grows exponentially; where that has overflowed, zero: what is finite then has it in a denominator, and
-/// does not depend on it.
+/// Size of a function that grows exponentially next to which its rate may overflow.
+const OVERFLOWING: f64 = 1e280;
+
+/// The rate of a function that grows exponentially; where that has overflowed, or is about to, zero: what is finite then has it in a
+/// denominator, and does not depend on it.
 #[inline]
 fn bounded<T: Scalar>(value: T, rate: T) -> T {
-    if value.value().is_infinite() { T::zero() } else { rate }
+    if value.value().abs() > OVERFLOWING { T::zero() } else { rate }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_saturated_flank_is_flat_up_to_the_overflow_and_beyond() {
+        for steps in 0..400 {
+            let exponent = Dual::<f64, 1>::variable(600.0 + 0.5 * f64::from(steps), 0) * 2000.0 / 2000.0;
+            let grown = (exponent * 1.0).exp() * 2000.0 + 1.0;
+            let flank = grown.recip();
+            assert!(flank.derivatives[0].abs() < 1e-250, "{steps}: {flank:?}");
+        }
+    }
 
     #[test]
     fn the_larger_of_a_number_and_none_is_none() {

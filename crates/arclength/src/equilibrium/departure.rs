@@ -1,6 +1,7 @@
 //! Whether more than one branch passes through a start, and which branch is followed then.
 
 use super::branch_point::BranchPoint;
+use super::fold::null_vectors;
 use super::problem::EquilibriumProblem;
 use crate::algebraic::Differentiator;
 use crate::error::Error;
@@ -13,6 +14,11 @@ const SINGULAR: f64 = 1e-8;
 /// is small everywhere.
 const DISPLACEMENT: f64 = 1e-3;
 const GROWTH: f64 = 100.0;
+
+/// Ways along a null vector, in the sizes of the states, and parts of the rates without cancellation there that are rounding: where the
+/// field vanishes all along, the equilibrium lies on a line of them.
+const WAYS: [f64; 4] = [-0.1, -0.01, 0.01, 0.1];
+const VANISHING: f64 = 1e-10;
 
 /// Whether more than one branch passes through an equilibrium, or its Jacobian is degenerate in another way: whether the
 /// Jacobian with respect to states and parameter has not the full rank.
@@ -133,4 +139,33 @@ pub(super) fn branch_point_along(
         *last = *range;
     }
     BranchPoint::at(problem, unknown, &tangent, scales, 0.0)
+}
+
+/// The direction of the line of equilibria, for one and the same value of the parameter, on which an equilibrium lies, as one does where a
+/// symmetry shifts states; `None` where it does not.
+pub(super) fn line_through(
+    problem: &EquilibriumProblem<'_>,
+    unknown: &[f64],
+    scales: &[f64],
+) -> Option<Vec<f64>> {
+    let n = problem.dimension;
+    let direction = null_vectors(problem, unknown, scales).ok()?.right;
+    let largest =
+        direction.iter().zip(scales).map(|(entry, scale)| (entry / scale).abs()).fold(0.0, f64::max);
+    let mut rank = Rank { problem, scales, differentiator: Differentiator::default() };
+    let matrix = rank.matrix(unknown);
+    let parameters = problem.parameters_at(&unknown[n..]);
+    let mut rates = vec![0.0; n];
+    let is_line = WAYS.into_iter().all(|way| {
+        let step: Vec<f64> = direction.iter().map(|entry| way * entry / largest).collect();
+        let state: Vec<f64> = unknown.iter().zip(&step).map(|(value, step)| value + step).collect();
+        problem.field.evaluate(&state, &parameters, &mut rates);
+        rates.iter().enumerate().all(|(row, rate)| {
+            let terms = step.iter().zip(scales).enumerate();
+            let size: f64 =
+                terms.map(|(column, (step, scale))| (matrix[row + n * column] * step / scale).abs()).sum();
+            rate.abs() <= VANISHING * size
+        })
+    });
+    is_line.then_some(direction)
 }

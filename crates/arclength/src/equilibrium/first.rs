@@ -85,7 +85,8 @@ pub(crate) fn seek_erased(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<FoundEquilibrium, Error> {
-    let sizes = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
+    let natural = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
+    let sizes: Vec<f64> = natural.iter().zip(start).map(|(size, value)| size.max(value.abs())).collect();
     let between = |one: &[f64], other: &[f64]| {
         let parts = one.iter().zip(other).zip(&sizes).map(|((one, other), size)| (one - other).abs() / size);
         parts.fold(0.0, f64::max)

@@ -4,7 +4,7 @@ use super::branch::{EquilibriumBranch, EquilibriumPoint};
 use super::branch_point::BranchPoint;
 use super::corner::{HalfBranch, Piece};
 use super::curve::{EquilibriumCurve, EquilibriumInspection};
-use super::departure::{branch_point_along, is_branching};
+use super::departure::{branch_point_along, is_branching, line_through};
 use super::end::EquilibriumEnd;
 use super::first::{FoundBy, FoundEquilibrium, seek_erased};
 use super::newton::find_erased;
@@ -27,6 +27,9 @@ const DEPARTURE: f64 = 1e-3;
 /// Rate of change of the parameter along the branch, as part of its range, below which it stands still at the start.
 const VERTICAL_START: f64 = 1e-6;
 
+/// Part of the largest one by which a state moves along a line of equilibria.
+const MOVED: f64 = 1e-6;
+
 /// States that a message names at most.
 const NAMED_STATES: usize = 6;
 
@@ -36,6 +39,7 @@ pub fn equilibrium_settings() -> Settings {
         initial_step: 0.005,
         largest_step: 0.1,
         predictor_error: 1e-3,
+        largest_correction: 3.0,
         corrector_tolerance: 1e-12,
         smallest_part: 1e-7,
         most_trials: 400,
@@ -235,7 +239,6 @@ impl<'a> Equilibria<'a> {
         known: Option<BranchPoint>,
         (scales, index): (&[f64], usize),
     ) -> Result<Departure, Error> {
-        let n = problem.dimension;
         let leaves = |unknown: Vec<f64>, point: BranchPoint| Departure {
             tangent: point.tangents[1].clone(),
             unknown,
@@ -258,24 +261,43 @@ impl<'a> Equilibria<'a> {
         };
         match point {
             Some(point) => Ok(leaves(unknown, point)),
-            None => {
-                let name = &self.field.parameter_names()[index];
-                let names = self.field.state_names();
-                let state: Vec<String> = names
-                    .iter()
-                    .zip(&unknown)
-                    .take(NAMED_STATES)
-                    .map(|(name, value)| format!("{name} = {}", readable(*value)))
-                    .collect();
-                let more = if n > NAMED_STATES { ", .." } else { "" };
-                let allowed = format!(
-                    "the equilibrium that was found there, {}{more}, is a branch point, or degenerate, and no single branch \
-                     passes through it; start beside it, at a slightly different {name}, or where another equilibrium is nearer",
-                    state.join(", ")
-                );
-                Err(invalid(&format!("start at {name}"), &unknown[n].to_string(), &allowed))
-            }
+            None => Err(self.no_single_branch(problem, &unknown, scales, index)),
         }
+    }
+
+    /// Why no single branch leaves an equilibrium.
+    fn no_single_branch(
+        &self,
+        problem: &EquilibriumProblem<'_>,
+        unknown: &[f64],
+        scales: &[f64],
+        index: usize,
+    ) -> Error {
+        let n = problem.dimension;
+        let name = &self.field.parameter_names()[index];
+        let names = self.field.state_names();
+        let some = names.iter().zip(unknown).take(NAMED_STATES);
+        let place: Vec<String> = some.map(|(name, value)| format!("{name} = {}", readable(*value))).collect();
+        let place = place.join(", ");
+        let more = if n > NAMED_STATES { ", .." } else { "" };
+        let allowed = match line_through(problem, unknown, scales) {
+            Some(direction) => {
+                let largest = direction.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+                let moves = |entry: f64| entry.abs() > MOVED * largest;
+                let moved = names.iter().zip(&direction).filter(|(_, entry)| moves(**entry));
+                let moved: Vec<&str> = moved.map(|(name, _)| name.as_str()).collect();
+                format!(
+                    "the equilibrium that was found there, {place}{more}, is one of a whole line of them for the same {name}, along \
+                     which {} move: take states that stay, such as differences of phases, or hold one of them fixed",
+                    moved.join(", ")
+                )
+            }
+            None => format!(
+                "the equilibrium that was found there, {place}{more}, is a branch point, or degenerate, and no single branch passes \
+                 through it; start beside it, at a slightly different {name}, or where another equilibrium is nearer"
+            ),
+        };
+        invalid(&format!("start at {name}"), &unknown[n].to_string(), &allowed)
     }
 }
 
@@ -326,7 +348,7 @@ impl Departure {
             (tangent, cells) = (half.tangent.clone(), half.cells.clone());
         }
         let end = if tangent.last().is_some_and(|rate| *rate > 0.0) { bound.upper } else { bound.lower };
-        let is_at_end = (value - end).abs() <= f64::EPSILON * end.abs() && self.branch_point.is_none();
+        let is_at_end = (value - end).abs() <= f64::EPSILON * end.abs().max(bound.width());
         if !self.is_vertical && is_at_end {
             return Ok(Followed::nothing(Stop::RangeEnd { bound: 0, value }));
         }

@@ -64,7 +64,9 @@ proptest! {
             .run()
             .unwrap();
         prop_assert!(branch.unlocated.is_empty(), "{:?}", branch.unlocated);
-        prop_assert!(kinds(&branch) == ["LP1", "LP2"], "{:?}", kinds(&branch));
+        // Between them the growing state and the one that follows may make neutral saddles.
+        let others: Vec<String> = kinds(&branch).into_iter().filter(|kind| !kind.starts_with("NS")).collect();
+        prop_assert!(others == ["LP1", "LP2"], "{others:?}");
         for (fold, right) in branch.folds().zip(flank.folds()) {
             prop_assert!((fold.value - right).abs() < 1e-10, "{} {right}", fold.value);
         }
