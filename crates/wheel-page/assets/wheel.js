@@ -379,7 +379,7 @@ async function drawShimmy() {
 
 /** @param {Picture} picture */
 function showShimmyPicture(picture) {
-  showPicture(byId("shimmy-picture"), picture, `Shimmy with sliding along ${state.along.key}`, null, shimmyZoom, null);
+  showPicture(byId("shimmy-picture"), picture, `Shimmy that remains along ${state.along.key}`, null, shimmyZoom, null);
 }
 
 /** What a picture of shimmy is asked with. @param {Answer} shimmy */

@@ -8,7 +8,6 @@ use crate::options::{OptionEntry, Options};
 use crate::switches::{GivenUp, Switch, TimeSwitches};
 use crate::tape::Tape;
 use arclength::{Direction, ErasedField, Scalar, Threshold, VectorField};
-use reading::Continued;
 
 /// A model read from a `.ode` text.
 ///
@@ -143,39 +142,6 @@ impl Model {
     /// Has [`VectorField::evaluate`] be the right-hand side at one time, so that it is a field of its own.
     pub fn freeze(&mut self, time: f64) {
         self.frozen = Some(time);
-    }
-
-    /// The model as its branches are followed at these parameters, and the largest relative change that makes.
-    ///
-    /// Guards of removable `0/0`, as `if(abs(v)<1e-4)then(1)else(v/(1-exp(-v)))`, are left out, as the quotient is computed
-    /// without them: the change is that of the quotient where the guard held, `None` where there is none. What switches on the parameter
-    /// that varies, given by its number, is among the [switch functions](VectorField::thresholds), so that a branch along it passes a kink
-    /// or a jump there as it passes those in states.
-    ///
-    /// ```
-    /// use arclength::VectorField;
-    /// let model = arclength_ode::Model::parse("par p=1\nx'=max(p,0)-x\ndone\n")?;
-    /// assert!(model.thresholds().is_empty());
-    /// assert_eq!(model.for_continuation(&[1.0], Some(0)).0.thresholds().len(), 1);
-    /// let model = arclength_ode::Model::parse("x'=1-if(abs(x)<1e-4)then(1)else(x/(1-exp(-x)))\ndone\n")?;
-    /// let (smooth, change) = model.for_continuation(&[], None);
-    /// assert_eq!((model.thresholds().len(), smooth.thresholds().len()), (2, 0));
-    /// assert!((change.unwrap() / 5e-5 - 1.0).abs() < 1e-4);
-    /// # Ok::<(), arclength_ode::OdeError>(())
-    /// ```
-    pub fn for_continuation(&self, parameters: &[f64], varying: Option<usize>) -> (Self, Option<f64>) {
-        let mut model = self.clone();
-        if !self.has_switches {
-            return (model, None);
-        }
-        // The text has been read before; should that fail now, the field is followed as it is.
-        let Ok(Continued { field, regions, thresholds, change }) =
-            Continued::read(&self.source, parameters, varying)
-        else {
-            return (model, None);
-        };
-        (model.field, model.regions, model.thresholds) = (field, regions, thresholds);
-        (model, change)
     }
 
     /// Writes the right-hand side at a time into `derivative`.

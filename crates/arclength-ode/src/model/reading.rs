@@ -33,20 +33,53 @@ impl Model {
     pub fn parse_bytes(bytes: &[u8]) -> Result<Self, OdeError> {
         Self::parse(&decode(bytes))
     }
+
+    /// The model as its branches are followed at these parameters, and the largest relative change that makes.
+    ///
+    /// Guards of removable `0/0`, as `if(abs(v)<1e-4)then(1)else(v/(1-exp(-v)))`, are left out, as the quotient is computed
+    /// without them: the change is that of the quotient where the guard held, `None` where there is none. What switches on the parameter
+    /// that varies, given by its number, is among the [switch functions](VectorField::thresholds), so that a branch along it passes a kink
+    /// or a jump there as it passes those in states.
+    ///
+    /// ```
+    /// use arclength::VectorField;
+    /// let model = arclength_ode::Model::parse("par p=1\nx'=max(p,0)-x\ndone\n")?;
+    /// assert!(model.thresholds().is_empty());
+    /// assert_eq!(model.for_continuation(&[1.0], Some(0)).0.thresholds().len(), 1);
+    /// let model = arclength_ode::Model::parse("x'=1-if(abs(x)<1e-4)then(1)else(x/(1-exp(-x)))\ndone\n")?;
+    /// let (smooth, change) = model.for_continuation(&[], None);
+    /// assert_eq!((model.thresholds().len(), smooth.thresholds().len()), (2, 0));
+    /// assert!((change.unwrap() / 5e-5 - 1.0).abs() < 1e-4);
+    /// # Ok::<(), arclength_ode::OdeError>(())
+    /// ```
+    pub fn for_continuation(&self, parameters: &[f64], varying: Option<usize>) -> (Self, Option<f64>) {
+        let mut model = self.clone();
+        if !self.has_switches {
+            return (model, None);
+        }
+        // The text has been read before; should that fail now, the field is followed as it is.
+        let Ok(Continued { field, regions, thresholds, change }) =
+            Continued::read(&self.source, parameters, varying)
+        else {
+            return (model, None);
+        };
+        (model.field, model.regions, model.thresholds) = (field, regions, thresholds);
+        (model, change)
+    }
 }
 
 /// What replaces the field of a model where a branch is followed.
-pub(super) struct Continued {
-    pub field: Tape,
-    pub regions: Option<Tape>,
-    pub thresholds: Vec<Threshold>,
+struct Continued {
+    field: Tape,
+    regions: Option<Tape>,
+    thresholds: Vec<Threshold>,
     /// The largest relative change of a quotient whose guard was left out.
-    pub change: Option<f64>,
+    change: Option<f64>,
 }
 
 impl Continued {
     /// Of the model of a text at these parameters, with what switches on the parameter that varies.
-    pub(super) fn read(source: &str, parameters: &[f64], varying: Option<usize>) -> Result<Self, OdeError> {
+    fn read(source: &str, parameters: &[f64], varying: Option<usize>) -> Result<Self, OdeError> {
         let declarations = Declarations::read(source)?;
         let mut lowering = Lowering::new(&declarations.symbols);
         let lowered = Lowered::of(&declarations, &mut lowering)?;
