@@ -60,6 +60,7 @@ mod source;
 mod statement;
 mod switches;
 mod tape;
+mod vanishing;
 
 pub use builder::{BuiltNode, ModelBuilder, Operator};
 pub use error::{OdeError, Place, Warning};
@@ -69,6 +70,7 @@ pub use not_finite::NotFinite;
 pub use options::{OptionEntry, Options};
 pub use quantity::Quantity;
 pub use switches::{GivenUp, Switch};
+pub use vanishing::Vanishing;
 
 /// The code of the README, which is tested.
 #[cfg(doctest)]

@@ -271,8 +271,7 @@ impl SimulateRequest {
         let largest_step = self.max_step.unwrap_or(by_model);
         let bound =
             self.bound.or_else(|| file.number("bound").filter(|bound| *bound > 0.0)).unwrap_or(f64::INFINITY);
-        let motion = (first, &chosen.start[..]);
-        let absolute = absolute_tolerances(&chosen.model, &chosen.parameters, motion, absolute);
+        let absolute = absolute_tolerances(&chosen.model, &chosen.start, absolute);
         let accuracy = Accuracy {
             relative,
             absolute: absolute.clone(),

@@ -23,7 +23,7 @@ fn neuron(guard: f64) -> String {
 fn guards_of_rates_do_not_stop_branches() {
     for guard in [1e-3, 1e-7] {
         let folder = folder(&neuron(guard));
-        let told = folder.run("equilibria model.ode --along i=0:200 -o e.json -q");
+        let told = folder.run("equilibria model.ode --along i=0:200 -o e.json");
         assert!(told.messages.contains("the guards against 0/0"), "{}", told.messages);
         let equilibria = folder.json("equilibria model.ode --along i=0:200");
         for (label, place) in [("HB1", 9.77933799539), ("HB2", 154.526333666)] {

@@ -10,6 +10,7 @@ use crate::options::OptionEntry;
 use crate::source::{decode, physical_lines};
 use crate::switches::TimeSwitches;
 use crate::tape::{MAXIMUM_REGISTERS, Tape, schedule};
+use crate::vanishing::Vanishing;
 use arclength::Threshold;
 
 impl Model {
@@ -32,6 +33,14 @@ impl Model {
     /// As [`Model::parse`].
     pub fn parse_bytes(bytes: &[u8]) -> Result<Self, OdeError> {
         Self::parse(&decode(bytes))
+    }
+
+    /// Which states stay zero; `None` of a text that cannot be read once more.
+    pub fn vanishing(&self) -> Option<Vanishing> {
+        let declarations = Declarations::read(&self.source).ok()?;
+        let mut lowering = Lowering::new(&declarations.symbols);
+        let field = Lowered::of(&declarations, &mut lowering).ok()?.field;
+        Some(Vanishing { graph: lowering.graph, field })
     }
 
     /// The model as its branches are followed at these parameters, and the largest relative change that makes.

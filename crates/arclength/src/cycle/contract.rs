@@ -294,8 +294,11 @@ impl Curve for CycleCurve<'_> {
     }
 
     fn hindrance(&mut self, solution: &Solution<CycleInspection>) -> Option<CycleEnd> {
+        let [period, parameter] = [solution.unknown[solution.unknown.len() - 2], *solution.unknown.last()?];
+        if let Some(beside) = self.standstill(&solution.unknown) {
+            return Some(CycleEnd::PeriodUnbounded { period, parameter, beside });
+        }
         let states = self.collocation.problem.field.state_names();
-        let parameter = *solution.unknown.last()?;
         let unresolved = states.into_iter().enumerate().filter_map(|(index, state)| {
             let Extremes { smallest, largest } = solution.point.extremes[index];
             let size = smallest.abs().max(largest.abs());

@@ -4,6 +4,9 @@ use super::{ABOUT_JUMP, ABOUT_ZERO, Along, GAP, NEAR};
 use crate::cycle::gate::{Course, Gate, GateFunction};
 use crate::differentiation::{Dual, Scalar};
 
+/// Range of a state, as part of its size, up to which it rests.
+const RESTING: f64 = 1e-12;
+
 impl Along<'_> {
     /// The gates at which the state jumps from one mesh point to the next, with the numbers of the mesh points.
     pub(in crate::cycle) fn jumps(&self) -> Vec<(usize, Gate)> {
@@ -20,7 +23,9 @@ impl Along<'_> {
                 let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
                     (low.min(*value), high.max(*value))
                 });
-                high - low
+                // What is left of a state that rests is rounding.
+                let rests = high - low <= RESTING * low.abs().max(high.abs());
+                if rests { 0.0 } else { high - low }
             })
             .collect();
         let distance = |a: &[f64], b: &[f64]| {
