@@ -7,7 +7,7 @@
 use arclength_ode::Model;
 
 /// Absolute tolerance of a state that stays zero by itself: below it double precision has no numbers before long.
-const SMALLEST: f64 = 1e-100;
+pub(super) const SMALLEST: f64 = 1e-290;
 /// Sets of small states that are looked at: beyond, none is.
 const MOST_SETS: usize = 500;
 

@@ -266,7 +266,7 @@ fn a_stiff_problem_of_chemistry_is_followed_to_its_end() {
     let at = |name: &str, index: usize| list(&history, "states", name)[index];
     let passed = times[last].as_f64().unwrap() - times[middle].as_f64().unwrap();
     let grown = 1.0 / at("y2", last) - 1.0 / at("y2", middle);
-    assert!((grown / (1.13e9 * passed) - 1.0).abs() < 0.1, "{grown}");
+    assert!((grown / (1.13e9 * passed) - 1.0).abs() < 0.2, "{grown}");
     for index in [middle, last] {
         let excess = at("y2", index) - at("y3", index) - at("y4", index);
         assert!(excess.abs() < 1e-20, "{excess}");

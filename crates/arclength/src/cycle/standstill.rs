@@ -7,7 +7,7 @@ use super::gate::GateFunction;
 use super::slow_passage::SlowPassage;
 
 /// Way in a whole period at the speed at the gate, in sizes of the states, below which all of them stand still.
-const STANDSTILL: f64 = 1e-5;
+const STANDSTILL: f64 = 1e-4;
 
 impl CycleCurve<'_> {
     /// The gate at which all states stand still.
