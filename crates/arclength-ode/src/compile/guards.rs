@@ -93,7 +93,7 @@ impl Graph {
             for side in [0.0, -1.0, 1.0] {
                 let there = difference(zero + side * width / factor);
                 // A number that does not exist is no small one.
-                if !(there <= LARGEST_CHANGE) {
+                if there.is_nan() || there > LARGEST_CHANGE {
                     return None;
                 }
                 change = change.max(there);
