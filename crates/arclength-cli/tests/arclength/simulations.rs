@@ -296,8 +296,8 @@ fn small_states_that_grow_keep_their_digits() {
 fn small_states_that_grow_together_keep_their_digits() {
     let model = "s'=-.5*s*i\ne'=.5*s*i-.3*e\ni'=.3*e-.2*i\ninit s=1,e=0,i=1e-14\ndone\n";
     let history = simulate(model, "--duration 40 --points 2");
-    let [sum, product] = [-0.5, 0.3 * 0.2 - 0.3 * 0.5];
-    let root = (0.25 * sum * sum - product as f64).sqrt();
+    let [sum, product]: [f64; 2] = [-0.5, 0.3 * 0.2 - 0.3 * 0.5];
+    let root = (0.25 * sum * sum - product).sqrt();
     let [fast, slow] = [0.5 * sum + root, 0.5 * sum - root];
     // From the start (0, 1) the infected have the rate -.2.
     let weight = (-0.2 - slow) / (fast - slow);
