@@ -47,7 +47,7 @@ impl Model {
     ///
     /// Guards of removable `0/0`, as `if(abs(v)<1e-4)then(1)else(v/(1-exp(-v)))`, are left out, as the quotient is computed
     /// without them: the change is that of the quotient where the guard held, `None` where there is none. What switches on the parameter
-    /// that varies, given by its number, is among the [switch functions](VectorField::thresholds), so that a branch along it passes a kink
+    /// that varies, given by its number, is among the [switch functions](arclength::VectorField::thresholds), so that a branch along it passes a kink
     /// or a jump there as it passes those in states.
     ///
     /// ```
