@@ -48,10 +48,7 @@ pub(crate) fn natural_scales(
         let (size, length) = (state[index].abs(), nonlinear[index]);
         let is_far = size < NONLINEAR_SHARE * length && length.is_finite();
         let place = (index, AT_ZERO * length);
-        if is_far
-            && (lengths.agree_in_a_row(&jacobian, (index, size), &units)
-                || !lengths.hold_at(field, (state, parameters), &jacobian, place, &units))
-        {
+        if is_far && !lengths.hold_at(field, (state, parameters), &jacobian, place, &units) {
             nonlinear[index] = f64::INFINITY;
         }
     }
@@ -146,22 +143,6 @@ struct Derivatives {
 }
 
 impl Derivatives {
-    /// Whether the rates of some state alone change by their own size over about the size of a state: beside fast ones those of slow states
-    /// are next to none.
-    fn agree_in_a_row(&self, jacobian: &[f64], (index, size): (usize, f64), units: &[f64]) -> bool {
-        let n = self.first.len() / jacobian.len();
-        let block = n * n * index;
-        let largest = |entries: &[f64], row: usize| {
-            (0..n).map(|column| entries[row + n * column].abs() * units[column]).fold(0.0, f64::max)
-        };
-        (0..n).any(|row| {
-            let linear = largest(jacobian, row);
-            let quadratic = largest(&self.first[block..block + n * n], row);
-            let length = linear / quadratic;
-            quadratic > 0.0 && size > NONLINEAR_SHARE * length && length > NONLINEAR_SHARE * size
-        })
-    }
-
     /// Whether the balanced Jacobian changes over a distance in one state about as its derivatives say.
     fn hold_at(
         &self,
