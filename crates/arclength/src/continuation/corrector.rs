@@ -113,7 +113,6 @@ pub fn correct<C: Curve>(
         // The error left is below length * contraction once the contraction is known.
         let converged = length < settings.corrector_tolerance
             || (iteration > 1
-                && (fresh_jacobian || !curve.confirms_chords())
                 && contraction < CHORD_CONTRACTION
                 && length * contraction < settings.corrector_tolerance);
         if converged || stagnates {

@@ -104,12 +104,6 @@ pub trait Curve: Equations {
         true
     }
 
-    /// Whether the slow convergence of some unknowns may hide behind the fast convergence of others in a step with an old Jacobian, so that
-    /// such a step has to be confirmed by another one.
-    fn confirms_chords(&self) -> bool {
-        false
-    }
-
     /// Why the equations are not finite.
     fn why_not_finite(&self, _unknown: &[f64]) -> CorrectionFailure {
         CorrectionFailure::NotFinite

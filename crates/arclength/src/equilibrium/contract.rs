@@ -100,10 +100,6 @@ impl Curve for EquilibriumCurve<'_> {
         Ok(EquilibriumInspection { spectrum: here, rates, orientation, determinant, cells, special: None })
     }
 
-    fn confirms_chords(&self) -> bool {
-        true
-    }
-
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
         Cow::Borrowed(TEST_FUNCTIONS)
     }

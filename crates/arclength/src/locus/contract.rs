@@ -65,10 +65,6 @@ impl Curve for LocusCurve<'_> {
         Ok(EquilibriumLocusInspection { spectrum, monitor, special: None })
     }
 
-    fn confirms_chords(&self) -> bool {
-        true
-    }
-
     fn test_functions(&self) -> Cow<'static, [TestFunction<SpecialKind>]> {
         Cow::Borrowed(self.system.problem.test_functions())
     }

@@ -303,6 +303,12 @@ impl FitResult {
         writeln!(out)?;
         let nothing = "none: the motion is stable at all speeds";
         tell("critical speed", "m/s", &consequences.critical_speed, nothing, out)?;
+        if consequences.critical_speed.value == Some(0.0) {
+            writeln!(
+                out,
+                "  (0: the motion is unstable from standstill on; `kingpin stability` tells at which speeds it is stable, if at any)"
+            )?;
+        }
         if let Some(speed) = &consequences.critical_speed_with_friction {
             tell(
                 "critical speed with friction",
