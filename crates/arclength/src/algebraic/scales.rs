@@ -18,6 +18,8 @@ const AT_ZERO: f64 = 0.1;
 /// Ratio of the change of the Jacobian over that distance to what its derivatives say, beyond which these say nothing about it: beside a
 /// steep flank everything is flat.
 const EXTRAPOLATES: f64 = 10.0;
+/// Part of its size by which it changes over a distance that counts, where they say nothing.
+const CHANGED: f64 = 0.3;
 /// States smaller than this part of what drives them are zero but for rounding.
 const ROUNDED: f64 = 1e-10;
 /// Rates slower than this part of the fastest may be rounding of zero.
@@ -49,7 +51,9 @@ pub(crate) fn natural_scales(
         let is_far = size < NONLINEAR_SHARE * length && length.is_finite();
         let place = (index, AT_ZERO * length);
         if is_far && !lengths.hold_at(field, (state, parameters), &jacobian, place, &units) {
-            nonlinear[index] = f64::INFINITY;
+            let from = size.max(ROUNDED * length);
+            nonlinear[index] =
+                changing_length(field, (state, parameters), &jacobian, (index, from..length), &units);
         }
     }
     let mut scales: Vec<f64> = (0..n)
@@ -170,6 +174,34 @@ impl Derivatives {
             exists && change < EXTRAPOLATES * expected && expected < EXTRAPOLATES * change
         })
     }
+}
+
+/// The first of distances in one state, each ten times the one before, over which the balanced Jacobian changes by a good part of its own
+/// size; infinite where it does so over none.
+fn changing_length(
+    field: &ErasedField<'_>,
+    (state, parameters): (&[f64], &[f64]),
+    jacobian: &[f64],
+    (index, range): (usize, std::ops::Range<f64>),
+    units: &[f64],
+) -> f64 {
+    let n = state.len();
+    let largest = |entry: &dyn Fn(usize) -> f64| {
+        let balanced = (0..n * n).map(|place| entry(place).abs() * units[place / n] / units[place % n]);
+        balanced.fold(0.0, f64::max)
+    };
+    let linear = largest(&|entry| jacobian[entry]);
+    let distances = std::iter::successors(Some(range.start), |distance| Some(distance * 10.0));
+    let mut distances = distances.skip(1).take_while(|distance| *distance < range.end);
+    let changes = |distance: &f64| {
+        [-distance, *distance].into_iter().any(|way| {
+            let mut there = state.to_vec();
+            there[index] += way;
+            let there = jacobian_at(field, &there, parameters);
+            largest(&|entry| there[entry] - jacobian[entry]) > CHANGED * linear
+        })
+    };
+    if range.start > 0.0 { distances.find(changes).unwrap_or(f64::INFINITY) } else { f64::INFINITY }
 }
 
 fn jacobian_at(field: &ErasedField<'_>, state: &[f64], parameters: &[f64]) -> Vec<f64> {
