@@ -64,7 +64,7 @@ impl ChosenModel {
 
     /// Takes the model as its branches are followed, with what switches on the one parameter that varies; what to say of that.
     pub fn prepare_for_continuation(&mut self, varying: Option<usize>) -> Option<String> {
-        let (model, change) = self.model.for_continuation(&self.parameters, varying);
+        let (model, change) = self.model.for_continuation(&self.parameters, varying)?;
         self.model = model;
         change.map(|change| {
             format!(

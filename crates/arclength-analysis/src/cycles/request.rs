@@ -184,11 +184,10 @@ impl CyclesRequest {
 
     /// A labelled point with its model.
     fn open_point(&self, reference: &PointReference, files: &dyn Files) -> Result<Opened, Error> {
-        let mut point = LabelledPoint::read(reference, files)?;
+        let point = LabelledPoint::read(reference, files)?;
         let mut chosen = self.change(point.chosen.clone(), &point.label)?;
         let mut warnings = Vec::from_iter(chosen.prepare_for_continuation(None));
-        point.chosen.model = chosen.model.clone();
-        let (start, how) = self.start(reference, &point, &chosen.parameters)?;
+        let (start, how) = self.start(reference, &point, &chosen)?;
         let itself =
             matches!(start, CycleStart::Orbit(_)) && matches!(point.solution, LabelledSolution::Cycle { .. });
         if itself && !self.stay && matches!(kind(&point.label), "PD" | "BPC") {
@@ -206,7 +205,7 @@ impl CyclesRequest {
         &self,
         reference: &PointReference,
         point: &LabelledPoint,
-        parameters: &[f64],
+        chosen: &ChosenModel,
     ) -> Result<(CycleStart, &'static str), Error> {
         match &point.solution {
             LabelledSolution::Cycle { orbit, branching } => Ok(match branching {
@@ -229,7 +228,7 @@ impl CyclesRequest {
                 Ok((CycleStart::from(hopf), "the cycles that are born there"))
             }
             LabelledSolution::Motion { duration, .. } => {
-                let model = &point.chosen.model;
+                let ChosenModel { model, parameters, .. } = chosen;
                 let initial = &point.chosen.start;
                 let orbit = if model.thresholds().is_empty() && model.global_events().is_empty() {
                     Orbit::from_time_history(model, parameters, initial, *duration)?

@@ -43,7 +43,7 @@ impl Model {
         Some(Vanishing { graph: lowering.graph, field })
     }
 
-    /// The model as its branches are followed at these parameters, and the largest relative change that makes.
+    /// The model as its branches are followed at these parameters, and the largest relative change that makes; `None` where it is this one.
     ///
     /// Guards of removable `0/0`, as `if(abs(v)<1e-4)then(1)else(v/(1-exp(-v)))`, are left out, as the quotient is computed
     /// without them: the change is that of the quotient where the guard held, `None` where there is none. What switches on the parameter
@@ -54,26 +54,25 @@ impl Model {
     /// use arclength::VectorField;
     /// let model = arclength_ode::Model::parse("par p=1\nx'=max(p,0)-x\ndone\n")?;
     /// assert!(model.thresholds().is_empty());
-    /// assert_eq!(model.for_continuation(&[1.0], Some(0)).0.thresholds().len(), 1);
+    /// assert_eq!(model.for_continuation(&[1.0], Some(0)).unwrap().0.thresholds().len(), 1);
     /// let model = arclength_ode::Model::parse("x'=1-if(abs(x)<1e-4)then(1)else(x/(1-exp(-x)))\ndone\n")?;
-    /// let (smooth, change) = model.for_continuation(&[], None);
+    /// let (smooth, change) = model.for_continuation(&[], None).unwrap();
     /// assert_eq!((model.thresholds().len(), smooth.thresholds().len()), (2, 0));
     /// assert!((change.unwrap() / 5e-5 - 1.0).abs() < 1e-4);
     /// # Ok::<(), arclength_ode::OdeError>(())
     /// ```
-    pub fn for_continuation(&self, parameters: &[f64], varying: Option<usize>) -> (Self, Option<f64>) {
-        let mut model = self.clone();
+    pub fn for_continuation(
+        &self,
+        parameters: &[f64],
+        varying: Option<usize>,
+    ) -> Option<(Self, Option<f64>)> {
         if !self.has_switches {
-            return (model, None);
+            return None;
         }
         // The text has been read before; should that fail now, the field is followed as it is.
-        let Ok(Continued { field, regions, thresholds, change }) =
-            Continued::read(&self.source, parameters, varying)
-        else {
-            return (model, None);
-        };
-        (model.field, model.regions, model.thresholds) = (field, regions, thresholds);
-        (model, change)
+        let Continued { field, regions, thresholds, change } =
+            Continued::read(&self.source, parameters, varying).ok()?;
+        Some((Self { field, regions, thresholds, ..self.clone() }, change))
     }
 }
 

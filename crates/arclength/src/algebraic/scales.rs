@@ -7,6 +7,7 @@
 
 use crate::differentiation::Dual;
 use crate::erased::ErasedField;
+use crate::integration::exact_jacobian;
 use crate::linear::strong_components::strong_components;
 
 /// A variable is at least this part of what the others, in its units, are.
@@ -46,14 +47,12 @@ pub(crate) fn natural_scales(
     let (jacobian, lengths) = derivatives(field, state, parameters, speed);
     let (group, units) = groups_and_units(&jacobian, n);
     let mut nonlinear = nonlinear_lengths(&jacobian, &lengths, (&group, &units), state, speed);
+    let around = Around { field, state, parameters, jacobian: &jacobian, units: &units };
     for index in 0..n {
         let (size, length) = (state[index].abs(), nonlinear[index]);
         let is_far = size < NONLINEAR_SHARE * length && length.is_finite();
-        let place = (index, AT_ZERO * length);
-        if is_far && !lengths.hold_at(field, (state, parameters), &jacobian, place, &units) {
-            let from = size.max(ROUNDED * length);
-            nonlinear[index] =
-                changing_length(field, (state, parameters), &jacobian, (index, from..length), &units);
+        if is_far && !around.changes_as(&lengths, index, AT_ZERO * length) {
+            nonlinear[index] = around.changing_length(index, size.max(ROUNDED * length), length);
         }
     }
     let mut scales: Vec<f64> = (0..n)
@@ -146,80 +145,64 @@ struct Derivatives {
     second: Vec<f64>,
 }
 
-impl Derivatives {
+/// The Jacobian around a state.
+struct Around<'a> {
+    field: &'a ErasedField<'a>,
+    state: &'a [f64],
+    parameters: &'a [f64],
+    /// At the state itself.
+    jacobian: &'a [f64],
+    units: &'a [f64],
+}
+
+impl Around<'_> {
+    /// The Jacobian away from the state in one direction.
+    fn displaced(&self, index: usize, way: f64) -> Vec<f64> {
+        let mut state = self.state.to_vec();
+        state[index] += way;
+        let parameters: Vec<_> = self.parameters.iter().map(|value| Dual::constant(*value)).collect();
+        let mut jacobian = vec![0.0; self.jacobian.len()];
+        let evaluate = |state: &[_], slope: &mut [_]| self.field.evaluate(state, &parameters, slope);
+        exact_jacobian(evaluate, &state, &mut jacobian);
+        jacobian
+    }
+
+    /// The largest balanced entry of a matrix.
+    fn largest(&self, entry: impl Fn(usize) -> f64) -> f64 {
+        let (n, units) = (self.units.len(), self.units);
+        let balanced = (0..n * n).map(|place| entry(place).abs() * units[place / n] / units[place % n]);
+        balanced.fold(0.0, f64::max)
+    }
+
     /// Whether the balanced Jacobian changes over a distance in one state about as its derivatives say.
-    fn hold_at(
-        &self,
-        field: &ErasedField<'_>,
-        (state, parameters): (&[f64], &[f64]),
-        jacobian: &[f64],
-        (index, distance): (usize, f64),
-        units: &[f64],
-    ) -> bool {
-        let n = state.len();
-        let largest = |entry: &dyn Fn(usize) -> f64| {
-            let balanced = (0..n * n).map(|place| entry(place).abs() * units[place / n] / units[place % n]);
-            balanced.fold(0.0, f64::max)
-        };
-        let block = n * n * index;
-        let expected = largest(&|entry| {
-            self.first[block + entry] * distance + 0.5 * self.second[block + entry] * distance * distance
+    fn changes_as(&self, derivatives: &Derivatives, index: usize, distance: f64) -> bool {
+        let block = self.jacobian.len() * index;
+        let expected = self.largest(|entry| {
+            let [first, second] = [&derivatives.first, &derivatives.second].map(|of| of[block + entry]);
+            first * distance + 0.5 * second * distance * distance
         });
         [-distance, distance].into_iter().any(|way| {
-            let mut there = state.to_vec();
-            there[index] += way;
-            let there = jacobian_at(field, &there, parameters);
-            let change = largest(&|entry| there[entry] - jacobian[entry]);
+            let there = self.displaced(index, way);
+            let change = self.largest(|entry| there[entry] - self.jacobian[entry]);
             let exists = there.iter().all(|entry| entry.is_finite());
             exists && change < EXTRAPOLATES * expected && expected < EXTRAPOLATES * change
         })
     }
-}
 
-/// The first of distances in one state, each ten times the one before, over which the balanced Jacobian changes by a good part of its own
-/// size; infinite where it does so over none.
-fn changing_length(
-    field: &ErasedField<'_>,
-    (state, parameters): (&[f64], &[f64]),
-    jacobian: &[f64],
-    (index, range): (usize, std::ops::Range<f64>),
-    units: &[f64],
-) -> f64 {
-    let n = state.len();
-    let largest = |entry: &dyn Fn(usize) -> f64| {
-        let balanced = (0..n * n).map(|place| entry(place).abs() * units[place / n] / units[place % n]);
-        balanced.fold(0.0, f64::max)
-    };
-    let linear = largest(&|entry| jacobian[entry]);
-    let distances = std::iter::successors(Some(range.start), |distance| Some(distance * 10.0));
-    let mut distances = distances.skip(1).take_while(|distance| *distance < range.end);
-    let changes = |distance: &f64| {
-        [-distance, *distance].into_iter().any(|way| {
-            let mut there = state.to_vec();
-            there[index] += way;
-            let there = jacobian_at(field, &there, parameters);
-            largest(&|entry| there[entry] - jacobian[entry]) > CHANGED * linear
-        })
-    };
-    if range.start > 0.0 { distances.find(changes).unwrap_or(f64::INFINITY) } else { f64::INFINITY }
-}
-
-fn jacobian_at(field: &ErasedField<'_>, state: &[f64], parameters: &[f64]) -> Vec<f64> {
-    type Single = Dual<f64, 1>;
-    let n = state.len();
-    let parameters: Vec<Single> = parameters.iter().map(|&value| Single::from(value)).collect();
-    let mut unknown: Vec<Single> = state.iter().map(|&value| Single::from(value)).collect();
-    let mut image = vec![Single::from(0.0); n];
-    let mut jacobian = vec![0.0; n * n];
-    for column in 0..n {
-        unknown[column].derivatives[0] = 1.0;
-        field.evaluate(&unknown, &parameters, &mut image);
-        for (row, value) in image.iter().enumerate() {
-            jacobian[row + n * column] = value.derivatives[0];
-        }
-        unknown[column].derivatives[0] = 0.0;
+    /// The first of distances in one state, each ten times the one before, over which the balanced Jacobian changes by a good part of its
+    /// own size; infinite where it does so over none.
+    fn changing_length(&self, index: usize, from: f64, until: f64) -> f64 {
+        let linear = self.largest(|entry| self.jacobian[entry]);
+        let changes = |distance: &f64| {
+            [-distance, *distance].into_iter().any(|way| {
+                let there = self.displaced(index, way);
+                self.largest(|entry| there[entry] - self.jacobian[entry]) > CHANGED * linear
+            })
+        };
+        let longer = |distance: &f64| Some(distance * 10.0).filter(|next| next > distance);
+        let distances = std::iter::successors(Some(from), longer).skip(1);
+        distances.take_while(|distance| *distance < until).find(changes).unwrap_or(f64::INFINITY)
     }
-    jacobian
 }
 
 fn derivatives(

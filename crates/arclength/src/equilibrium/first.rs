@@ -85,6 +85,15 @@ pub(crate) fn seek_erased(
     start: &[f64],
     parameters: &[f64],
 ) -> Result<FoundEquilibrium, Error> {
+    // The natural sizes of many states take long: where the states themselves are as large they are not asked for.
+    let is_beside = |state: &[f64]| {
+        state.iter().zip(start).all(|(there, here)| (there - here).abs() <= NEAR * here.abs())
+    };
+    let found = match find_erased(field, start, parameters) {
+        Ok(state) if is_beside(&state) => return Ok(FoundEquilibrium { state, by: FoundBy::Newton }),
+        Err(error) if !matches!(error, Error::NotFound { .. }) => return Err(error),
+        found => found,
+    };
     let natural = natural_scales(&field, start, parameters, &vec![0.0; start.len()]);
     let sizes: Vec<f64> = natural.iter().zip(start).map(|(size, value)| size.max(value.abs())).collect();
     let between = |one: &[f64], other: &[f64]| {
@@ -92,9 +101,8 @@ pub(crate) fn seek_erased(
         parts.fold(0.0, f64::max)
     };
     let distance = |state: &[f64]| between(state, start);
-    let found = match find_erased(field, start, parameters) {
+    let found = match found {
         Ok(state) if distance(&state) <= NEAR => return Ok(FoundEquilibrium { state, by: FoundBy::Newton }),
-        Err(error) if !matches!(error, Error::NotFound { .. }) => return Err(error),
         found => found,
     };
     let found_from = |state: &[f64]| find_erased(field, state, parameters).ok();

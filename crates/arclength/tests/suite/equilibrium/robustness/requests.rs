@@ -2,7 +2,7 @@
 
 use approx::assert_relative_eq;
 use arclength::branch::Monitor;
-use arclength::equilibrium::{Equilibria, EquilibriumPoint, find_equilibrium};
+use arclength::equilibrium::{Equilibria, EquilibriumPoint, find_equilibrium, seek_equilibrium};
 use arclength::{Error, Scalar, VectorField};
 use std::f64::consts::PI;
 
@@ -27,6 +27,8 @@ fn newton_reaches_far_equilibria_and_says_why_it_does_not() {
     assert!(matches!(error, Error::NotFound { sought: "equilibrium", .. }), "{error}");
     assert!(find_equilibrium(&Root, &[-1.0], &[3.0]).is_err());
     assert!(find_equilibrium(&Root, &[1.0, 2.0], &[3.0]).is_err());
+    assert!(seek_equilibrium(&Root, &[1.0, 2.0], &[3.0]).is_err());
+    assert!(seek_equilibrium(&Root, &[f64::NAN], &[3.0]).is_err());
     assert!(find_equilibrium(&Root, &[f64::NAN], &[3.0]).is_err());
 }
 
