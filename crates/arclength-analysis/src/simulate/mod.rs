@@ -1,6 +1,7 @@
 //! A time history of a model.
 
 mod accuracy;
+mod analysis;
 mod condition;
 mod events;
 mod flow;
@@ -16,8 +17,9 @@ mod settled;
 mod small_states;
 mod smooth;
 
+pub use analysis::SimulateAnalysis;
 pub use plot::{PlotError, PlotRequest};
-pub use request::{IntegrationMethod, SimulateAnalysis, SimulateRequest};
+pub use request::{IntegrationMethod, SimulateRequest};
 pub use result::{Histories, HistoryResult};
 pub use section::{SectionDirection, SectionError, SectionRequest};
 pub(crate) use settled::settled_orbit;

@@ -5,6 +5,7 @@
 //! meshes, the parameter being the same, until they agree; the finest solution is the one that is told, with an error that was
 //! measured. What rounding leaves is measured too, by one more step of Newton's method.
 
+use super::asked::Asked;
 use super::borders::MOST_FITS;
 use super::branch::{CycleBranch, CyclePoint};
 use super::curve::CycleCurve;
@@ -12,7 +13,6 @@ use super::floquet::{Floquet, multiplier_changes};
 use super::limit_cycle::LimitCycle;
 use super::orbit::Orbit;
 use super::sizes::StateSizes;
-use super::start::Asked;
 use super::variational::{KnownOrbit, resolved_multipliers};
 use crate::branch::SpecialKind;
 use crate::collocation::equations::Collocation;

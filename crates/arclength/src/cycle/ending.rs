@@ -1,9 +1,9 @@
 //! The points in which branches of cycles end, solved for: Hopf points and period doublings.
 
+use super::asked::Asked;
 use super::branch::{CycleBranch, CyclePoint};
 use super::end::CycleEnd;
 use super::locating::doubling_near;
-use super::start::Asked;
 use crate::algebraic::scales::natural_scales;
 use crate::continuation::Stop;
 use crate::equilibrium::HopfPoint;

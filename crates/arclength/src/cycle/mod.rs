@@ -1,6 +1,7 @@
 //! Limit cycles: collocation, meshes, Floquet multipliers, special points.
 
 mod along_orbit;
+mod asked;
 mod borders;
 mod branch;
 mod confirmation;
@@ -15,6 +16,9 @@ mod expansion;
 mod exponentials;
 pub(crate) mod extrema;
 pub(crate) mod floquet;
+mod from_bifurcation;
+mod from_hopf_point;
+mod from_orbit;
 pub(crate) mod gate;
 mod grazing;
 mod hopf_start;

@@ -56,6 +56,7 @@ proptest! {
     ) {
         prop_assume!(height * steepness > 5.0);
         let flank = Flank { height, steepness, middle, unit };
+        prop_assume!(flank.folds().iter().all(|fold| (-0.99..1.99).contains(fold)));
         let first = if start > 0.0 { start + height } else { start };
         let branch = Equilibria::of(&flank)
             .start(&[first * unit, first * unit])
