@@ -56,22 +56,28 @@ impl NeglectedDryFriction {
 
     /// All that is known of it, in sentences.
     pub(crate) fn sentences(&self) -> Vec<String> {
-        let mut sentences = vec![self.in_words()];
-        let Self { critical_speed_with_friction, is_told, own, .. } = self;
-        if !is_told {
-            sentences.push("`simulate`, `basin`, `safe-kick` and `margin` take it into account".to_owned());
-        }
-        let (at, speed) = match own {
+        [vec![self.in_words()], self.in_sentences("with it")].concat()
+    }
+
+    /// What takes it into account, and what it does to small motions; of which wheel is said by the words `with it`.
+    pub(crate) fn in_sentences(&self, with_it: &str) -> Vec<String> {
+        let elsewhere = "`simulate`, `basin`, `safe-kick` and `margin` take it into account".to_owned();
+        let elsewhere = Some(elsewhere).filter(|_| !self.is_told);
+        elsewhere.into_iter().chain(self.speed_in_words(with_it)).collect()
+    }
+
+    /// Up to which speed small motions die out with it; nothing where that varies with what is not the wheel's own.
+    pub(crate) fn speed_in_words(&self, with_it: &str) -> Option<String> {
+        let (at, speed) = match &self.own {
             Some((place, speed)) => (format!("at {place} "), speed),
-            None if *is_told => (String::new(), critical_speed_with_friction),
-            None => return sentences,
+            None if self.is_told => (String::new(), &self.critical_speed_with_friction),
+            None => return None,
         };
-        sentences.push(match speed {
-            Some(0.0) => format!("{at}with it small motions grow at every speed all the same"),
-            Some(speed) => format!("{at}with it small motions die out up to {} m/s", readable(*speed)),
-            None => format!("{at}with it small motions die out at every speed"),
-        });
-        sentences
+        Some(match speed {
+            Some(0.0) => format!("{at}{with_it} small motions grow at every speed all the same"),
+            Some(speed) => format!("{at}{with_it} small motions die out up to {} m/s", readable(*speed)),
+            None => format!("{at}{with_it} small motions die out at every speed"),
+        })
     }
 
     /// Tells of it, where there is any.

@@ -98,8 +98,10 @@ impl Report for SteadyResult {
         let limit = self.wheel.get(Key::MuS) * self.normal_force;
         let rolling = if self.rolls {
             format!("yes: the ground can supply {} N", readable(limit))
+        } else if self.normal_force <= 0.0 {
+            "no: nothing presses the wheel on the ground".to_owned()
         } else {
-            format!("no: the ground can supply only {} N", readable(limit.max(0.0)))
+            format!("no: the ground can supply only {} N", readable(limit))
         };
         let mut table = Table::new(["", "", "", ""]);
         let mut row = |name: &str, value: f64, unit: &str, meaning: &str| {

@@ -2,7 +2,7 @@
 
 use crate::along::{along, drawn_as, varying};
 use crate::error::Error;
-use crate::parameters::parameters_of;
+use crate::parameters::parameters_over;
 use crate::states;
 use crate::steady::SteadyResult;
 use crate::uniform_curve::uniform_motion;
@@ -116,7 +116,7 @@ impl Report for SteadyAlongResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[self.interval.key()])
+        parameters_over(&self.wheel, &[(self.interval.key(), self.interval.ends().into())])
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -4,6 +4,7 @@ use crate::errors::Failure;
 use crate::stored::Stored;
 use arclength_analysis::Control;
 use kingpin_analysis::Journal;
+use kingpin_report::Report;
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -15,8 +16,10 @@ pub(crate) struct Finished {
 }
 
 impl Finished {
-    fn new(result: impl Stored + 'static, warnings: impl IntoIterator<Item = String>) -> Self {
-        Self { result: Box::new(result), warnings: warnings.into_iter().collect() }
+    /// With what is worth knowing of the parameters first, as the programs tell it.
+    fn new<R: Report + Send + Sync + 'static>(result: R, warnings: impl IntoIterator<Item = String>) -> Self {
+        let remarks = result.parameters().remarks;
+        Self { result: Box::new(result), warnings: remarks.into_iter().chain(warnings).collect() }
     }
 }
 

@@ -14,6 +14,25 @@ const MOST: usize = 24;
 pub(crate) const COLORS: [Color; 6] =
     [palette::VERMILION, palette::BLUE, palette::GREEN, palette::PURPLE, palette::ORANGE, palette::SKY_BLUE];
 
+/// The part by which colours are lighter each time that they come again.
+const LIGHTER: f64 = 0.35;
+
+/// The colour of the value with this index: where there are more values than colours these come again, lighter.
+pub(super) fn color_of(index: usize) -> Color {
+    let (round, index) = (index / COLORS.len(), index % COLORS.len());
+    (0..round).fold(COLORS[index], |color, _| color.lightened(LIGHTER))
+}
+
+/// A parameter and its value as a figure has them.
+pub(super) fn label_of(key: Key, value: f64) -> String {
+    let symbol = axis_label::symbol(key);
+    let unit = if key.unit() == "1" { String::new() } else { key.unit().replace("^2", "$^2$") };
+    match value {
+        value if value.is_infinite() => format!("{symbol}$=\\infty$"),
+        value => format!("{symbol}$={}$ {unit}", readable(value)).trim_end().to_owned(),
+    }
+}
+
 /// The limits of stability and of rolling of the wheel with another value of a third parameter.
 #[derive(Clone, Debug, Serialize)]
 pub struct Overlay {
@@ -118,12 +137,12 @@ impl Overlay {
 
     /// What it is called in a figure.
     pub(crate) fn label(&self) -> String {
-        let symbol = axis_label::symbol(self.key);
-        let unit = if self.key.unit() == "1" { String::new() } else { self.key.unit().replace("^2", "$^2$") };
-        match self.value {
-            value if value.is_infinite() => format!("{symbol}$=\\infty$"),
-            value => format!("{symbol}$={}$ {unit}", readable(value)).trim_end().to_owned(),
-        }
+        label_of(self.key, self.value)
+    }
+
+    /// Whether nothing of it is drawn: it has no limit of rolling, and none of stability or one that is that of the wheel.
+    pub(super) fn has_no_limit(&self, stability_is_shared: bool) -> bool {
+        self.rolling_limit.is_empty() && (stability_is_shared || self.stability_boundary.is_empty())
     }
 
     /// Its limits as lines: solid that of stability, dashed that of rolling. The longest one carries the name: of stability, if that

@@ -1,15 +1,16 @@
 //! A stability chart as a result.
 
-use super::overlay::{COLORS, LimitPoint, Overlay, points_of};
+use super::overlay::{LimitPoint, Overlay, color_of, label_of, points_of};
 use crate::axis_label;
 use crate::description;
 use crate::error::Error;
 use crate::neglected_dry_friction::NeglectedDryFriction;
-use crate::parameters::parameters_of;
+use crate::parameters::parameters_over;
 use arclength_analysis::Control;
 use kingpin::{Axis, GrowthRateChart, Key, Plane, Wheel};
 use kingpin_figure::{
-    CategoryMap, ColorMap, Figure, FigureError, Grid, HeatMap, Legend, Line, Panel, palette,
+    CategoryMap, ColorMap, Dash, Figure, FigureError, Grid, HeatMap, Legend, LegendEntry, Line, Panel,
+    palette,
 };
 use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
@@ -144,7 +145,10 @@ impl Report for ChartResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &self.keys())
+        parameters_over(
+            &self.wheel,
+            &[self.plane.x(), self.plane.y()].map(|axis| (axis.key(), [axis.start(), axis.end()])),
+        )
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -274,17 +278,24 @@ impl ChartResult {
         let grid = Grid::new(self.x.values.clone(), self.y.values.clone())?;
         let cells: Vec<usize> = self.stable.iter().map(|stable| usize::from(*stable != Some(true))).collect();
         let shade = palette::SKY_BLUE.lightened(0.65);
-        panel = panel.map(CategoryMap::new(grid, cells, [("stable", shade)])?);
-        // A load changes nothing of the stability: then there is one limit for all.
-        let same = |overlay: &Overlay| overlay.stability_boundary == self.stability_boundary;
-        let is_shared = self.overlays.iter().all(same);
-        if is_shared {
+        panel = panel.map(CategoryMap::new(grid, cells, [(self.own_values("stable"), shade)])?);
+        // A load changes nothing of the stability: then its limit is that of the wheel, which is drawn once.
+        let shares = |overlay: &Overlay| {
+            overlay.stability_boundary == self.stability_boundary
+                && overlay.value != self.wheel.get(overlay.key)
+        };
+        if self.overlays.iter().any(shares) {
             for curve in &self.stability_boundary {
                 panel = panel.curve(Line::new(curve.iter().copied()).color(palette::BLACK));
             }
         }
-        for (overlay, color) in self.overlays.iter().zip(COLORS.into_iter().cycle()) {
-            panel = panel.curves(overlay.lines(color, is_shared));
+        for (index, overlay) in self.overlays.iter().enumerate() {
+            let color = color_of(index);
+            panel = panel.curves(overlay.lines(color, shares(overlay)));
+            if overlay.has_no_limit(shares(overlay)) {
+                let name = format!("{}: no limit here", overlay.label());
+                panel = panel.legend_entry(LegendEntry::line(name, color, Dash::Solid));
+            }
         }
         let any = |curves: fn(&Overlay) -> &Vec<Vec<[f64; 2]>>| {
             self.overlays.iter().any(|overlay| !curves(overlay).is_empty())
@@ -292,6 +303,14 @@ impl ChartResult {
         let drawn = [any(|overlay| &overlay.stability_boundary), any(|overlay| &overlay.rolling_limit)];
         let panel = Overlay::legend(drawn[0], drawn[1]).fold(panel, Panel::legend_entry);
         Ok(self.with_friction_boundary(panel))
+    }
+
+    /// What holds for the wheel itself, with its own value of each parameter that the overlays change.
+    fn own_values(&self, what: &str) -> String {
+        let mut keys: Vec<Key> = self.overlays.iter().map(|overlay| overlay.key).collect();
+        keys.dedup();
+        let own = keys.iter().map(|key| label_of(*key, self.wheel.get(*key)));
+        format!("{what} at {}", own.collect::<Vec<_>>().join(", "))
     }
 
     /// The limit of small motions with dry friction about the king pin besides.

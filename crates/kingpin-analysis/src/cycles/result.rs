@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::forces::{self, ForcesResult};
 use crate::monitors::names;
 use crate::neglected_dry_friction::NeglectedDryFriction;
-use crate::parameters::{parameters_of, wheel_of};
+use crate::parameters::{parameters_over, wheel_of};
 use crate::states;
 use arclength::branch::LabelCounter;
 use arclength::cycle::Orbit;
@@ -270,7 +270,7 @@ impl Report for CyclesResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[self.interval.key()])
+        parameters_over(&self.wheel, &[(self.interval.key(), self.interval.ends().into())])
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -21,6 +21,10 @@ const PART_OF_SMALL_MOTIONS: f64 = 0.1;
 const PART_OF_CYCLES: f64 = 0.3;
 /// Dampers on the front between the lateral and the rotational one.
 const FRONT: usize = 9;
+/// The most, with those between them where the front is bent.
+const MOST_ON_FRONT: usize = 24;
+/// It is bent where it is farther than this part of its larger neighbour from the line between the two.
+const BENT: f64 = 0.2;
 /// The slight longitudinal damper that is tried on circles, as a part of the critical damping of the wheel's mass on its spring.
 const SLIGHT: f64 = 1e-3;
 /// Part by which it has to change the others to be told.
@@ -118,6 +122,23 @@ impl DamperRequest {
     }
 }
 
+/// Where a curve of points with ascending abscissae needs one more: in the middle of the wider interval beside the point at which it is
+/// bent most; nothing where it is bent nowhere.
+fn bent(points: &[[f64; 2]]) -> Option<f64> {
+    let bend = |[before, here, after]: [[f64; 2]; 3]| {
+        let part = (here[0] - before[0]) / (after[0] - before[0]);
+        let chord = before[1] + part * (after[1] - before[1]);
+        (here[1] - chord).abs() / before[1].max(after[1])
+    };
+    let triples = points.windows(3).map(|window| [window[0], window[1], window[2]]);
+    let bends = triples.map(|triple| (bend(triple), triple)).filter(|(bend, _)| *bend > BENT);
+    let (_, [before, here, after]) = bends.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    // Next to the steep side, where the ordinates differ most.
+    let steep_before = (before[1] - here[1]).abs() > (here[1] - after[1]).abs();
+    let [from, to] = if steep_before { [before[0], here[0]] } else { [here[0], after[0]] };
+    Some(0.5 * (from + to))
+}
+
 /// What dampers are sized for.
 struct Sizing {
     /// Without a damper, at the first of the radii and loads.
@@ -169,24 +190,33 @@ impl Sizing {
         Ok(is_told.then_some(WithLongitudinalDamper { c_u, c_q, c_psi }))
     }
 
-    /// The least damper about the king pin beside parts of the lateral one that is enough alone.
+    /// The least damper about the king pin beside parts of the lateral one that is enough alone: evenly spaced ones, and more where the
+    /// least damper is far from the line between those beside it.
     fn front(&self, lateral: Option<SmallestDamper>, control: &Control<'_>) -> Result<Front, Error> {
         let mut front = Front::default();
         let Some(SmallestDamper { damping, .. }) = lateral else { return Ok(front) };
+        let beside = |part: f64, control: &Control<'_>| match part {
+            1.0 => Ok(Some(0.0)),
+            part => {
+                let damped = self.wheel.with(Key::CQ, part * damping)?;
+                Ok::<_, Error>(self.alone(&damped, Key::CPsi, control)?.map(|damper| damper.damping))
+            }
+        };
         let count = if damping > 0.0 { FRONT } else { 1 };
+        let mut points: Vec<[f64; 2]> = Vec::new();
         for index in 0..count {
             let part = index as f64 / (FRONT - 1) as f64;
-            let damped = self.wheel.with(Key::CQ, part * damping)?;
-            let control = control.part(part..(part + 0.1).min(1.0));
-            let beside = if index + 1 == FRONT {
-                Some(0.0)
-            } else {
-                self.alone(&damped, Key::CPsi, &control)?.map(|damper| damper.damping)
-            };
-            if let Some(beside) = beside {
-                front.c_q.push(part * damping);
-                front.c_psi.push(beside);
-            }
+            let c_psi = beside(part, &control.part(part..(part + 0.1).min(1.0)))?;
+            points.extend(c_psi.map(|c_psi| [part, c_psi]));
+        }
+        while let Some(part) = bent(&points).filter(|_| points.len() < MOST_ON_FRONT) {
+            let Some(c_psi) = beside(part, &control.quiet())? else { break };
+            points.push([part, c_psi]);
+            points.sort_by(|one, other| one[0].total_cmp(&other[0]));
+        }
+        for [part, c_psi] in points {
+            front.c_q.push(part * damping);
+            front.c_psi.push(c_psi);
         }
         Ok(front)
     }

@@ -6,7 +6,7 @@ use super::large_cycles::LargeCycles;
 use crate::description;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::parameters::parameters_of;
-use kingpin::{CycleForces, Key, Tyre, Wheel};
+use kingpin::{CycleForces, Key, Tyre, Wheel, is_slowest_speed};
 use kingpin_report::numbers::{counted, readable, significant};
 use kingpin_report::{Columns, Parameters, Report, Schema, Table};
 use serde::Serialize;
@@ -280,6 +280,9 @@ impl WithoutCycles {
 /// What the dampers are for.
 pub(super) const REQUIREMENT: &str = "no shimmy is born: the uniform motion is stable at every speed";
 
+/// What is said where the lowest speed decides.
+const SLOWER_MAY_TAKE_MORE: &str = ", the lowest speed that was looked at: lower ones may take more";
+
 /// Pairs of dampers of which neither may be weaker.
 #[derive(Debug, Default, Serialize)]
 pub struct Front {
@@ -334,6 +337,26 @@ impl DamperResult {
         (!own.is_empty()).then(|| own.join(" and "))
     }
 
+    /// What dry friction does alone and beside the wheel's own dampers, in sentences that say which dampers are meant.
+    fn with_dry_friction(&self, neglected: &NeglectedDryFriction) -> Vec<String> {
+        let alone = neglected.in_sentences("with it and none of these dampers");
+        let own = [Key::CQ, Key::CPsi].into_iter().zip(self.own_dampers);
+        let mut damped = own.filter(|(_, damping)| *damping != 0.0);
+        let damped = damped.try_fold(self.wheel, |wheel, (key, damping)| wheel.with(key, damping));
+        let beside = self.replaced_dampers().zip(damped.ok()).and_then(|(own, wheel)| {
+            let neglected = NeglectedDryFriction::of(&wheel, &[Key::V])?;
+            neglected.speed_in_words(&format!("with it and the wheel's own, {own},"))
+        });
+        alone.into_iter().chain(beside).collect()
+    }
+
+    /// The dampers over which the lowest speed decides that was looked at.
+    pub(crate) fn decided_by_the_slowest(&self) -> Vec<Key> {
+        let decisive = [(Key::CQ, self.corner.c_q), (Key::CPsi, self.corner.c_psi)];
+        let slowest = decisive.into_iter().filter_map(|(key, speed)| Some((key, speed?)));
+        slowest.filter(|(_, speed)| is_slowest_speed(*speed, self.up_to)).map(|(key, _)| key).collect()
+    }
+
     /// Keys of which the wheel's own values do not count.
     fn replaced(&self) -> Vec<Key> {
         let given = self.ranges().given.into_iter().filter(|(_, range)| range.is_some()).map(|(key, _)| key);
@@ -373,9 +396,10 @@ impl Report for DamperResult {
                 (Some(_), None) => writeln!(out, "{name} alone: none is needed")?,
                 (Some(damping), Some(speed)) => writeln!(
                     out,
-                    "{name} alone: {} at least; {} decides",
+                    "{name} alone: {} at least; {} decides{}",
                     description::quantity(key, damping),
-                    ranges.place(speed, at)
+                    ranges.place(speed, at),
+                    if is_slowest_speed(speed, self.up_to) { SLOWER_MAY_TAKE_MORE } else { "" }
                 )?,
             }
         }
@@ -411,7 +435,9 @@ impl Report for DamperResult {
                 writeln!(out, "\nwhat was searched is no proof that there is none")?;
             }
         }
-        NeglectedDryFriction::tell(self.dry_friction.as_ref(), out)
+        let Some(neglected) = &self.dry_friction else { return Ok(()) };
+        writeln!(out, "\n{}", neglected.in_words())?;
+        self.with_dry_friction(neglected).iter().try_for_each(|sentence| writeln!(out, "{sentence}"))
     }
 
     fn columns(&self) -> Columns {

@@ -7,7 +7,7 @@ use crate::along::{along, varying};
 use crate::description;
 use crate::forces::{self, ForcesResult};
 use crate::neglected_dry_friction::NeglectedDryFriction;
-use crate::parameters::{parameters_of, wheel_of};
+use crate::parameters::{parameters_over, wheel_of};
 use crate::states::{self, named_state};
 use arclength::branch::{Criticality, SpecialKind};
 use arclength::equilibrium::SpecialPoint;
@@ -360,7 +360,7 @@ impl Report for HopfResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[self.interval.key()])
+        parameters_over(&self.wheel, &[(self.interval.key(), self.interval.ends().into())])
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

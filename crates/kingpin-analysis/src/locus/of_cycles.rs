@@ -3,7 +3,7 @@
 use crate::along::ParameterPlane;
 use crate::description;
 use crate::neglected_dry_friction::NeglectedDryFriction;
-use crate::parameters::{parameters_of, wheel_of};
+use crate::parameters::{parameters_over, wheel_of};
 use crate::states::named_state;
 use arclength_analysis::Origin;
 use arclength_analysis::locus::{CycleCurve, Quantities};
@@ -76,7 +76,7 @@ impl Report for CycleLocusResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &self.plane.keys())
+        parameters_over(&self.wheel, &self.plane.0.map(|along| (along.key(), along.ends().into())))
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -4,7 +4,7 @@ use super::found::Found;
 use super::unstable_cycles::UnstableCycles;
 use crate::along::varying;
 use crate::disturbance::Edge;
-use crate::parameters::parameters_of;
+use crate::parameters::parameters_over;
 use crate::{axis_label, description};
 use arclength_analysis::VaryingParameter;
 use kingpin::basin::{ContactModel, Disturbance};
@@ -214,7 +214,7 @@ impl Report for MarginResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[self.interval.key()])
+        parameters_over(&self.wheel, &[(self.interval.key(), self.interval.ends().into())])
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

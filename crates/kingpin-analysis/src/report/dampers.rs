@@ -6,9 +6,14 @@ use crate::damper::{DamperRequest, DamperResult, WithoutCycles};
 use crate::error::Error;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control};
+use kingpin::Key;
 use kingpin_figure::{Axis, Figure, Line, Panel, palette};
 use kingpin_report::Columns;
 use kingpin_report::numbers::{readable, significant};
+
+/// The part of the lateral dampers in which the line of both may rise steeply, and how many times as high it rises then as elsewhere.
+const STEEP_BEGINNING: f64 = 0.05;
+const STEEP: f64 = 2.0;
 
 /// The smallest dampers with which no shimmy is born up to a speed.
 ///
@@ -66,6 +71,13 @@ pub(super) fn finding(subject: String, dampers: &DamperResult) -> Finding {
         if !said.is_empty() {
             text.push_str(&format!(" That no large cycle is found either takes {}.", said.join(", or ")));
         }
+    }
+    let slowest: Vec<&str> = dampers.decided_by_the_slowest().into_iter().map(Key::name).collect();
+    if !slowest.is_empty() {
+        text.push_str(&format!(
+            " Over {} the lowest speed decides that was looked at: lower ones may take more.",
+            slowest.join(" and ")
+        ));
     }
     // Beside its own a wheel takes less.
     if let Some(own) = dampers.replaced_dampers() {
@@ -141,19 +153,32 @@ pub(super) fn illustration(dampers: &DamperResult) -> Option<Illustration> {
         return None;
     }
     let points = front.c_q.iter().copied().zip(front.c_psi.iter().copied());
-    let end = |values: &[f64]| 1.05 * values.iter().copied().fold(0.0, f64::max);
+    let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let end = |values: &[f64]| 1.05 * largest(values);
+    // A line that rises steeply at its first points would hide what it does elsewhere.
+    let beginning = STEEP_BEGINNING * largest(&front.c_q);
+    let elsewhere: Vec<f64> =
+        points.clone().filter(|(c_q, _)| *c_q >= beginning).map(|(_, c_psi)| c_psi).collect();
+    let is_cut = largest(&front.c_psi) > STEEP * largest(&elsewhere);
+    let top = if is_cut { STEEP * largest(&elsewhere) } else { end(&front.c_psi) };
     let panel = Panel::new(
         Axis::new("$c_q$ (N s/m)").limits(0.0, end(&front.c_q)),
-        Axis::new("$c_\\psi$ (N m s/rad)").limits(0.0, end(&front.c_psi)),
+        Axis::new("$c_\\psi$ (N m s/rad)").limits(0.0, top),
     )
     .curve(Line::new(points).color(palette::BLUE));
     let figure = Figure::single_column()
         .description("Smallest damper about the king pin beside a lateral damper")
         .panel(panel);
-    let caption = format!(
+    let mut caption = format!(
         "Dampers with which the uniform motion is stable up to {} m/s lie above the line.",
         readable(dampers.up_to)
     );
+    if is_cut {
+        let [first_lateral, first] = [front.c_q[0], front.c_psi[0]].map(|damping| significant(damping, 4));
+        caption += &format!(
+            " It leaves the picture: beside <i>c</i><sub>q</sub> = {first_lateral} N s/m it takes {first} N m s/rad."
+        );
+    }
     let data = Columns::new()
         .numbers("c_q", front.c_q.iter().copied())
         .unit("N s/m")

@@ -18,6 +18,7 @@ use crate::error::{Error, unless_stopped};
 use crate::folder;
 use crate::neglected_dry_friction::NeglectedDryFriction;
 use crate::page::{PageFigure, prose};
+use crate::parameters::{doubts, lifted};
 use crate::up_to;
 use crate::wheel_request::WheelRequest;
 use arclength_analysis::{Assignment, Control, SampledInterval};
@@ -199,12 +200,24 @@ impl ReportAnalysis {
             .map(|finding| Found { findings: finding.into_iter().collect(), illustrations: Vec::new() });
         verdict.dry_friction = self.dry_friction_in_short()?;
         found.take("dry friction", dry)?;
+        // What is said of a wheel on which nothing presses comes first, and so do numbers that no wheel has.
+        let doubts = doubts(&self.wheel, &[]);
+        let lifted = lifted(&self.wheel, &[]);
+        verdict.lifted = lifted.clone();
+        let told = doubts.iter().chain(&lifted).map(|doubt| sentence(doubt)).collect::<Vec<_>>().join(" ");
+        if !told.is_empty() {
+            found
+                .findings
+                .insert(0, Finding::new("the numbers of the wheel", told, "").undecided_if(lifted.is_some()));
+        }
         let subject = format!("rolling, {circle}");
         let rolling = self.with_radius(radius).and_then(|wheel| Motions::compute(&wheel, self.fastest));
-        verdict.rolling = rolling.as_ref().ok().map(Motions::in_short);
-        let rolling =
-            rolling.map(|motions| Found::new(motions.finding(subject.clone()), [motions.illustration()]));
-        found.take(&subject, rolling.map(|rolling| self.without_dry_friction(rolling)))?;
+        if lifted.is_none() {
+            verdict.rolling = rolling.as_ref().ok().map(Motions::in_short);
+            let rolling =
+                rolling.map(|motions| Found::new(motions.finding(subject.clone()), [motions.illustration()]));
+            found.take(&subject, rolling.map(|rolling| self.without_dry_friction(rolling)))?;
+        }
         let chart = self.chart(own_radius, &control.part(CHARTED));
         found.take("chart", chart.map(|chart| self.without_dry_friction(chart)))?;
         let turns = own_radius.is_finite();

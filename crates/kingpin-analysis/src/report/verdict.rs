@@ -5,6 +5,8 @@ use super::finding::Finding;
 /// What each subject says in a few words, as far as it has anything to say.
 #[derive(Debug, Default)]
 pub(super) struct Verdict {
+    /// That nothing presses the wheel on the ground.
+    pub lifted: Option<String>,
     pub straight: Option<String>,
     pub circle: Option<String>,
     pub dry_friction: Option<String>,
@@ -18,8 +20,19 @@ pub(super) struct Verdict {
 impl Verdict {
     /// All of it, joined.
     pub(super) fn finding(self) -> Finding {
-        let Self { straight, circle, dry_friction, shimmy, blow, rolling, dampers, dampers_on_circle } = self;
-        let parts = [straight, circle, dry_friction, shimmy, blow, rolling, dampers, dampers_on_circle];
+        let Self {
+            lifted,
+            straight,
+            circle,
+            dry_friction,
+            shimmy,
+            blow,
+            rolling,
+            dampers,
+            dampers_on_circle,
+        } = self;
+        let parts =
+            [lifted, straight, circle, dry_friction, shimmy, blow, rolling, dampers, dampers_on_circle];
         let parts: Vec<String> = parts.into_iter().flatten().collect();
         Finding::new("verdict", sentence(&parts.join("; ")), "")
     }

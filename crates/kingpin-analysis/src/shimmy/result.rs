@@ -9,7 +9,7 @@ use crate::cycles::{ROLLING_LIMIT, ROLLING_LIMIT_NAME};
 use crate::description;
 use crate::error::Error;
 use crate::forces::{self, ForcesResult};
-use crate::parameters::parameters_of;
+use crate::parameters::parameters_over;
 use crate::states;
 use arclength::branch::{LabelCounter, SpecialKind};
 use arclength_analysis::cycles::{UnlocatedResult, warnings};
@@ -292,7 +292,7 @@ impl Report for ShimmyResult {
     }
 
     fn parameters(&self) -> Parameters {
-        parameters_of(&self.wheel, &[self.interval.key()])
+        parameters_over(&self.wheel, &[(self.interval.key(), self.interval.ends().into())])
     }
 
     fn write_table(&self, out: &mut dyn Write) -> io::Result<()> {

@@ -72,3 +72,63 @@ fn ranges_that_make_no_sense() {
     fails("damper --up-to v=3 --radius 1:x", 2, &["--radius", "x"]);
     fails("damper --up-to v=3 --load -50:inf", 2, &["F_Az", "inf"]);
 }
+
+/// With a tyre a damper about the king pin alone has to be the stronger the slower the wheel: that the slowest speed decides is told, and
+/// the front, which falls steeply from there, has more points.
+#[test]
+fn where_the_lowest_speed_decides_that_is_told() {
+    let folder = Folder::new();
+    let wheel = "damper --up-to v=3 --small-motions -s l=0.04 -s m_w=0.35 -s m_c=0.45 -s J_wxi=7e-4 -s J_wzeta=4.5e-4 -s J_Cz=4e-4 \
+                 -s R=0.0625 -s l_c=0.012 -s k=3e4 -s F_Az=-150 -s mu_s=0.7 -s mu_d=0.6 -s r=inf";
+    let tyre = format!("{wheel} -s tyre=brush -s sigma=0.03 -s a=0.01 -s C_alpha=1500");
+    let table = folder.succeed(&tyre).output;
+    let told = "v = 0.003 m/s decides, the lowest speed that was looked at: lower ones may take more";
+    assert!(table.contains(told), "{table}");
+    let result = folder.json(&tyre);
+    let front =
+        |key: &str| -> Vec<f64> { result["front"][key].as_array().unwrap().iter().map(number).collect() };
+    let [lateral, rotational] = ["c_q", "c_psi"].map(front);
+    assert!(lateral.len() > 9 && lateral.is_sorted(), "{lateral:?}");
+    assert!(rotational.windows(2).all(|pair| pair[0] >= pair[1]), "{rotational:?}");
+    // Straight lines between the points are right to a tenth or so: at one between the first two evenly spaced ones.
+    let at = 0.06 * number(&result["c_q"]);
+    let after = lateral.iter().position(|c_q| *c_q > at).unwrap();
+    let part = (at - lateral[after - 1]) / (lateral[after] - lateral[after - 1]);
+    let drawn = rotational[after - 1] + part * (rotational[after] - rotational[after - 1]);
+    let beside = folder.json(&format!(
+        "stability -s v=3 -s c_q={at} -s c_psi={} {}",
+        1.3 * drawn,
+        tyre.split_once("small-motions").unwrap().1
+    ));
+    assert_eq!(beside["stable"], true, "{at} {drawn}: {beside}");
+    let beside = folder.json(&format!(
+        "stability -s v=3 -s c_q={at} -s c_psi={} {}",
+        0.7 * drawn,
+        tyre.split_once("small-motions").unwrap().1
+    ));
+    assert_eq!(beside["stable"], false, "{at} {drawn}: {beside}");
+    // Without a tyre there is nothing to tell.
+    let table = folder.succeed(wheel).output;
+    assert!(!table.contains("lowest speed"), "{table}");
+    assert_eq!(folder.json(wheel)["front"]["c_q"].as_array().unwrap().len(), 9);
+}
+
+/// Up to which speed dry friction makes small motions die out depends on the dampers: which are meant is told.
+#[test]
+fn dry_friction_is_told_with_the_dampers_that_are_meant() {
+    let folder = Folder::new();
+    let wheel = "-s l=0.04 -s r=inf -s M_f=0.01";
+    let speed = |dampers: &str| {
+        let stability = folder.json(&format!("stability {wheel} {dampers}"));
+        format!("{:.4}", number(&stability["critical_speed_with_friction"]))
+    };
+    let damped = "-s c_psi=1e-4";
+    let table = folder.succeed(&format!("damper --up-to v=3 --small-motions {wheel} {damped}")).output;
+    for (words, dampers) in
+        [("none of these dampers small", ""), ("the wheel's own, c_psi = 1e-4 N m s/rad, small", damped)]
+    {
+        let line = table.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("{table}"));
+        let told: f64 = line.rsplit(' ').nth(1).unwrap().parse().unwrap();
+        assert_eq!(format!("{told:.4}"), speed(dampers), "{line}");
+    }
+}

@@ -5,6 +5,7 @@ mod basin;
 mod branches;
 mod curves;
 mod damper;
+mod doubts;
 mod dry_friction;
 mod ends;
 mod files;

@@ -69,6 +69,31 @@ fn limits_of_rolling_for_several_loads_are_where_the_friction_is_used_up() {
     insta::assert_snapshot!(folder.succeed(&format!("{CHART} --overlay F_Az=0,-20")).output);
 }
 
+/// The text of a picture.
+fn drawn(overlays: &str) -> String {
+    let folder = Folder::new();
+    folder.succeed(&format!("{CHART} {overlays} -q -o a.svg"));
+    String::from_utf8(read(&folder.path("a.svg"))).unwrap()
+}
+
+/// Colours of lines in a picture.
+fn colors(picture: &str) -> std::collections::BTreeSet<&str> {
+    picture.split("stroke=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+/// More values than there are colours have other ones all the same, and a load, which changes no stability, hides no limit of it.
+#[test]
+fn every_value_has_its_own_colour() {
+    let [few, many] = ["0.5,1", "0.3,0.5,0.7,1,1.5,2,3"].map(|radii| drawn(&format!("--overlay r={radii}")));
+    assert_eq!(colors(&many).len() - colors(&few).len(), 5, "{:?} {:?}", colors(&few), colors(&many));
+    // The third colour is that of the load: its limit of rolling, and no second limit of stability over that of the wheel.
+    let beside = drawn("--overlay r=0.5,1 --overlay F_Az=-5");
+    assert_eq!(beside.matches("stroke=\"#009e73\"").count(), 1, "{beside}");
+    // What has no limit is named in the legend all the same.
+    let lifted = drawn("--overlay F_Az=-5,10");
+    assert_eq!(lifted.matches("stroke=\"#0072b2\"").count(), 1, "{lifted}");
+}
+
 #[test]
 fn overlays_that_make_no_sense() {
     fails("chart --overlay v=1,2", 2, &["--overlay v=1,2", "varies with the axis `v`"]);

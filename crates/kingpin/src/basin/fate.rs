@@ -114,7 +114,9 @@ impl ClassificationSettings {
     }
 
     /// As long as slow motions of this wheel take to show where they go: twelve times the time in which a small
-    /// disturbance of the uniform motion falls to a 1/e, but at least thirty seconds and at most three hundred.
+    /// disturbance of the uniform motion falls to a 1/e, but at least thirty seconds and at most three hundred. Where that is more than
+    /// motions are followed even with ten times the patience, nothing but what comes near at once is seen to return, and thirty seconds
+    /// tell as much.
     ///
     /// In rectilinear towing the disturbances are those of the lateral motion, which [`Fate::UniformMotion`] is about.
     ///
@@ -122,7 +124,9 @@ impl ClassificationSettings {
     /// No uniform motion.
     pub fn for_wheel(wheel: &Wheel) -> Result<Self, SimulationError> {
         let decay = -decisive_growth_rate(wheel)?;
-        let duration = if decay > 0.0 { DECAY_TIMES / decay } else { SHORTEST_DURATION };
+        let needed = DECAY_TIMES / decay;
+        let is_seen = decay > 0.0 && needed <= PATIENCE * LONGEST_DURATION;
+        let duration = if is_seen { needed } else { SHORTEST_DURATION };
         Ok(Self { duration: duration.clamp(SHORTEST_DURATION, LONGEST_DURATION).round() })
     }
 

@@ -15,10 +15,13 @@ const SCAN: usize = 64;
 const BESIDE_EDGE: usize = 32;
 /// Parts of the largest magnitude that are followed beforehand to become acquainted with shimmy.
 const SCOUTS: [f64; 2] = [0.5, 1.0];
-/// What the scan, and what then the first edge is of the whole time, roughly.
-const PARTS: [f64; 2] = [0.5, 0.7];
+/// When the scouts, the scan and the first edge are done, as parts of the whole time, roughly.
+const PARTS: [f64; 3] = [0.1, 0.5, 0.7];
 /// The edge is narrowed down to this part of it.
 const RESOLUTION: f64 = 1e-6;
+const HALVINGS: usize = 20;
+/// To this one where what is beyond is undecided: there the patience ends, at each of many long motions, and no basin.
+const END_OF_PATIENCE: f64 = 1e-2;
 /// Where nothing down to this part of the largest magnitude returns, nothing does.
 const SMALLEST: f64 = 1e-9;
 /// How often the duration of a history is halved where the motion leaves the range of numbers.
@@ -244,6 +247,13 @@ impl DisturbedMotion {
     }
 }
 
+/// Why a scan of magnitudes ends before the last.
+enum Scan {
+    /// At this one, by its index, it does not return.
+    Loses(usize, Option<Fate>),
+    Fails(SimulationError),
+}
+
 /// The edge of what the wheel returns from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SafeKick {
@@ -303,12 +313,13 @@ impl SafeKick {
         let undisturbed = disturbance.apply(wheel, model, 0.0)?.0;
         let mut destinations = Destinations::new(&undisturbed, model, settings)?;
         let steers = disturbance == Disturbance::StepSteer;
+        let [scouted, scanned, narrowed] = PARTS;
         let attracts = destinations.attracts();
         if attracts != Some(false) && !steers {
             // The strongest ones show the shimmy that others end in.
             let scouts = SCOUTS.map(|part| Ok(disturbance.apply(wheel, model, part * largest)?.1));
             let scouts = scouts.into_iter().collect::<Result<Vec<_>, SimulationError>>()?;
-            destinations = destinations.acquainted(&scouts, &control.quiet())?;
+            destinations = destinations.acquainted(&scouts, &control.part(0.0..scouted))?;
         }
         let fate = |magnitude: f64| -> Result<Option<Fate>, SimulationError> {
             let (wheel, state) = disturbance.apply(wheel, model, magnitude)?;
@@ -342,25 +353,34 @@ impl SafeKick {
             Some(_) => fate == Some(Fate::UniformMotion),
             None => fate.is_some_and(|fate| fate == Fate::UniformMotion || fate.is_undecided()),
         };
+        // What is larger than the first that does not return does not matter, and may take long.
         let scan = |magnitudes: Vec<f64>, control: &Control<'_>| -> Result<_, SimulationError> {
             let progress = control.count(magnitudes.len());
-            let fates: Vec<Option<Fate>> = parallel::try_map(&magnitudes, |&magnitude| {
-                let fate = fate(magnitude)?;
+            let until_one_is_lost = |index: usize| {
+                let fate = fate(magnitudes[index]).map_err(Scan::Fails)?;
                 progress.advance(1);
-                Ok::<_, SimulationError>(fate)
-            })?;
-            let first = fates.iter().position(|fate| !returned(fate));
-            Ok(first.map(|first| {
-                let below = first.checked_sub(1).map_or(0.0, |index| magnitudes[index]);
-                (below, magnitudes[first], fates[first])
-            }))
+                if returned(&fate) { Ok(()) } else { Err(Scan::Loses(index, fate)) }
+            };
+            match parallel::try_map_indices(magnitudes.len(), until_one_is_lost) {
+                Ok(_) => Ok(None),
+                Err(Scan::Loses(first, fate)) => {
+                    let below = first.checked_sub(1).map_or(0.0, |index| magnitudes[index]);
+                    Ok(Some((below, magnitudes[first], fate)))
+                }
+                Err(Scan::Fails(error)) => Err(error),
+            }
         };
         let narrow = |(mut returns, mut fails, mut beyond): (f64, f64, Option<Fate>),
                       control: &Control<'_>| {
-            let unresolved = |returns: f64, fails: f64| {
-                (fails - returns).abs() > RESOLUTION * fails.abs() && fails.abs() > SMALLEST * largest.abs()
+            let unresolved = |returns: f64, fails: f64, beyond: Option<Fate>| {
+                let is_edge = beyond.is_none_or(|fate| fate != Fate::Undecided);
+                let resolution = if is_edge { RESOLUTION } else { END_OF_PATIENCE };
+                (fails - returns).abs() > resolution * fails.abs() && fails.abs() > SMALLEST * largest.abs()
             };
-            while unresolved(returns, fails) {
+            // About as often as the distance has to be halved to the resolution.
+            let progress = control.count(HALVINGS);
+            while unresolved(returns, fails, beyond) {
+                progress.advance(1);
                 let middle = 0.5 * (returns + fails);
                 let found = fate(middle)?;
                 if returned(&found) {
@@ -372,9 +392,8 @@ impl SafeKick {
             }
             Ok::<_, SimulationError>((returns, fails, beyond))
         };
-        let [scanned, narrowed] = PARTS;
         let magnitudes = (0..=SCAN).map(|index| largest * (index as f64 / SCAN as f64)).collect();
-        let Some(first) = scan(magnitudes, &control.part(0.0..scanned))? else {
+        let Some(first) = scan(magnitudes, &control.part(scouted..scanned))? else {
             if attracts.is_some() {
                 return Ok(None);
             }

@@ -239,6 +239,7 @@ impl Destinations {
     /// # Errors
     /// As [`of`](Self::of).
     pub fn acquainted(mut self, starts: &[[f64; 7]], control: &Control<'_>) -> Result<Self, SimulationError> {
+        let progress = control.count(starts.len());
         let control = &control.quiet();
         let patience = self.settings.duration;
         let settled = |state: &[f64; 7]| -> Result<Option<(Attractor, Course<'_>)>, SimulationError> {
@@ -253,6 +254,7 @@ impl Destinations {
             let watch = Watch::new(&self.target, &self.settings, &course.state());
             let mut lasting = Lasting::new(course, 0.0, &[]);
             lasting.until_the_end(&self.target, watch, control)?;
+            progress.advance(1);
             Ok(lasting.found())
         };
         let settled = parallel::try_map(starts, settled)?;

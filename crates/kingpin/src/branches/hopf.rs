@@ -1,9 +1,9 @@
 //! Hopf points of the uniform motion: where shimmy is born.
 
 use super::birth::Birth;
-use super::{Along, FORWARD_MONITOR, MotionMonitor, STANDING};
+use super::{Along, FORWARD_MONITOR, MotionMonitor, RACING, RACING_MONITOR, STANDING};
 use crate::tyre::Onset;
-use crate::{KingpinError, RollingModel, Tyre, UniformMotion, Wheel};
+use crate::{Key, KingpinError, RollingModel, Tyre, UniformMotion, Wheel};
 use arclength::branch::{Criticality, Monitor, SpecialKind};
 use arclength::continuation::{Settings, Stop, Wording};
 use arclength::control::Control;
@@ -15,6 +15,9 @@ use std::ops::ControlFlow;
 
 /// Distance of the first cycle from a Hopf point where the amplitude grows in proportion to it, as a part of the interval.
 const FIRST_DISTANCE: f64 = 4e-4;
+
+/// Monitors that are recorded along a branch beside those that are asked for, before them.
+const OWN_MONITORS: usize = 1;
 
 /// A Hopf point of the uniform motion.
 #[derive(Clone, Debug)]
@@ -219,11 +222,14 @@ impl Wheel {
             };
             let model = wheel.rolling_model(&[key])?;
             let equilibria = Equilibria::of(&model);
+            // Where the motion, or what its equations hold for, ends.
+            let border = if self.tyre() == Tyre::Rigid { RACING_MONITOR } else { FORWARD_MONITOR };
             let equilibria = if self.tyre() == Tyre::Rigid {
-                equilibria
+                let slowness = |point: &EquilibriumPoint| slowness(&wheel, &model, key, point);
+                equilibria.monitor(Monitor::new(border, slowness).until(&[RACING]))
             } else {
                 let forwards = |point: &EquilibriumPoint| model.speed_ratio(&point.state, &[point.value]);
-                equilibria.monitor(Monitor::new(FORWARD_MONITOR, forwards).until(&[STANDING]))
+                equilibria.monitor(Monitor::new(border, forwards).until(&[STANDING]))
             };
             let asked_for = options.monitors.iter().map(|monitor| {
                 monitor.on_motions(&model, |point: &EquilibriumPoint| (&point.state, vec![point.value]))
@@ -241,7 +247,7 @@ impl Wheel {
             if motions.is_empty() {
                 continue;
             }
-            complete(&mut motions, &wheel, &model, along)?;
+            complete(&mut motions, &model, along)?;
             let mut stops = branch.stops.map(|stop| stop.map(|stop| along.convert_stop(stop)));
             if let [first, .., last] = &motions[..]
                 && first.value > last.value
@@ -249,17 +255,23 @@ impl Wheel {
                 motions.reverse();
                 stops.reverse();
             }
-            let border = (self.tyre() != Tyre::Rigid).then_some(FORWARD_MONITOR);
-            if border.is_some() {
-                take_off_borders(&mut motions, &stops);
-            }
+            take_off_borders(&mut motions, &stops);
             let asked_for = options.monitors.iter().map(MotionMonitor::name);
-            let monitors = border.into_iter().chain(asked_for).map(str::to_owned).collect();
+            let monitors = std::iter::once(border).chain(asked_for).map(str::to_owned).collect();
             return Ok(MotionBranch { motions, hopf_points, stops, along, monitors });
         }
         let (start, end) = along.ends();
         Err(first_error.unwrap_or(KingpinError::EmptyInterval { key: along.key(), start, end }))
     }
+}
+
+/// The towing speed as a part of the forward speed of the wheel, which vanishes where that grows without bound; nothing where both vanish.
+fn slowness(wheel: &Wheel, model: &RollingModel, key: Key, motion: &EquilibriumPoint) -> Option<f64> {
+    let towing_speed = if key == Key::V { motion.value } else { wheel.get(Key::V) };
+    let [_, _, _, forward_speed, ..] = model.full_state(&motion.state, &[motion.value])[..] else {
+        return None;
+    };
+    Some(towing_speed / forward_speed).filter(|ratio| ratio.is_finite())
 }
 
 /// The Hopf points among motions as the continuation found them, in ascending order of the parameter. Those that have no first Lyapunov
@@ -321,17 +333,15 @@ fn take_off_borders(motions: &mut [EquilibriumPoint], stops: &[Option<Stop<Equil
 /// monitors that were asked for.
 fn complete(
     motions: &mut [EquilibriumPoint],
-    wheel: &Wheel,
     model: &RollingModel,
     along: Along,
 ) -> Result<(), KingpinError> {
-    let own_monitors = usize::from(wheel.tyre() != Tyre::Rigid);
     for motion in motions {
         let state = model.full_state(&motion.state, &[motion.value]);
         motion.stability = model.wheel_at(&[motion.value])?.motion_in(&state).stability();
         motion.state = state;
         motion.value = along.told(motion.value);
-        motion.monitors.drain(..own_monitors.min(motion.monitors.len()));
+        motion.monitors.drain(..OWN_MONITORS.min(motion.monitors.len()));
         if let Some(SpecialPoint::Degenerate { value, location_error, .. }) = motion.special.as_deref_mut() {
             *value = motion.value;
             *location_error = along.convert_error(motion.value, *location_error);

@@ -30,6 +30,14 @@ pub const FORWARD_MONITOR: &str = "V1/v of the uniform motion, which a tyre take
 /// The `V1/v` of uniform motions of a wheel with a tyre at which their branches end.
 pub const STANDING: f64 = 0.0;
 
+/// What ends branches of uniform motions of a rigid wheel, in words: they are followed as long as this is above [`RACING`]. On a circle the
+/// motion ends where the forward speed of the wheel grows beyond all bounds, at `m omega^2 = k_q l` without a spring about the king pin;
+/// thousands of motions could be found on the way there.
+pub const RACING_MONITOR: &str = "v/V of the uniform motion, whose speed V grows without bound there,";
+
+/// The value of [`RACING_MONITOR`] at which they end.
+pub const RACING: f64 = 1e-4;
+
 /// What is recorded along branches of cycles, in words: where it is 1, a cycle is located.
 pub const FRICTION_MONITOR: &str = "the largest friction force over mu_s N";
 

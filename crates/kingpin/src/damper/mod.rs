@@ -23,6 +23,15 @@ use growth::Conditions;
 
 /// The smallest speed of the range as part of the largest.
 const SLOWEST: f64 = 1e-3;
+/// A speed that decides is the smallest one within this part of it.
+const SAME_SPEED: f64 = 1e-6;
+
+/// Whether the speed that decides over a damper is the smallest one that is looked at up to a largest one: then slower ones may take more.
+///
+/// Some wheels with a tyre are unstable at every low speed, and one damper alone has to be the stronger the slower they are towed.
+pub fn is_slowest_speed(speed: f64, up_to: f64) -> bool {
+    speed <= SLOWEST * up_to * (1.0 + SAME_SPEED)
+}
 
 impl Wheel {
     /// A damper about the king pin, in N m s/rad, that would take the lateral motion of the rolling wheel about a period to die out: `l` times
