@@ -67,11 +67,9 @@ fn lifted_over(wheel: &Wheel, varying: &[(Key, [f64; 2])]) -> Option<String> {
         return None;
     }
     let over = keys.into_iter().map(Key::name).collect::<Vec<_>>().join(" and ");
-    let where_it_is =
-        if highest > 0.0 { format!("over a part of {over}") } else { format!("at no {over} here") };
-    let what = if highest > 0.0 { "nothing presses" } else { "anything presses" };
+    let place = if highest > 0.0 { format!("over a part of {over}") } else { format!("at any {over} here") };
     Some(format!(
-        "{where_it_is} {what} the wheel on the ground, {NORMAL_FORCE} goes from {} to {} N: there {CANNOT_PULL}",
+        "nothing presses the wheel on the ground {place}, {NORMAL_FORCE} goes from {} to {} N: there {CANNOT_PULL}",
         readable(lowest),
         readable(highest)
     ))

@@ -110,3 +110,31 @@ fn a_relay_whose_cycle_shrinks_to_a_point() {
     assert!((number(&end["last"]["a"]) - 1.0).abs() < 1e-6, "{end}");
     assert!(cycles.get("unlocated").is_none_or(|changes| changes.as_array().unwrap().is_empty()));
 }
+
+/// Den Hartog's oscillator with dry friction: from some force of friction on the mass sticks where it turns, which a long step of the branch
+/// leads over. Truth: exact arcs and sticking until the force is larger than friction (DOP853 with events, tolerance 1e-13).
+#[test]
+fn sticking_begins_along_a_branch_however_long_its_steps_are() {
+    for (damping, largest) in [
+        ("0.2", &[(0.7, 0.9734927266), (0.75, 0.760487782108), (0.8, 0.470984333299)][..]),
+        ("0", &[(0.79, 1.376578406581), (0.8, 1.342865207489)]),
+    ] {
+        let model = format!(
+            "par F=0.1,w=0.75,c={damping}\nx'=y\ny'=-x-c*y-F*sign(y)+u\nu'=u*(1-u^2-v^2)-w*v\nv'=v*(1-u^2-v^2)+w*u\n\
+             init u=1\ndone\n"
+        );
+        let folder = settled(&model, 500.37);
+        let values: Vec<String> = largest.iter().map(|(force, _)| format!("{force}")).collect();
+        for finer in ["", " --finer 10"] {
+            let at = values.join(",");
+            let cycles =
+                folder.json(&format!("cycles --from h.json:END --along F=0.05:0.8 --at {at}{finer}"));
+            for (force, largest) in largest {
+                let point = points(&cycles).iter().find(|point| number(&point["value"]) == *force).unwrap();
+                let [error, told] = [number(&point["max"]["x"]) - largest, number(&point["error_estimate"])];
+                assert!(error.abs() < 1e-9 && told < 1e-8, "{damping} {force}: {error:e}, told {told:e}");
+                assert_eq!(point["stable"], true, "{damping} {force}");
+            }
+        }
+    }
+}

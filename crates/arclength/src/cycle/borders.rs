@@ -108,6 +108,16 @@ impl CycleCurve<'_> {
         times.is_some_and(|times| times.windows(2).all(|pair| pair[0] < pair[1]))
     }
 
+    /// Whether a cycle crosses only borders that the fields beside them let it cross.
+    pub(super) fn crosses_where_it_may(&self, unknown: &[f64]) -> bool {
+        let problem = &self.collocation.problem;
+        let mut parameters = problem.parameters.clone();
+        parameters[problem.active] = unknown[unknown.len() - 1];
+        let polynomials = self.collocation.polynomials(unknown);
+        let segments = problem.segments.as_ref();
+        segments.is_none_or(|segments| segments.crossings_hold(problem.field, polynomials, &parameters))
+    }
+
     /// Whether a cycle passes its borders and events close to their mesh points.
     pub(super) fn passes_its_gates(&self, unknown: &[f64]) -> bool {
         self.collocation.problem.segments.is_none()

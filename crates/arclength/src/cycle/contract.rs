@@ -174,6 +174,9 @@ impl Curve for CycleCurve<'_> {
             // Its polynomials go on beyond a border, nobody knows how far.
             Err(_) => errors = [NOTHING_KNOWN; 2],
         }
+        if !self.crosses_where_it_may(&solution.unknown) {
+            errors = [NOTHING_KNOWN; 2];
+        }
         let [fixed, across] = errors;
         point.error_estimate = if point.is_neutral { across } else { fixed };
     }

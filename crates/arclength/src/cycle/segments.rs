@@ -223,6 +223,26 @@ impl Segments {
         self.gates == other.gates && cells(self) == cells(other)
     }
 
+    /// Whether the fields beside the borders that a cycle crosses, at the mesh points there, let it cross them: where both push towards a
+    /// border it slides.
+    pub(crate) fn crossings_hold(
+        &self,
+        field: ErasedField<'_>,
+        cycle: Polynomials<'_>,
+        parameters: &[f64],
+    ) -> bool {
+        let Some(along) = Along::new(field, cycle, parameters) else { return true };
+        let gates = self.times.iter().zip(&self.gates).zip(self.courses.windows(2));
+        !gates.into_iter().any(|((time, gate), courses)| match gate.function {
+            GateFunction::Border { switch, .. } => {
+                gate.events.is_empty()
+                    && courses.iter().all(|course| course.slide.is_none())
+                    && along.would_slide(*time, switch, [&courses[0], &courses[1]], gate.upwards)
+            }
+            GateFunction::Condition { .. } | GateFunction::Pull { .. } => false,
+        })
+    }
+
     /// The course at a time; at a gate that behind it.
     #[inline]
     pub(crate) fn course_at(&self, time: f64) -> &Course {

@@ -43,9 +43,18 @@ fn whatever_the_model() {
 fn where_the_load_varies_it_is_told_over_which_part() {
     let folder = Folder::new();
     for (command, words) in [
-        ("chart --x F_Az=-10:10:5 --y l=0.03:0.2:5", "over a part of F_Az nothing presses"),
-        ("chart --x F_Az=5:10:5 --y l=0.03:0.2:5", "at no F_Az here anything presses"),
-        ("chart --x m_w=0.1:1:5 --y l=0.03:0.2:5 -s F_Az=5", "over a part of m_w nothing presses"),
+        (
+            "chart --x F_Az=-10:10:5 --y l=0.03:0.2:5",
+            "nothing presses the wheel on the ground over a part of F_Az,",
+        ),
+        (
+            "chart --x F_Az=5:10:5 --y l=0.03:0.2:5",
+            "nothing presses the wheel on the ground at any F_Az here,",
+        ),
+        (
+            "chart --x m_w=0.1:1:5 --y l=0.03:0.2:5 -s F_Az=5",
+            "nothing presses the wheel on the ground over a part of m_w,",
+        ),
         ("steady --along F_Az=-10:10:5", "goes from -5.892553 to 14.107447 N"),
     ] {
         let told = folder.succeed(command).messages;

@@ -40,6 +40,11 @@ const FLIGHT_STEPS: usize = 8;
 const LONGEST_FLIGHT: f64 = 0.1;
 /// Both sides push towards a switch along which a cycle slides at this part at least of what takes it over its range in a period.
 const PUSH: f64 = 1e-9;
+/// The same where a cycle that crosses a border is none of the model: less makes it slide for a time that is not seen.
+const PUSHES_BACK: f64 = 1e-4;
+/// Steps in which a slide that begins is followed, and the longest one, as parts of the period.
+const SLIDE_STEP: f64 = 2e-3;
+const LONGEST_SLIDE: f64 = 0.5;
 /// The rate of a switch function jumps at a border by this part at least of what takes it over its range in a period.
 const RATE_JUMP: f64 = 1e-6;
 

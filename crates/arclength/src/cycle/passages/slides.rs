@@ -2,8 +2,8 @@
 //! off a switch that are too short for the polynomials to show.
 
 use super::{
-    Along, FLIGHT_STEPS, HALVINGS, LONGEST_FLIGHT, NEAR, PUSH, Passage, RATE_JUMP, ROUNDING, SHORTEST_VISIT,
-    Stretch, end_of,
+    Along, FLIGHT_STEPS, HALVINGS, LONGEST_FLIGHT, LONGEST_SLIDE, NEAR, PUSH, PUSHES_BACK, Passage,
+    RATE_JUMP, ROUNDING, SHORTEST_VISIT, SLIDE_STEP, Stretch, crossing, end_of,
 };
 use crate::cycle::gate::{Course, Gate, GateFunction, Slide};
 use crate::pieces::Border;
@@ -87,6 +87,101 @@ impl Along<'_> {
             _ => value - border,
         };
         distance.abs() < NEAR * self.sizes[switch]
+    }
+
+    /// Whether the polynomials are before a border, to which they came along a course, at a time soon after that: they solve the equations
+    /// of a cycle that crosses it, with a field beyond that leads back.
+    pub(super) fn turns_back(
+        &self,
+        course: &Course,
+        (function, upwards): (GateFunction, bool),
+        later: f64,
+        end: Option<(f64, usize)>,
+    ) -> bool {
+        let GateFunction::Border { switch, value } = function else { return false };
+        let is_followed = end.is_none_or(|(end, _)| later < end);
+        let there = self.functions(course, &self.state(later, end))[switch] - value;
+        is_followed && if upwards { there < 0.0 } else { there > 0.0 }
+    }
+
+    /// The first time from a time on at which the polynomials are beyond a border, or before it, as a course is; `None` where they are not.
+    pub(super) fn back_on_side(
+        &self,
+        course: &Course,
+        function: GateFunction,
+        time: f64,
+        stretch: &Stretch,
+    ) -> Option<f64> {
+        let GateFunction::Border { switch, value } = function else { return None };
+        let cell = course.cells(self.pieces.thresholds().len())[0][switch];
+        // What is on the lower border of its cell is above it.
+        let is_above = self.pieces.thresholds()[switch].borders(cell)[0] == value;
+        let sign = if is_above { 1.0 } else { -1.0 };
+        let end = end_of(stretch);
+        let inside = |time: f64| sign * (self.functions(course, &self.state(time, end))[switch] - value);
+        let after = stretch.times.iter().filter(|other| **other > time);
+        let mut before = time;
+        for later in after {
+            if inside(*later) > NEAR * self.sizes[switch] {
+                return Some(crossing((before, *later), inside));
+            }
+            before = *later;
+        }
+        None
+    }
+
+    /// How long a cycle slides from a state on a switch, in unit time, and what ends that.
+    pub(super) fn slide(&self, course: &Course, state: &[f64]) -> Option<(f64, Passage)> {
+        let slide = course.slide.as_ref()?;
+        let period = self.period();
+        let pulls = |state: &[f64]| self.pulls(slide.switch, state, [&course.parameters, &slide.above]);
+        let ends = |state: &[f64]| {
+            let [from_below, from_above] = pulls(state);
+            from_below <= 0.0 || from_above >= 0.0
+        };
+        let step = period * SLIDE_STEP;
+        let mut here = state.to_vec();
+        for count in 0..(LONGEST_SLIDE / SLIDE_STEP) as usize {
+            let next = course.flow(self.field, &here, &[], step, 1);
+            if !ends(&next) {
+                here = next;
+                continue;
+            }
+            let (mut low, mut high) = (0.0, step);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if ends(&course.flow(self.field, &here, &[], middle, 1)) {
+                    high = middle;
+                } else {
+                    low = middle;
+                }
+            }
+            let there = course.flow(self.field, &here, &[], high, 1);
+            let above = pulls(&there)[0] > 0.0;
+            let function = GateFunction::Pull { switch: slide.switch, above };
+            let (next, _) = self.behind(course, function, above, &there);
+            let gate = Gate { function, upwards: above, events: Vec::new() };
+            let duration = count as f64 * SLIDE_STEP + high / period;
+            return Some((duration, Passage { time: 0.0, gate, course: next, leads_away: false }));
+        }
+        None
+    }
+
+    /// Whether both fields push towards a border at a time at which a cycle crosses it, from one course to the next, so that it slides.
+    pub(in crate::cycle) fn would_slide(
+        &self,
+        time: f64,
+        switch: usize,
+        [before, behind]: [&Course; 2],
+        upwards: bool,
+    ) -> bool {
+        let switches = self.pieces.thresholds().len();
+        let [low, high] = if upwards { [before, behind] } else { [behind, before] };
+        // The courses may be those of other values of the parameters.
+        let sides = [low, high].map(|course| Course::within(self.parameters, course.cells(switches)[0]));
+        let pulls = self.pulls(switch, &self.state(time, None), [&sides[0].parameters, &sides[1].parameters]);
+        let least = PUSHES_BACK * self.sizes[switch] / self.period();
+        pulls[0] > least && pulls[1] < -least
     }
 
     /// A short way off a switch, which begins at a state on it and follows a course: its duration in unit time and the passage back.

@@ -81,8 +81,13 @@ impl Along<'_> {
         let end = end_of(stretch);
         let switches = self.pieces.thresholds().len();
         let (first, known) = (standing.course.clone(), found.len());
+        let mut resumed = f64::NEG_INFINITY;
         for (index, pair) in stretch.times.windows(2).enumerate() {
-            let [mut from, until] = [pair[0], pair[1]];
+            let [mut from, until] = [pair[0].max(resumed), pair[1]];
+            if from >= until {
+                continue;
+            }
+            let spacing = 0.5 * (until - pair[0]);
             while let Some(Exit { time, function, upwards }) = self.exit(standing, from, until, end) {
                 let state = self.state(time, end);
                 from = time;
@@ -129,6 +134,22 @@ impl Along<'_> {
                 let leads_away = jumps && next.slide.is_none() && !flies;
                 let back = if flies { self.flight(&standing.course, &next, function, &state) } else { None };
                 found.push(Passage { time, gate, course: next.clone(), leads_away });
+                let bounces = standing.course.slide.is_none()
+                    && next.slide.is_some()
+                    && self.turns_back(&standing.course, (function, upwards), time + spacing, end);
+                if bounces && let Some((duration, passage)) = self.slide(&next, &state) {
+                    // The polynomials are those of a cycle that does not slide yet: they are on their way again where they are on the side
+                    // on which the slide ends.
+                    let ahead = self.back_on_side(&passage.course, function, time, stretch);
+                    resumed = ahead.unwrap_or(time).max(time + duration);
+                    (standing.course, standing.left) = (passage.course.clone(), None);
+                    found.push(Passage { time: time + duration, ..passage });
+                    from = resumed;
+                    if from >= until {
+                        break;
+                    }
+                    continue;
+                }
                 (standing.course, standing.left) = (next, left);
                 if let Some((duration, passage)) = back {
                     // The polynomials do not leave the switch yet: the cycle does, and comes back soon.
@@ -201,6 +222,18 @@ impl Along<'_> {
             let [a, b, c] = [&start, &half, &last].map(|values| beyond(values));
             // What comes to a switch and stays there slides, whatever rounding makes of its side.
             let lands = |value: f64| value.abs() < NEAR * self.sizes[index];
+            // What comes to a switch from which both sides lead back slides, too, where the polynomials turn there.
+            if matches!(function, GateFunction::Border { .. })
+                && !is_left
+                && lands(c)
+                && !lands(b)
+                && first.as_ref().is_none_or(|first| until < first.time)
+                && self.turns_back(course, (function, upwards), until + middle - from, end)
+                && self.behind(course, function, upwards, &self.state(until, end)).0.slide.is_some()
+            {
+                first = Some(Exit { time: until, function, upwards });
+                continue;
+            }
             if matches!(function, GateFunction::Border { .. })
                 && !is_left
                 && lands(b)
