@@ -171,26 +171,10 @@ impl Condensation {
 
     /// Factorises; as [`Collocation::factorize`](super::Collocation::factorize).
     pub(crate) fn factorize(&mut self, mesh: &[f64]) -> f64 {
-        if !self.condense(mesh) {
-            return 0.0;
-        }
-        let blocks = Blocks {
-            transfer: &self.transfer,
-            scalar_columns: &self.scalar_columns,
-            boundary: &self.boundary,
-            rows: &self.rows,
-            corner: &self.corner,
-        };
-        let sizes = self.bidiagonal_sizes();
-        self.bidiagonal.factorize(blocks, sizes)
-    }
-
-    /// Eliminates the interior of all intervals; whether that can be done.
-    pub(crate) fn condense(&mut self, mesh: &[f64]) -> bool {
         for group in 0..self.intervals.div_ceil(LANES) {
             let field = LinearField { mesh, derivatives: &self.derivatives };
             if !run(Elimination(&mut self.interior, group, field)) {
-                return false;
+                return 0.0;
             }
             run(Reduction(self, group));
         }
@@ -206,7 +190,15 @@ impl Condensation {
                 column.iter_mut().zip(own).for_each(|(entry, value)| *entry += value);
             }
         }
-        true
+        let blocks = Blocks {
+            transfer: &self.transfer,
+            scalar_columns: &self.scalar_columns,
+            boundary: &self.boundary,
+            rows: &self.rows,
+            corner: &self.corner,
+        };
+        let sizes = self.bidiagonal_sizes();
+        self.bidiagonal.factorize(blocks, sizes)
     }
 
     /// Forms the transfer blocks of a group of intervals from their responses.

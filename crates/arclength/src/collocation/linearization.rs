@@ -57,20 +57,6 @@ impl<P: BoundaryValueEquations> Collocation<P> {
     ///
     /// Returns the sign of the determinant of the system reduced to the states at both ends and the scalars, zero if singular.
     pub fn factorize(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) -> f64 {
-        self.linearise(unknown, border, residual);
-        self.condensation.factorize(&self.mesh)
-    }
-
-    /// Linearises at `unknown` as far as [`derivatives`](Self::derivatives), [`transfer`](Self::transfer) and the jumps ask for, without
-    /// factors to solve with; whether the intervals can be condensed.
-    pub(crate) fn condense(&mut self, unknown: &[f64]) -> bool {
-        let mut residual = vec![0.0; unknown.len()];
-        self.linearise(unknown, &vec![0.0; unknown.len()], &mut residual);
-        self.condensation.condense(&self.mesh)
-    }
-
-    /// Writes the derivatives at `unknown`, bordered by `border`, to where they are factorised, and the residual.
-    fn linearise(&mut self, unknown: &[f64], border: &[f64], residual: &mut [f64]) {
         let n = self.problem.dimension();
         let e = self.problem.scalars();
         let degree = self.gauss().degree();
@@ -148,6 +134,7 @@ impl<P: BoundaryValueEquations> Collocation<P> {
             self.boundary_is_differentiated = true;
         }
         self.write_conditions(states, scalars, &integrals, residual);
+        self.condensation.factorize(&self.mesh)
     }
 
     /// Derivatives of a jump with respect to the state before it and the scalars, and the residual there.

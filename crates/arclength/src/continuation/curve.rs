@@ -140,13 +140,6 @@ pub trait Curve: Equations {
         None
     }
 
-    /// Growth exponents at unknowns on the tangent of a solution, which solve the equations to first order, where they may be compared with
-    /// those of the solution and take less than another solution. Only for curves all of whose test functions are made of exponents or of the
-    /// tangent.
-    fn spectrum_beside(&mut self, _solution: &Solution<Self::Point>, _unknown: &[f64]) -> Option<Spectrum> {
-        None
-    }
-
     /// Rate of change of a test function per length of the curve, where it is known without further solutions, in the metric in which
     /// the tangent has the length one.
     fn test_rate(&self, _kind: Self::Kind, _solution: &Solution<Self::Point>) -> Option<f64> {

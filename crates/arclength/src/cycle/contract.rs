@@ -3,7 +3,7 @@
 use super::curve::{Birth, CycleCurve, CycleInspection, STANDING};
 use super::end::CycleEnd;
 use super::extrema::{Extremes, extremes, ways_between_jumps};
-use super::floquet::{DEFECT, floquet};
+use super::floquet::DEFECT;
 use super::limit_cycle::LimitCycle;
 use super::sizes::LEAST_SENSITIVITY;
 use super::special;
@@ -245,19 +245,6 @@ impl Curve for CycleCurve<'_> {
         let spectrum = solution.point.floquet.growth();
         // Which side of the circle a multiplier one is on is rounding.
         Spectrum { decided: spectrum.decided && !self.follows_neutral_family, ..spectrum }
-    }
-
-    fn spectrum_beside(&mut self, solution: &Solution<CycleInspection>, unknown: &[f64]) -> Option<Spectrum> {
-        // Where exponentials gave the multipliers, those of the mesh are not to be compared with them; what passes borders lies
-        // elsewhere beside.
-        if solution.point.floquet.measured_error > 0.0 || self.collocation.problem.has_borders() {
-            return None;
-        }
-        let is_condensed = self.collocation.condense(unknown);
-        let problem = &self.collocation.problem;
-        let found =
-            is_condensed.then(|| floquet(&self.collocation, unknown, &problem.scales, &mut self.schur));
-        Some(found?.ok()?.growth())
     }
 
     fn undecided(&self, solution: &Solution<CycleInspection>) -> usize {

@@ -107,35 +107,23 @@ impl<C: Curve> Node<C> {
     }
 
     fn differences(&self, curve: &mut C, step: f64, settings: &Settings) -> Option<Rates> {
-        let ahead = self.solution.ahead(DISPLACEMENT * step);
-        if let Some(spectrum) = curve.spectrum_beside(&self.solution, &ahead) {
-            let length = distance(curve, &self.solution.unknown, &ahead);
-            let exponents = self.exponent_differences(&spectrum, length);
-            return Some(Rates { exponents, readings: vec![None; self.readings.len()] });
-        }
-        let there = across(curve, &self.solution, ahead, settings).ok()?;
+        let there = across(curve, &self.solution, self.solution.ahead(DISPLACEMENT * step), settings).ok()?;
         let length = distance(curve, &self.solution.unknown, &there.unknown);
         let there = Node::new(curve, there);
+        let partners = partners(&self.spectrum, &there.spectrum, None);
+        let exponents = self.spectrum.exponents.iter().zip(partners).map(|(here, partner)| {
+            let mut change = there.spectrum.exponents[partner] - here;
+            if self.spectrum.is_periodic {
+                change.im -= (change.im / TAU).round() * TAU;
+            }
+            change / length
+        });
         let readings = self.readings.iter().zip(&there.readings).map(|(here, there)| match (here, there) {
             (Some(here), Some(there)) if here.class == there.class => {
                 Some((there.value - here.value) / length)
             }
             _ => None,
         });
-        let exponents = self.exponent_differences(&there.spectrum, length);
-        Some(Rates { exponents, readings: readings.collect() })
-    }
-
-    fn exponent_differences(&self, there: &Spectrum, length: f64) -> Vec<Complex64> {
-        let partners = partners(&self.spectrum, there, None);
-        let pairs = self.spectrum.exponents.iter().zip(partners);
-        let change = |(here, partner): (&Complex64, usize)| {
-            let mut change = there.exponents[partner] - here;
-            if self.spectrum.is_periodic {
-                change.im -= (change.im / TAU).round() * TAU;
-            }
-            change / length
-        };
-        pairs.map(change).collect()
+        Some(Rates { exponents: exponents.collect(), readings: readings.collect() })
     }
 }

@@ -89,8 +89,8 @@ impl Along<'_> {
         distance.abs() < NEAR * self.sizes[switch]
     }
 
-    /// Whether the polynomials are before a border, to which they came along a course, at a time soon after that: they solve the equations
-    /// of a cycle that crosses it, with a field beyond that leads back.
+    /// Whether the polynomials are before a border, to which they came along a course, and away from it at a time soon after that: they solve
+    /// the equations of a cycle that crosses it, with a field beyond that leads back.
     pub(super) fn turns_back(
         &self,
         course: &Course,
@@ -101,7 +101,8 @@ impl Along<'_> {
         let GateFunction::Border { switch, value } = function else { return false };
         let is_followed = end.is_none_or(|(end, _)| later < end);
         let there = self.functions(course, &self.state(later, end))[switch] - value;
-        is_followed && if upwards { there < 0.0 } else { there > 0.0 }
+        let margin = NEAR * self.sizes[switch];
+        is_followed && if upwards { there < -margin } else { there > margin }
     }
 
     /// The first time from a time on at which the polynomials are beyond a border, or before it, as a course is; `None` where they are not.
