@@ -7,7 +7,7 @@ use crate::branch::SpecialKind;
 use crate::continuation::{Curve, Observer, Request, Solution};
 use crate::error::Error;
 
-/// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there.
+/// Distance of the first cycle of a new branch from the bifurcation, as part of the size of the cycle there, and its reduction where none is found.
 const FIRST_DISTANCE: f64 = 0.02;
 const DISTANCE_REDUCTION: f64 = 0.5;
 
